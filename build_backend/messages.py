@@ -26,22 +26,26 @@ def python_calls(
     _tags: Any,
     options: Any,  # noqa: ARG001 -- as Babel calls it
 ) -> Iterator[tuple[int, str, list[str | None], list[str]]]:
-    """Literals among the first two arguments of each call of a keyword, also of a nested one."""
+    """Literals among the first three arguments of each call of a keyword, also of a nested one."""
     for node in ast.walk(ast.parse(source.read())):
         name = node.func.id if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) else ""
         if isinstance(node, ast.Call) and name in keywords:
-            literals = [ast.literal_eval(arg) if isinstance(arg, ast.Constant) else None for arg in node.args[:2]]
+            literals = [ast.literal_eval(arg) if isinstance(arg, ast.Constant) else None for arg in node.args[:3]]
             yield node.lineno, name, literals, []
 
 
 ERRORS = ("Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
 WARNINGS = ("Range", "ModelLimit", "Fit")
 CLASSES = {**{f"{name}Error": None for name in ERRORS}, **{f"{name}Warning": None for name in WARNINGS}}
+COUNTED = {"count_message": (1, 2), "counted": (2, 3)}
 KEYWORDS: dict[str, tuple[Any, dict[str, Any]]] = {
-    "**.py": (python_calls, {"Message": None, "count_message": (1, 2), "template": None, **CLASSES}),
-    "**.html": ("jinja2.ext:babel_extract", {"gettext": None, "ngettext": (1, 2)}),  # {% trans %} is one of them
+    "**.py": (python_calls, {"Message": None, "template": None, "prose": None, **COUNTED, **CLASSES}),
+    # {% trans %} is one of the calls
+    "**.html": ("jinja2.ext:babel_extract", {"gettext": None, "ngettext": (1, 2), "prose": None}),
     "**.js": ("javascript", {"said": None}),
 }
+WITH_KEYS = ("carving", "scenario", "snow", "track")
+"""Packages whose calls of Quantity and Word have as second argument the meaning of a key, which pages show."""
 OPTIONS = {"**.html": {"newstyle_gettext": "true", "trimmed": "true"}}
 HEAD = """msgid ""
 msgstr ""
@@ -71,7 +75,8 @@ def extract(package: str) -> list[Template]:
 
     templates: dict[Template, None] = {}
     for pattern, (method, keywords) in KEYWORDS.items():
-        calls = extract_from_dir(SOURCES / package, [(pattern, method)], OPTIONS, keywords)
+        every = keywords | (dict.fromkeys(("Quantity", "Word"), (2,)) if package in WITH_KEYS else {})
+        calls = extract_from_dir(SOURCES / package, [(pattern, method)], OPTIONS, every)
         templates.update((message, None) for _, _, message, _, _ in sorted(calls, key=lambda call: call[:2]))
     return [template for template in templates if _has_words(template)]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import skisnow
-from skisnow.estimation.regressions import (
+from skisnow.estimation.observations import (
     DENSITY_KEY,
     DROP_CONE_KEY,
     HARDNESS_KEY,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from html import unescape
 from importlib.metadata import version
 from pathlib import Path
@@ -13,18 +13,19 @@ import pytest
 from matplotlib.text import Text
 
 from skisnow._support.errors import ParameterError
+from skisnow._support.messages import Message, in_language
 from skisnow.comparison import compare_tracks
 from skisnow.report import write_report
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
-from skisnow.report.figures.style import journal_style, site_styles
-from skisnow.report.figures.translated import translate_figure
+from skisnow.report.figures.style import journal_style, local_axes, site_styles
+from skisnow.report.formatting import days_words
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
 from skisnow.report.symbols import figure_text
+from skisnow.report.table import Column, record_table, table_html
 from skisnow.report.track.report import comparison_drawing, track_drawings
-from skisnow.report.translated import translated_html
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.track.summary import track_summary
 from skisnow.track.track import Track
@@ -85,19 +86,21 @@ def test_a_german_report_has_the_same_numbers(reference: Reported, german: str) 
     assert numbers(german) == [each.replace(".", ",") for each in numbers(reference.html)]
 
 
-def test_names_that_users_gave_stay() -> None:
-    page = "<td>all</td><td>all sites</td><p><i>S</i><sub>f</sub> on edge angle ϑ, all (n = 3): no data.</p>"
-    page += "<p>A_1 &lt;b&gt;</p>"
-    german = translated_html(page, "de", names=frozenset({"all"}))
-    assert german.startswith("<td>all</td><td>alle Messorte</td>")
-    assert ", all (n = 3)" in german and "<p>A_1 &lt;b&gt;</p>" in german
+def test_text_of_users_is_not_translated() -> None:
+    """A site called "Site" or "Snow" keeps its name; the same words of skisnow are translated."""
+    column = Column("site", Message("Site"), "text")
+    with in_language("de"):
+        html = table_html(
+            record_table("sites", Message("Snow"), (column,), [{"site": "Snow"}, {"site": "Site"}]), number=1
+        )
+    assert re.findall(r"<th [^>]*>([^<]*)</th>", html) == ["Messort", "Snow", "Site"]
+    assert "</b> Schnee</caption>" in html
 
 
 def test_dates_are_written_as_a_german_reader_writes_them() -> None:
-    page = '<time datetime="2026-01-09">9</time> to <time datetime="2026-03-12">12 March 2026</time>'
-    assert re.sub("<[^>]*>", "", translated_html(page, "de")) == "9. bis 12. März 2026"
-    german_text = translated_html("<p>0.5 to 1.25 mm, 10.1111/sms, 0.1.0</p>", "de")
-    assert german_text == "<p>0,5 bis 1,25 mm, 10.1111/sms, 0.1.0</p>"
+    with in_language("de"):
+        assert days_words("2026-03-09", "2026-03-12").striptags() == "9. bis 12. März 2026"
+        assert days_words("2026-02-28", "2026-03-12").striptags() == "28. Februar bis 12. März 2026"
 
 
 def written(drawing: Drawing) -> Iterator[str]:
@@ -110,16 +113,21 @@ def written(drawing: Drawing) -> Iterator[str]:
         yield text.get_text()
 
 
+def texts_of_figure(draw: Callable[[], object], language: str) -> set[str]:
+    """All texts of a figure that is drawn in a language."""
+    with journal_style(), in_language(language):
+        drawn = draw()
+        assert isinstance(drawn, Drawing)
+        local_axes(drawn.figure)
+        return set(written(drawn))
+
+
 @pytest.mark.parametrize("number", range(len(DRAWERS)))
 def test_no_word_in_a_german_figure_is_left_in_english(reference: Reported, number: int) -> None:
     data = ReportData(reference.analysis)
     names = frozenset(map(figure_text, data.names))
-    with journal_style():
-        drawn = DRAWERS[number](data, site_styles(data))
-        assert isinstance(drawn, Drawing)
-        english = set(written(drawn))
-        translate_figure(drawn.figure, "de", names=names)
-        german = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)} - names
+    english, german = (texts_of_figure(lambda: DRAWERS[number](data, site_styles(data)), code) for code in ("en", "de"))
+    german = {re.sub(r"\$[^$]*\$", "", each) for each in german} - names
     assert {each for each in english if re.search("[a-z]{4}", each)} - names
     assert {each for each in german if ENGLISH.search(each) and not CODES.fullmatch(each)} == set()
     assert {each for each in german if re.search(r"\d\.\d", each)} == set()
@@ -127,16 +135,29 @@ def test_no_word_in_a_german_figure_is_left_in_english(reference: Reported, numb
 
 def test_no_text_of_a_german_run_is_left_in_english() -> None:
     """Its page and its figures, but for keys, the papers to cite, and the ids of what the run was given."""
-    run, pictures = circle_run(), []
-    with journal_style():
-        for drawn in run_drawings(run):
-            translate_figure(drawn.figure, "de")
-            words = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)}
-            assert {each for each in words if ENGLISH.search(each)} == set()
-            pictures.append(Picture(drawn.name, drawn.whole_caption, drawn.alt, drawn.wide, "", b""))
-    english, german = (texts(run_page(run, summary_of(run), pictures, language=code)) for code in ("en", "de"))
+    run, pages = circle_run(), {}
+    for code in ("en", "de"):
+        pictures = []
+        with journal_style(), in_language(code):
+            for drawn in run_drawings(run):
+                words = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)}
+                assert code == "en" or {each for each in words if ENGLISH.search(each)} == set()
+                pictures.append(Picture(drawn.name, drawn.whole_caption, drawn.alt, drawn.wide, "", b""))
+        pages[code] = texts(run_page(run, summary_of(run), pictures, language=code))
+    english, german = pages["en"], pages["de"]
     choices = {word for key in SCENARIO_KEYS.values() for word in key.choices}
-    same = {"Start", "BibTeX", "Start (J)", "false", "giant-slalom", "true", VERSION, *choices, *SCENARIO_KEYS}
+    same = {
+        run.scenario.contact.snow.source,
+        "Start",
+        "BibTeX",
+        "Start (J)",
+        "false",
+        "giant-slalom",
+        "true",
+        VERSION,
+        *choices,
+        *SCENARIO_KEYS,
+    }
     words = {each for each in english if re.search("[A-Za-z]{4}", each)} - same
     assert len(words) > 150
     assert words.intersection(german) == set()
@@ -151,14 +172,15 @@ def test_no_word_in_german_figures_of_tracks_is_left_in_english() -> None:
         Track("a.csv", way / 8.0, place + shift, np.full(300, np.nan), "local", "made by hand") for shift in (0.0, 0.1)
     )
     found = compare_tracks(simulated, measured)
-    with journal_style():
-        for drawn in (*track_drawings(track_summary(measured)), comparison_drawing(found)):
-            english = set(written(drawn))
-            translate_figure(drawn.figure, "de", names=frozenset({"a.csv"}))
-            german = {re.sub(r"\$[^$]*\$", "", each) for each in written(drawn)}
-            assert {each for each in german if ENGLISH.search(each)} == set()
-            assert len(english) > 5
-            assert {each for each in english & german if re.search("[a-z]{4}", each)} == set()
+    summary = track_summary(measured)
+    drawings = [*(lambda name=name: next(each for each in track_drawings(summary) if each.name == name)
+                  for name in ("map", "speed", "radius", "along")), lambda: comparison_drawing(found)]  # fmt: skip
+    for draw in drawings:
+        english, german = (texts_of_figure(draw, code) for code in ("en", "de"))
+        german = {re.sub(r"\$[^$]*\$", "", each) for each in german}
+        assert {each for each in german if ENGLISH.search(each)} == set()
+        assert len(english) > 5
+        assert {each for each in english & german if re.search("[a-z]{4}", each)} == set()
 
 
 def test_a_language_without_texts_is_refused_before_anything_is_written(reference: Reported, tmp_path: Path) -> None:

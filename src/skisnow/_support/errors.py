@@ -10,7 +10,7 @@ import difflib
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Self
 
-from .messages import ENGLISH, Message, count_message, joined, translated
+from .messages import ENGLISH, Message, count_message, joined, languages, translated
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -166,3 +166,12 @@ def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
             Message("{name} is {value!r}. {allowed}", name=name, value=value, allowed=nearest(str(value), words)),
             code="unknown_choice",
         )
+
+
+def require_language(code: str) -> None:
+    """Reject a language without translations, before long work is done for it."""
+    if code not in languages():
+        message = Message(
+            "The language {language!r} is unknown. Allowed: {codes}.", language=code, codes=[*languages()]
+        )
+        raise ParameterError(message, code="unknown_language")

@@ -13,7 +13,9 @@ The depth of 12.5 mm is above 10.0 mm.
 from __future__ import annotations
 
 import gettext
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from datetime import date, datetime
 from functools import cache
 from numbers import Real
@@ -23,11 +25,38 @@ from typing import Any, Final
 
 ENGLISH: Final = "en"
 FOLDER: Final = Path(__file__).parent / "translations"
+_LANGUAGE: Final = ContextVar[str]("language")
 _MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
 
+_languages_of_pages: list[Callable[[], str]] = []
+
+
+@contextmanager
+def in_language(language: str) -> Iterator[None]:
+    """Write a document in a language inside the block: `str(message)`, and numbers of `report.formatting`."""
+    before = _LANGUAGE.set(language)
+    try:
+        yield
+    finally:
+        _LANGUAGE.reset(before)
+
+
+def current_language() -> str:
+    """Language of the document that is being written, otherwise of the page of the lab, otherwise English."""
+    language = _LANGUAGE.get(None)
+    if language is not None:
+        return language
+    return _languages_of_pages[0]() if _languages_of_pages else ENGLISH
+
+
+def use_language_of_pages(language: Callable[[], str]) -> None:
+    """Use the result of a function as current language where no document sets one."""
+    _languages_of_pages[:] = [language]
+
+
 class Message(str):
-    """English text of a template with its fields, which can also be given in other languages.
+    """English text of a template with its fields; `str(message)` and f-strings give it in the current language.
 
     Parameters
     ----------
@@ -48,7 +77,12 @@ class Message(str):
 
     def text(self, language: str = ENGLISH) -> str:
         """The message in a language, with its numbers and dates as written there."""
+        if language == ENGLISH:
+            return super().__str__()
         return _filled(self.template, self.plural, self.fields, language)
+
+    def __str__(self) -> str:
+        return self.text(current_language())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _message, (self.template, self.plural, self.fields)
@@ -74,6 +108,12 @@ def joined(messages: Sequence[object], between: str = " ") -> Message:
     return Message(between.join(f"{{{name}}}" for name in names), **dict(zip(names, messages, strict=True)))
 
 
+def languages() -> dict[str, str]:
+    """Name of each language in itself, by its code; English first."""
+    codes = [ENGLISH, *sorted(path.stem for path in FOLDER.glob("*.mo"))]
+    return {code: translations(code).gettext(template("English")) for code in codes}
+
+
 def translated(value: object, language: str) -> str:
     """Text of a value as it is inserted into a message of a language."""
     return _formatter(language).format_field(value, "")
@@ -88,9 +128,15 @@ def translations(language: str) -> gettext.NullTranslations:
         return gettext.GNUTranslations(file)
 
 
+@cache
 def decimal_sign(language: str) -> str:
     """Decimal sign of a language, from the translation of "0.5"."""
     return translations(language).gettext(template("0.5"))[1]
+
+
+def local_number(text: str) -> str:
+    """A number with a decimal point as it is written in the current language."""
+    return text.replace(".", decimal_sign(current_language()))
 
 
 def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Message:
@@ -145,11 +191,11 @@ def _filled(template: str, plural: str | None, fields: dict[str, Any], language:
 
 
 @cache
-def _formatter(language: str) -> _Localized:
-    return _Localized(language)
+def _formatter(language: str) -> LocalFormatter:
+    return LocalFormatter(language)
 
 
-class _Localized(Formatter):
+class LocalFormatter(Formatter):
     """`str.format` with numbers, dates and messages of a language."""
 
     def __init__(self, language: str) -> None:

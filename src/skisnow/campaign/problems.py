@@ -245,49 +245,77 @@ class QualityFlag:
 
 
 _ALL: Final = (
-    QualityFlag("cancelled", "The experiment was cancelled by an entry in the column status.", True),
-    QualityFlag("too_few_loads", f"The series has fewer than {FEWEST_LOADS} load steps.", True),
-    QualityFlag("loads_not_rising", "A load of the series is not above the one before it.", True),
+    QualityFlag("cancelled", Message("The experiment was cancelled by an entry in the column status."), True),
     QualityFlag(
-        "depth_shrinks", "A depth of the series is below the one before it, although the load was raised.", True
+        "too_few_loads",
+        Message("The series has fewer than {fewest_loads} load steps.", fewest_loads=FEWEST_LOADS),
+        True,
+    ),
+    QualityFlag("loads_not_rising", Message("A load of the series is not above the one before it."), True),
+    QualityFlag(
+        "depth_shrinks",
+        Message("A depth of the series is below the one before it, although the load was raised."),
+        True,
     ),
     QualityFlag(
-        "zero_depth", "The depth is zero (of a series: at its largest load), so that no parameter follows.", True
+        "zero_depth",
+        Message("The depth is zero (of a series: at its largest load), so that no parameter follows."),
+        True,
     ),
     QualityFlag(
-        "beyond_tool", "The tool went deeper than the geometry that its area and volume are computed with.", False
+        "beyond_tool",
+        Message("The tool went deeper than the geometry that its area and volume are computed with."),
+        False,
     ),
     QualityFlag(
         "below_resolution",
-        f"The depth (of a series: at its largest load) is below {RESOLUTIONS:g} steps of the gauge.",
+        Message(
+            "The depth (of a series: at its largest load) is below {resolutions:g} steps of the gauge.",
+            resolutions=RESOLUTIONS,
+        ),
         False,
     ),
     QualityFlag(
         "layered",
-        "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre.",
+        Message(
+            "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre."
+        ),
         False,
     ),
     QualityFlag(
         "creeps",
-        f"Under one load the depth grew by more than {CREEP_STEPS:g} steps of the gauge and {CREEP_SHARE:.0%} of it.",
+        Message(
+            "Under one load the depth grew by more than {creep_steps:g} steps of the gauge and {creep_share:.0%} of "
+            "it.",
+            creep_steps=CREEP_STEPS,
+            creep_share=CREEP_SHARE,
+        ),
         False,
     ),
     QualityFlag(
         "unloading_not_falling",
-        "A load of the unloading is not below the one before it, so that no unloading ratio follows.",
+        Message("A load of the unloading is not below the one before it, so that no unloading ratio follows."),
         False,
     ),
     QualityFlag(
-        "unloading_sinks", "The tool went deeper while the discs were taken off: the snow was still giving way.", False
+        "unloading_sinks",
+        Message("The tool went deeper while the discs were taken off: the snow was still giving way."),
+        False,
     ),
     QualityFlag(
         "rebound_unresolved",
-        "The tool came back by too little to measure how steep the unloading is: the ratio is only known from below.",
+        Message(
+            "The tool came back by too little to measure how steep the unloading is: the ratio is only known from "
+            "below."
+        ),
         False,
     ),
     QualityFlag(
         "hardness_outlier",
-        "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's median.",
+        Message(
+            "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's "
+            "median."
+        ),
         False,
     ),
 )

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, NoReturn
 
 import numpy as np
+import numpy.typing as npt
 
 from .._support.display import Facts, Shown
 from .._support.errors import FieldDataError
@@ -27,8 +28,7 @@ from .problems import error
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from .._support.arrays import FloatArray
-
+FloatArray = npt.NDArray[np.float64]
 
 MOST_BYTES: Final = 256 * 2**20
 _NEEDED: Final = ("station_id", "nodata", "fields")

@@ -12,6 +12,7 @@ import numpy as np
 from .._support.arrays import BoolArray, FloatArray
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
@@ -31,12 +32,20 @@ the cosine)."""
 
 REMEDIES: Final[dict[Outcome, str]] = {
     "equilibrium": "",
-    "slips": "the snow cannot hold the side force: less edge angle or load, or stronger snow; the numbers are those of "
-    "an edge held by something else",
-    "sinks": f"no balance above {SINKING_DEPTH * 1e2:.0f} cm: the snow is too soft for this load",
-    "bridges": "the ski stands on separate pieces, or not under the boot: softer snow, a softer ski, less camber or a "
-    "shorter clamp closes the gap",
-    "not_converged": "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle",
+    "slips": Message(
+        "the snow cannot hold the side force: less edge angle or load, or stronger snow; the numbers are those of an "
+        "edge held by something else"
+    ),
+    "sinks": Message(
+        "no balance above {sinking_depth:.0f} cm: the snow is too soft for this load", sinking_depth=SINKING_DEPTH * 1e2
+    ),
+    "bridges": Message(
+        "the ski stands on separate pieces, or not under the boot: softer snow, a softer ski, less camber or a shorter "
+        "clamp closes the gap"
+    ),
+    "not_converged": Message(
+        "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle"
+    ),
 }
 """What to do about an outcome, in words."""
 

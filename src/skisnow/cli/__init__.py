@@ -22,19 +22,23 @@ def build_parser() -> argparse.ArgumentParser:
     from importlib.metadata import version
 
     from . import (
-        beginning,
-        campaign,
+        analyse,
         carve,
+        check,
         compare,
+        completion,
         convert,
         design,
         export,
         identify,
         import_file,
+        man,
+        new,
         race,
+        reference,
         replay,
+        samples,
         serve,
-        shell,
         simulate,
         store,
         study,
@@ -50,13 +54,12 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
-    modules = (carve, design, simulate, replay, turn, study, race, track, compare, identify, export, convert, serve)
-    for add_command in (
-        beginning.add_new, import_file.add_parser, campaign.add_check, campaign.add_analyse, store.add_parser,
-        beginning.add_reference, beginning.add_samples, *(module.add_parser for module in modules),
-        shell.add_completion, shell.add_man,
-    ):  # fmt: skip
-        add_command(commands)
+    every = (
+        new, import_file, check, analyse, store, reference, samples, carve, design, simulate, replay, turn, study, race,
+        track, compare, identify, export, convert, serve, completion, man,
+    )  # fmt: skip
+    for command in every:
+        command.add_parser(commands)
     return parser
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.units import DEGREE
+from .ending import prepare_output
 from .options import add_fall_line_azimuth, add_language, number
-from .output import prepare_output, print_warnings
 from .progress import announced
 
 if TYPE_CHECKING:
@@ -86,7 +86,8 @@ def run(options: argparse.Namespace) -> int:
 
     gaps = read_gate_gaps(options.simulated, options.measured)
     answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": gap_rows(gaps)})
-    print_warnings(comparison.warnings)
+    for text in comparison.warnings:
+        print(f"warning: {text}", file=sys.stderr)
     text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
     if options.json:
         print(text, flush=True)
@@ -181,11 +182,5 @@ def _write(folder: Path, comparison: Comparison, text: str, language: str, gaps:
         if gaps is not None:
             write_gaps(gaps, comparison.names, stage.path, language=language)
         write_file(stage.path / "compare.json", f"{text}\n")
-        write_pictures(
-            map(comparison_drawing, [comparison]),
-            stage.path,
-            every=(),
-            language=language,
-            names=frozenset(comparison.names),
-        )
+        write_pictures(map(comparison_drawing, [comparison]), stage.path, every=(), language=language)
     print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF and EPS", file=sys.stderr)

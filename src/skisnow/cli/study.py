@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .ending import ending_is_an_interrupt, report_interrupt
-from .options import add_language, add_scheduler, add_workers, scheduler_of
+from .ending import Ended, ending_is_an_interrupt
+from .options import MOST_WORKERS, add_language, add_scheduler, scheduler_of, whole_number
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -27,7 +27,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     about = "with the varied and fixed inputs and `out`; with --merge the parts"
     parser.add_argument("study", type=Path, nargs="+", metavar="STUDY.toml", help=about)
-    add_workers(parser)
+    parser.add_argument(
+        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
+    )
     add_scheduler(parser)
     parts = parser.add_mutually_exclusive_group()
     shard = "compute one of n parts, for the jobs of an array: every n-th point, into a file beside the table"
@@ -74,7 +76,7 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
         with ending_is_an_interrupt(), Progress() as progress:
             table = run_study(study, workers=options.workers, executor=executor, progress=_Pace(progress))
     except KeyboardInterrupt as stopped:
-        return report_interrupt(stopped, study.partial)
+        return _stopped(stopped, study.partial)
     _tell(study.out, table)
     if _none_was_asked(study.out, table):
         return 1
@@ -96,7 +98,7 @@ def _shard(options: argparse.Namespace, study: Study) -> int:
         with ending_is_an_interrupt(), Progress() as progress:
             place = run_shard(study, shard, workers=options.workers, executor=executor, progress=_Pace(progress))
     except KeyboardInterrupt as stopped:
-        return report_interrupt(stopped, shard.place(study))
+        return _stopped(stopped, shard.place(study))
     print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
     return 0
 
@@ -109,6 +111,13 @@ def _merge(options: argparse.Namespace) -> int:
     table = merge_shards(options.merge, options.study)
     _tell(options.merge, table)
     return 1 if _none_was_asked(options.merge, table) else 0
+
+
+def _stopped(stopped: KeyboardInterrupt, place: Path) -> int:
+    ended = isinstance(stopped, Ended)
+    print(f"\nskisnow: {'ended' if ended else 'interrupted'}; finished points are kept in", end=" ", file=sys.stderr)
+    print(f"{place}.\nThe same command goes on with them.", file=sys.stderr)
+    return 143 if ended else 130
 
 
 def _none_was_asked(place: Path, table: StudyTable) -> bool:
@@ -148,8 +157,7 @@ def _draw(options: argparse.Namespace, table: StudyTable) -> None:
     from ..report.study_maps import grip_map, radius_map
 
     draw = {"radius": radius_map, "grip": grip_map}[options.map]
-    names = frozenset(str(row[column]) for row in table.rows for column in ("ski", "ski_name") if row.get(column))
-    write_figure(options.figure, lambda: draw(table), language=options.language, names=names)
+    write_figure(options.figure, lambda: draw(table), language=options.language)
     print(f"Figure: {options.figure}", file=sys.stderr)
 
 

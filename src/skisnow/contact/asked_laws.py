@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
-from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw
     from ..forces.penetration import PointLaw
     from ..forces.shear import ShearLaw
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 class AskedFriction:

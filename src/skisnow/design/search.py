@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .._support.errors import SolverError
+from .._support.messages import Message
 from .evaluation import Evaluator
 from .problem import Search
 from .result import Design, Start, design_of
@@ -75,8 +76,10 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     best = min(starts, key=lambda start: start.result)
     if best.end is None:
         raise SolverError(
-            "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds.",
+            Message(
+                "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds.",
+                count=task.starts,
+            ),
             code="no_equilibrium",
-            count=task.starts,
         )
     return design_of(search, best.end, tuple(starts))

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._support.content import index_names
 from .._support.errors import FitError
+from .._support.messages import Message
 from .._support.units import CONFIDENCE, N_PER_MM2, N_PER_MM3
 from ..snow.published import domine_2011, federolf_2006, moessner_2013
 from ..statistics.clusters import cluster_intervals
@@ -18,8 +19,7 @@ from ..statistics.combined_uncertainty import expanded_factor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .._support.arrays import BoolArray, FloatArray
-
+FloatArray = npt.NDArray[np.float64]
 
 FEWEST_SITES: Final = 4
 """Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""
@@ -86,34 +86,6 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ow
     return OwnValue(mean, low, high, float(values.min()), float(values.max()))
 
 
-@dataclass(frozen=True, slots=True)
-class SiteValue:
-    """Geometric mean over n used experiments of a site (None: of all), and its 95 % interval, NaN for n = 1."""
-
-    site: str | None
-    n: int
-    value: float
-    low: float
-    high: float
-
-
-def site_values(values: FloatArray, used: BoolArray, site: Sequence[str]) -> tuple[SiteValue, ...]:
-    """Mean of each site in alphabetical order, then of all together; empty without a used and finite value.
-
-    ``values`` (m,) are above 0, ``used`` is a mask over the m experiments, ``site`` the name of the site of each.
-    """
-    counted = used & np.isfinite(values)
-    names = np.array(site, dtype=object)
-    if not counted.any():
-        return ()
-    rows = []
-    for name in (*sorted(set(names[counted].tolist())), None):
-        mask = counted if name is None else counted & (names == name)
-        own = own_mean(values[mask], names[mask].tolist(), geometric=True)
-        rows.append(SiteValue(name, int(mask.sum()), own.value, own.low, own.high))
-    return tuple(rows)
-
-
 def _half_width(data: FloatArray, sites: npt.NDArray[np.int64]) -> float:
     """Half of the 95 % interval of the mean; NaN for one value, and for more than one site but fewer than four."""
     n_sites = len(np.unique(sites))
@@ -133,25 +105,27 @@ def compare_with_published(
 ) -> tuple[Comparison, ...]:
     """The published ranges, Federolf 2006 converted, Eqns 11 and 14, Domine 2011; units as in the keys."""
     H_V, S_f = "H_V_N_per_mm3", "S_f_N_per_mm2"
-    paper = moessner_2013.SOURCE
+    paper, paper_range = moessner_2013.SOURCE, Message("{source}, range", source=moessner_2013.SOURCE)
     rows = [
-        Comparison(f"{paper}, range", H_V, moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3, hardness),
-        Comparison(f"{paper}, range", S_f, moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2, stress),
+        Comparison(paper_range, H_V, moessner_2013.SNOW_HARDNESS_RANGE_N_PER_MM3, hardness),
+        Comparison(paper_range, S_f, moessner_2013.FAILURE_SHEAR_STRESS_RANGE_N_PER_MM2, stress),
     ]
     for name, snow in federolf_2006.snows().items():
-        source = f"{federolf_2006.SOURCE}: {name}"
+        source = Message("{source}: {snow}", source=federolf_2006.SOURCE, snow=name)
         rows.append(Comparison(source, H_V, snow.snow_hardness / N_PER_MM3, hardness))
         if snow.failure_shear_stress is not None:
             rows.append(Comparison(source, S_f, snow.failure_shear_stress / N_PER_MM2, stress))
     rows += [
-        Comparison(f"{paper}, Eqn 11", quantity, value, own)
+        Comparison(Message("{source}, Eqn 11", source=paper), quantity, value, own)
         for quantity, value, own in zip(("b0", "b1_per_rad"), moessner_2013.ANGLE_TERM, angle_term, strict=True)
     ]
     if np.isfinite(shear_density.value):
-        at = f" at this campaign's mean {shear_density.value:.0f} kg/m³"
-        for source, law in (
-            (f"{paper}, Eqn 14", moessner_2013.failure_shear_stress_from_density),
+        for law_source, law in (
+            (Message("{source}, Eqn 14", source=paper), moessner_2013.failure_shear_stress_from_density),
             (domine_2011.SOURCE, domine_2011.failure_shear_stress_from_density),
         ):
-            rows.append(Comparison(source + at, S_f, float(law(shear_density.value)) / N_PER_MM2, stress))
+            source = Message(
+                "{source} at this campaign's mean {density:.0f} kg/m³", source=law_source, density=shear_density.value
+            )
+            rows.append(Comparison(source, S_f, float(law(shear_density.value)) / N_PER_MM2, stress))
     return tuple(rows)

@@ -15,14 +15,18 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.display import ShownFields
+from .._support.messages import Message
 from ..statistics.bounded import Condensed, condensed
 from .hardness import DEFINITIONS
 
 if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
     from .readings import Readings
 
+FloatArray = npt.NDArray[np.float64]
 Term: TypeAlias = Literal["none", "one", "constant", "linear"]
+
+
+FORMS: Final = {"constant": Message("constant"), "linear": Message("linear")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +43,20 @@ class Model:
         return f"{self.hardness}:a={self.a},b={self.b}"
 
     @property
-    def words(self) -> str:
+    def words(self) -> Message:
         """The row in a few words, for tables and sentences.
 
         >>> Model("H_V", "none", "one").words, Model("H_A", "linear", "linear").words
         ('H_V; b = 1', 'H_A; a, b linear')
         """
+        if self.b == "one":
+            return Message("{hardness}; b = 1", hardness=self.hardness)
+        b = FORMS[self.b]
         if self.a == "none":
-            return f"{self.hardness}; b {'= 1' if self.b == 'one' else self.b}"
-        return f"{self.hardness}; a, b {self.b}" if self.a == self.b else f"{self.hardness}; a {self.a}, b {self.b}"
+            return Message("{hardness}; b {b}", hardness=self.hardness, b=b)
+        if self.a == self.b:
+            return Message("{hardness}; a, b {b}", hardness=self.hardness, b=b)
+        return Message("{hardness}; a {a}, b {b}", hardness=self.hardness, a=FORMS[self.a], b=b)
 
     @property
     def n_parameters(self) -> int:
@@ -272,9 +281,13 @@ def why_no_choice(readings: Readings) -> str:
     angles = len(np.unique(np.round(readings.edge_angle, 9)))
     if readings.n_series >= FEWEST_SERIES and angles >= FEWEST_ANGLES:
         return ""
-    return (
-        f"No law of the penetration force is selected: that takes {FEWEST_SERIES} series at {FEWEST_ANGLES} edge "
-        f"angles, and used are {readings.n_series} at {angles}."
+    return Message(
+        "No law of the penetration force is selected: that takes {fewest_series} series at {fewest_angles} edge "
+        "angles, and used are {n_series} at {angles}.",
+        fewest_series=FEWEST_SERIES,
+        fewest_angles=FEWEST_ANGLES,
+        n_series=readings.n_series,
+        angles=angles,
     )
 
 

@@ -6,7 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
+from .._support.messages import Message
 from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
 from .hardness import DEFINITIONS, hardness_at_largest_load
 from .models import MODELS
@@ -15,17 +17,18 @@ from .screening import screened_both
 from .shear import shear_displacement, shear_stress
 
 if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..geometry import GeometryForm
     from .campaign_model import CampaignModel
     from .model_choice import NestedRows
     from .models import Model, ModelFit
     from .parts import ModelTable, PenetrationAnalysis
-    from .screening import Screened, SeriesEstimates
+    from .screening import Screened
+    from .series_estimates import SeriesEstimates
     from .shear import ShearDisplacement, ShearStress
     from .unloading import Unloading
 
+FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 _SAME_PERCENT: Final = 0.005
 """Rmse that differ by less are reported as the same."""
@@ -288,16 +291,24 @@ def selected_model(penetration: PenetrationAnalysis) -> Json | None:
     return {"id": chosen.model.id, "reason": _reason(chosen, best)}
 
 
-def _reason(chosen: ModelFit, best: ModelFit) -> str:
+def _reason(chosen: ModelFit, best: ModelFit) -> Message:
     if chosen.model == best.model:
-        return (
-            f"The smallest rmse of the nine candidate models, {chosen.rmse:.4g} N; no model with fewer fitted "
-            f"parameters ({chosen.n_parameters} here) comes within 5 % of it."
-        )
+        return Message(
+            "The smallest rmse of the nine candidate models, {rmse:.4g} N; no model with fewer fitted parameters "
+            "({parameters} here) comes within 5 % of it.",
+            rmse=chosen.rmse, parameters=chosen.n_parameters,
+        )  # fmt: skip
     more = 100.0 * (chosen.rmse / best.rmse - 1.0) if best.rmse > 0 else 0.0
-    return (
-        f"The simplest of the nine candidate models whose rmse is within 5 % of the best: {chosen.rmse:.4g} N "
-        f"with fitted parameters: {chosen.n_parameters}, against {best.rmse:.4g} N of "
-        f"{best.model.id} with {best.n_parameters}, "
-        f"{f'{more:.2g} % more' if more >= _SAME_PERCENT else 'which is the same'}."
-    )
+    fields = {"rmse": chosen.rmse, "parameters": chosen.n_parameters, "best_rmse": best.rmse, "best": best.model.id,
+              "best_parameters": best.n_parameters}  # fmt: skip
+    if more < _SAME_PERCENT:
+        return Message(
+            "The simplest of the nine candidate models whose rmse is within 5 % of the best: {rmse:.4g} N with fitted "
+            "parameters: {parameters}, against {best_rmse:.4g} N of {best} with {best_parameters}, which is the same.",
+            **fields,
+        )
+    return Message(
+        "The simplest of the nine candidate models whose rmse is within 5 % of the best: {rmse:.4g} N with fitted "
+        "parameters: {parameters}, against {best_rmse:.4g} N of {best} with {best_parameters}, {more:.2g} % more.",
+        more=more, **fields,
+    )  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.content import index_names
+from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..snow import SnowProperties
 from ..snow.mean_snow import (
@@ -25,12 +26,13 @@ from .group_comparisons import letters_of_groups
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign
     from .group_comparisons import GroupComparison
     from .parts import PenetrationAnalysis, ShearAnalysis
 
 
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 TextArray = npt.NDArray[np.object_]
 
 
@@ -153,8 +155,11 @@ def _alike(campaign: Campaign) -> Iterator[str]:
     for site in _tested(campaign).union(*_described(campaign).values()):
         names.setdefault("".join(site.split()).casefold(), set()).add(site)
     for variants in sorted(sorted(variants) for variants in names.values() if len(variants) > 1):
-        listed = ", ".join(repr(name) for name in variants)
-        yield f"The sites {listed} differ by capitals or spaces alone; they count as different sites. Is one meant?"
+        listed = [repr(name) for name in variants]
+        yield Message(
+            "The sites {listed} differ by capitals or spaces alone; they count as different sites. Is one meant?",
+            listed=listed,
+        )
 
 
 def _without_tests(campaign: Campaign) -> Iterator[str]:
@@ -164,11 +169,15 @@ def _without_tests(campaign: Campaign) -> Iterator[str]:
     for name, sites in _described(campaign).items():
         lost = sorted(sites - tested)
         if lost:
-            listed = ", ".join(repr(site) for site in lost)
-            yield f"{name} describes {listed}, where no test was made: these rows are not included. Is a site misspelt?"
+            listed = [repr(site) for site in lost]
+            yield Message(
+                "{name} describes {listed}, where no test was made: these rows are not included. Is a site misspelt?",
+                name=name,
+                listed=listed,
+            )
 
 
 def _unread(campaign: Campaign) -> Iterator[str]:
     if campaign.unread_files:
         listed = ", ".join(campaign.unread_files)
-        yield f"Not read, as no table of a campaign has this name: {listed}."
+        yield Message("Not read, as no table of a campaign has this name: {listed}.", listed=listed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+FloatArray = npt.NDArray[np.float64]
 
 
 def cutting_stress(

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import Final
 
+from .._support.messages import Message
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..snow import MeasuredRange
 from ..snow.published import domine_2011, federolf_2006, lieu_mote_1985, moessner_2013
 
-_BOTH: Final = f"{moessner_2013.SOURCE}; {federolf_2006.SOURCE}"
+_BOTH: Final = Message("{first}; {second}", first=moessner_2013.SOURCE, second=federolf_2006.SOURCE)
 _FEDEROLF: Final = tuple(federolf_2006.snows().values())
 
 SNOW_HARDNESS: Final = MeasuredRange(

@@ -16,6 +16,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.content import content_bytes
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from .._support.units import DEGREE
 from .._support.user_files import is_file
@@ -88,10 +89,10 @@ def _is_track(head: set[str]) -> bool:
 def data_description(data: Data) -> str:
     """Kind and size of the data recognised in a file, in words."""
     if isinstance(data, PhotoCells):
-        return f"photo-cell times (runs: {len(data.runs)})"
+        return Message("photo-cell times (runs: {count})", count=len(data.runs))
     if isinstance(data, MeasuredGrooves):
-        return f"measured grooves (places: {len(data)})"
-    return f"a track (points: {len(data)})"
+        return Message("measured grooves (places: {count})", count=len(data))
+    return Message("a track (points: {count})", count=len(data))
 
 
 def _head(path: Path) -> set[str]:

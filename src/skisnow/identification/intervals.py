@@ -57,7 +57,7 @@ def add_profile_intervals(identification: Identification, solution: Solution, pr
         profiles.append(profile)
         ends = _ends(solution.optimum.place[j], place, rise, limit)
         parameters[j] = replace(parameters[j], profile_interval=_as_values(parameter, ends))
-    method = f"profiles: others refitted by {REFITS} Gauss-Newton steps at each value"
+    method = Message("profiles: others refitted by {refits} Gauss-Newton steps at each value", refits=REFITS)
     return replace(
         identification,
         profiles=tuple(profiles),
@@ -306,8 +306,10 @@ def add_bootstrap_intervals(
         else replace(parameter, bootstrap_interval=(float(low), float(high)))
         for parameter, (low, high) in zip(identification.parameters, percentile_interval(values), strict=True)
     )
-    how = "refitted" if by == "refit" else "fitted by the model linearised at the best values"
-    method = f"bootstrap: {len(samples)} resamples of stretches of residuals, each {how}"
+    how = "refitted" if by == "refit" else Message("fitted by the model linearised at the best values")
+    method = Message(
+        "bootstrap: {n_samples} resamples of stretches of residuals, each {how}", n_samples=len(samples), how=how
+    )
     return replace(
         identification,
         bootstrap=values,

@@ -14,6 +14,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, ends, span
+from .._support.messages import Message
 from .._support.user_files.json_text import json_number
 from .parameter import Parameter
 from .problem import Fit
@@ -22,12 +23,18 @@ Interval: TypeAlias = tuple[float | None, float | None]
 Outcome: TypeAlias = Literal["converged", "not_converged", "not_identifiable", "too_few_points", "interrupted"]
 
 REASONS: dict[Outcome, str] = {
-    "converged": "The search ended: no step brings the computed nearer to the measured by more than its noise.",
-    "not_converged": "The search did not come to an end; the values are the best that were seen. Start nearer, or free "
-    "fewer parameters.",
-    "not_identifiable": "The data do not determine every parameter; the warnings say which, and what would help.",
-    "too_few_points": "There are too few points for these parameters; nothing was identified.",
-    "interrupted": "The search was stopped; the values are the best that were seen until then.",
+    "converged": Message(
+        "The search ended: no step brings the computed nearer to the measured by more than its noise."
+    ),
+    "not_converged": Message(
+        "The search did not come to an end; the values are the best that were seen. Start nearer, or free fewer "
+        "parameters."
+    ),
+    "not_identifiable": Message(
+        "The data do not determine every parameter; the warnings say which, and what would help."
+    ),
+    "too_few_points": Message("There are too few points for these parameters; nothing was identified."),
+    "interrupted": Message("The search was stopped; the values are the best that were seen until then."),
 }
 
 
@@ -169,7 +176,15 @@ class Identification(Shown):
 
     def _facts(self) -> Facts:
         rows = tuple((identified.parameter.key, identified.in_words) for identified in self.parameters)
-        return Facts(f"{self.outcome.replace('_', ' ')}: {self.scenario}, {self.points} points", rows)
+        return Facts(
+            Message(
+                "{outcome}: {scenario}, {points} points",
+                outcome=self.outcome.replace("_", " "),
+                scenario=self.scenario,
+                points=self.points,
+            ),
+            rows,
+        )
 
     @property
     def values(self) -> dict[str, float | None]:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from .._support.arrays import FloatArray
+from .._support.messages import Message
 from .parameter import Parameter, bounds_of
 from .problem import Problem
 from .result import REASONS, Effort, Identification, Identified, Interval, Outcome
@@ -246,10 +247,14 @@ def _interval_methods(solution: Solution) -> Iterator[str]:
     if solution.optimum.jacobian is None:
         return
     law = (
-        "Student's t with the noise that the residuals show" if solution.estimates_noise else "the normal distribution"
+        Message("Student's t with the noise that the residuals show")
+        if solution.estimates_noise
+        else Message("the normal distribution")
     )
-    stated = "stated by the data" if solution.problem.accuracy_is_stated else "estimated"
-    yield f"95 % intervals from the curvature of the sum of squares, by {law}; accuracy {stated}"
+    stated = Message("stated by the data") if solution.problem.accuracy_is_stated else "estimated"
+    yield Message(
+        "95 % intervals from the curvature of the sum of squares, by {law}; accuracy {stated}", law=law, stated=stated
+    )
     several = len(solution.tried)
     if several > 1:
         yield f"{several} starts"

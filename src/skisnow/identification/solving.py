@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import FitError, ParameterError
-from .._support.messages import template
+from .._support.messages import Message, template
 from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
 from .parameter import bounds_of
 from .problem import Problem
@@ -207,7 +207,9 @@ class _Solver:
             apart = 0.0 if first is None else float(np.sqrt(np.mean((first - quick) ** 2))) / search.noise(state)
             if apart > _STEPS_APART:
                 self.methods.append(
-                    "fixed steps of 1 ms were too long for this snow: searched again with the scenario's solver"
+                    Message(
+                        "fixed steps of 1 ms were too long for this snow: searched again with the scenario's solver"
+                    )
                 )
                 again = self._search(self.problem, "own solver: ", final=True).run(polished.place)
                 return polished if again is None else again
@@ -215,7 +217,9 @@ class _Solver:
             best = search.best if search.best is not None else state
             return replace(best, jacobian=state.jacobian, second=state.second, state="interrupted")
         self.methods.append(
-            "searched with fixed steps of 1 ms (fast mode); last steps and answer with the scenario's own solver"
+            Message(
+                "searched with fixed steps of 1 ms (fast mode); last steps and answer with the scenario's own solver"
+            )
         )
         return polished
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.stats import norm, t
 
 from .._support.arrays import BoolArray, FloatArray
+from .._support.messages import Message
 from .._support.units import CONFIDENCE
 from .parameter import Parameter
 
@@ -22,42 +23,61 @@ LEAST_SHARE: Final = 0.2
 REPORTED_PAIR_CORRELATION: Final = 0.9
 """Correlation above which two parameters get a warning."""
 _HELPS: Final = {
-    frozenset({"friction.mu_0", "drag.drag_area_m2"}): "both brake; only drag grows with the speed. Runs on slopes of "
-    "different inclination, slow parts and fast ones, and a known start speed tell them apart",
-    frozenset({"friction.mu_0", "friction.mu_1_s_per_m"}): "they differ only where the speed does. A wider range of "
-    "speeds tells them apart, or fix mu_1",
-    frozenset({"friction.mu_1_s_per_m", "drag.drag_area_m2"}): "both grow with the speed, one with its square. A wider "
-    "range of speeds on different inclinations tells them apart, or a drag area from a wind tunnel as a prior",
-    frozenset({"friction.mu_0", "slope.angle_deg"}): "a steeper slope drives as less friction does. Measure the "
-    "slope's inclination and fix it",
-    frozenset({"friction.mu_0", "start.speed_m_per_s"}): "early and late parts of the run must differ for it. Measure "
-    "the speed at the start, or the path for longer",
-    frozenset({"drag.drag_area_m2", "sledge.mass_kg"}): "drag acts as C_dA over mass. Weigh the skier and fix the mass",
-    frozenset({"drag.drag_area_m2", "drag.air_density_kg_per_m3"}): "only their product acts. Fix the air's density",
-    frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): "grip is S_f times the depth, and H_V sets the depth. "
-    "Depth and width of the groove that stayed, or a field test, give H_V",
-    frozenset(
-        {"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}
-    ): "an edge that holds gives way in proportion to u_y "
-    "over S_f. A run that slips, or a shear test with its turning angle, tells them apart",
-    frozenset(
-        {"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}
-    ): "a ski that cuts deeper bends more and turns tighter, as "
-    "one on a larger edge angle does. Measure the edge angle, or the depth of the groove",
-    frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): "a turn begun further round looks like a tighter one. A "
-    "longer track tells them apart",
+    frozenset({"friction.mu_0", "drag.drag_area_m2"}): Message(
+        "both brake; only drag grows with the speed. Runs on slopes of different inclination, slow parts and fast "
+        "ones, and a known start speed tell them apart"
+    ),
+    frozenset({"friction.mu_0", "friction.mu_1_s_per_m"}): Message(
+        "they differ only where the speed does. A wider range of speeds tells them apart, or fix mu_1"
+    ),
+    frozenset({"friction.mu_1_s_per_m", "drag.drag_area_m2"}): Message(
+        "both grow with the speed, one with its square. A wider range of speeds on different inclinations tells them "
+        "apart, or a drag area from a wind tunnel as a prior"
+    ),
+    frozenset({"friction.mu_0", "slope.angle_deg"}): Message(
+        "a steeper slope drives as less friction does. Measure the slope's inclination and fix it"
+    ),
+    frozenset({"friction.mu_0", "start.speed_m_per_s"}): Message(
+        "early and late parts of the run must differ for it. Measure the speed at the start, or the path for longer"
+    ),
+    frozenset({"drag.drag_area_m2", "sledge.mass_kg"}): Message(
+        "drag acts as C_dA over mass. Weigh the skier and fix the mass"
+    ),
+    frozenset({"drag.drag_area_m2", "drag.air_density_kg_per_m3"}): Message(
+        "only their product acts. Fix the air's density"
+    ),
+    frozenset({"snow.S_f_N_per_mm2", "snow.H_V_N_per_mm3"}): Message(
+        "grip is S_f times the depth, and H_V sets the depth. Depth and width of the groove that stayed, or a field "
+        "test, give H_V"
+    ),
+    frozenset({"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}): Message(
+        "an edge that holds gives way in proportion to u_y over S_f. A run that slips, or a shear test with its "
+        "turning angle, tells them apart"
+    ),
+    frozenset({"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}): Message(
+        "a ski that cuts deeper bends more and turns tighter, as one on a larger edge angle does. Measure the edge "
+        "angle, or the depth of the groove"
+    ),
+    frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): Message(
+        "a turn begun further round looks like a tighter one. A longer track tells them apart"
+    ),
 }
 _ALONE: Final = {
-    "snow.S_f_N_per_mm2": "S_f shows only where the edge side-slips; an edge with grip bounds it from below. A run "
-    "that skids, a tighter turn or a shear test tells it",
-    "snow.H_V_N_per_mm3": "The path hardly depends on the depth of the groove. Depth and width of the groove, or a "
-    "penetration test, tell it",
-    "drag.drag_area_m2": "At these speeds drag is too small. A faster run tells it",
-    "snow.shear_displacement_mm": "An edge that hardly gives way shows no u_y. A tighter turn tells it, or a shear "
-    "test with its turning angle",
-    "snow.unloading_ratio": "The path hardly depends on how the groove springs back. Fix it",
+    "snow.S_f_N_per_mm2": Message(
+        "S_f shows only where the edge side-slips; an edge with grip bounds it from below. A run that skids, a tighter "
+        "turn or a shear test tells it"
+    ),
+    "snow.H_V_N_per_mm3": Message(
+        "The path hardly depends on the depth of the groove. Depth and width of the groove, or a penetration test, "
+        "tell it"
+    ),
+    "drag.drag_area_m2": Message("At these speeds drag is too small. A faster run tells it"),
+    "snow.shear_displacement_mm": Message(
+        "An edge that hardly gives way shows no u_y. A tighter turn tells it, or a shear test with its turning angle"
+    ),
+    "snow.unloading_ratio": Message("The path hardly depends on how the groove springs back. Fix it"),
 }
-_COMMON: Final = "fix one of them, give it a prior from elsewhere, or add a run in which they act differently"
+_COMMON: Final = Message("fix one of them, give it a prior from elsewhere, or add a run in which they act differently")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,8 +178,13 @@ def correlation_warnings(parameters: Sequence[Parameter], correlation: FloatArra
             r = float(correlation[i, j])
             if abs(r) > REPORTED_PAIR_CORRELATION:
                 yield (
-                    f"{parameters[j].name} and {one.name} are hardly told apart (correlation {r:.3f}): "
-                    f"{_pair_help(parameters[j], one)}"
+                    Message(
+                        "{name} and {name_2} are hardly told apart (correlation {r:.3f}): {pair_help}",
+                        name=parameters[j].name,
+                        name_2=one.name,
+                        r=r,
+                        pair_help=_pair_help(parameters[j], one),
+                    )
                 )
 
 
@@ -170,11 +195,15 @@ def unknown_warnings(parameters: Sequence[Parameter], spread: Uncertainty) -> It
         named.update(group)
         if len(group) == 1:
             alone = parameters[group[0]]
-            yield f"{alone.name} cannot be identified: it has no effect on these data. {_single_help(alone)}"
+            yield Message(
+                "{name} cannot be identified: it has no effect on these data. {single_help}",
+                name=alone.name,
+                single_help=_single_help(alone),
+            )
         else:
             names = " and ".join(parameters[j].name for j in group)
             helps = _pair_help(parameters[group[0]], parameters[group[1]]) if len(group) == 2 else _COMMON
-            yield f"{names} cannot be distinguished by these data: {helps}"
+            yield Message("{names} cannot be distinguished by these data: {helps}", names=names, helps=helps)
     for j in np.flatnonzero(spread.unknown).tolist():
         if j not in named:
             yield (
@@ -198,25 +227,29 @@ def few_points_warning(points: int, parameters: int) -> str | None:
     """Warning of too few points for a reliable fit."""
     if points >= max(10, 3 * parameters):
         return None
-    return (
-        f"{points} points for {parameters} parameters are few: one bad point decides, and how well the model fits "
-        "cannot be seen. Ten or more are worth having"
+    return Message(
+        "{points} points for {parameters} parameters are few: one bad point decides, and how well the model fits "
+        "cannot be seen. Ten or more are worth having",
+        points=points,
+        parameters=parameters,
     )
 
 
 def noise_warning(ratio: float) -> str:
     """Warning of residuals that are larger than the stated accuracy allows."""
-    return (
-        f"the residuals are {ratio:.2g} times what the data's stated accuracy allows: the accuracy is too good to be "
-        "true, or the model misses something. Intervals are widened by that factor"
+    return Message(
+        "the residuals are {ratio:.2g} times what the data's stated accuracy allows: the accuracy is too good to be "
+        "true, or the model misses something. Intervals are widened by that factor",
+        ratio=ratio,
     )
 
 
 def model_warning(correlation: float) -> str:
     """Warning of correlated residuals."""
-    return (
-        f"neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
-        "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals"
+    return Message(
+        "neighbouring residuals are alike (correlation {correlation:.2f}): the model misses something, or the noise "
+        "wanders, and the intervals by curvature are too narrow; --bootstrap resamples stretches of residuals",
+        correlation=correlation,
     )
 
 

@@ -192,7 +192,7 @@ class Quantity:
         >>> Quantity("load_N", "force on the ski", label="load").axis_label
         'load (N)'
         """
-        words = " ".join(filter(None, (self.label, self.symbol)))
+        words = f"{self.label} {self.symbol}".strip()
         return f"{words}{f' ({self.unit})' if self.unit else ''}" if words else self.name
 
     def outside(self, values: FloatArray) -> BoolArray:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.processes.batch import run_batch, workers_in_force
 from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
@@ -127,9 +128,9 @@ def turn(
     turn = turn if ski is None else turn.with_(ski=ski)
     every = inputs_with(priors, turn)
     drawn = drawn_scenarios(turn, every, runs, seed)
-    contacts = {
-        f"hypoplastic, k_u / H_V = {snow.unloading_ratio:.3g}": turn,
-        "elastic": turn.with_(unloading_ratio=ELASTIC),
+    contacts: dict[str, Scenario] = {
+        Message("hypoplastic, k_u / H_V = {ratio:.3g}", ratio=snow.unloading_ratio): turn,
+        Message("elastic"): turn.with_(unloading_ratio=ELASTIC),
     }
     simulated = {name: _run(name, contact, say) for name, contact in contacts.items()}
     nominal = next(iter(simulated.values()))

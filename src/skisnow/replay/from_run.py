@@ -11,9 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.outcomes import outcome_words
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
-from ..simulation.run_summary import feet_and_tips
+from ..simulation.run_gates import feet_and_tips
 from ..skier.segments import height_of
 from ..track.course import MovingPoint, passages
 from .replay import (
@@ -153,7 +154,7 @@ def facts_of(
 ) -> tuple[tuple[str, str], ...]:
     """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm²."""
     return (
-        ("Outcome", outcome.replace("_", " ")),
+        ("Outcome", outcome_words(outcome)),
         ("H_V", f"{hardness:.3g} N/mm³"),
         ("S_f", "not given" if stress is None else f"{stress:.3g} N/mm²"),
         ("k_u / H_V", f"{ratio:g}"),

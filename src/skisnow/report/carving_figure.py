@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from .._support.messages import Message
+from .._support.outcomes import outcome_words
 from .._support.units import MM
 from .figures.style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
 from .formatting import significant
@@ -23,10 +25,10 @@ Json: TypeAlias = Mapping[str, Any]
 FloatArray = npt.NDArray[np.float64]
 
 _PANELS: Final = (
-    ("edge_depth_mm", "edge depth $e$ (mm)"),
-    ("force_per_length_N_per_m", "normal force per length (N/m)"),
-    ("bending_mm", "deflection (mm)"),
-    ("twist_deg", "twist (°)"),
+    ("edge_depth_mm", Message("edge depth $e$ (mm)")),
+    ("force_per_length_N_per_m", Message("normal force per length (N/m)")),
+    ("bending_mm", Message("deflection (mm)")),
+    ("twist_deg", Message("twist (°)")),
 )
 BOOT_REACH: Final = 0.4
 """Distance (m) before and behind the boot at which the first circle meets the edge line."""
@@ -41,7 +43,7 @@ def carved_skis(contents: Json) -> Figure:
     Parameters
     ----------
     contents
-        JSON of `skisnow.carving.answer.answers_dict`.
+        JSON of `skisnow.carving.answer_dict.answers_dict`.
     """
     answers = answers_of(contents)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)
@@ -58,8 +60,8 @@ def carved_skis(contents: Json) -> Figure:
         for place, (title, answer) in enumerate(zip(ski_titles(answers), answers, strict=True))
     ]
     circles = (
-        ("circle through boot and 0.4 m to each side", _BOOT_CIRCLE),
-        ("through boot and ends of contact", _CHORD_CIRCLE),
+        (Message("circle through boot and {reach} m to each side", reach=BOOT_REACH), _BOOT_CIRCLE),
+        (Message("through boot and ends of contact"), _CHORD_CIRCLE),
     )
     handles += [Line2D([], [], color=BLACK, linestyle=style, linewidth=0.9, label=label) for label, style in circles]
     legend_below(figure, handles)
@@ -75,18 +77,22 @@ def _line(place: int) -> Any:
 
 
 def _label(title: str, outcome: str) -> str:
-    return figure_text(title) + ("" if outcome == "equilibrium" else f" ({outcome.replace('_', ' ')})")
+    return figure_text(title) + ("" if outcome == "equilibrium" else f" ({outcome_words(outcome)})")
 
 
 def _inputs_in_words(answer: Json) -> str:
     inputs = answer["inputs"]
-    words = [f"ϑ = {inputs['edge_angle_deg']:g}°, load {inputs['load_N']:g} N"]
-    words.append(f"$H_V$ = {significant(inputs['H_V_N_per_mm3'])} N/mm³")
+    words: list[str] = [
+        Message("ϑ = {angle:g}°, load {load:g} N", angle=inputs["edge_angle_deg"], load=inputs["load_N"]),
+        f"$H_V$ = {significant(inputs['H_V_N_per_mm3'])} N/mm³",
+    ]
     if inputs["S_f_N_per_mm2"] is not None:
         words.append(f"$S_f$ = {significant(inputs['S_f_N_per_mm2'])} N/mm²")
     if inputs["unloading_ratio"] is not None and not inputs["at_rest"]:
         words.append(f"$k_u/H_V$ = {significant(inputs['unloading_ratio'])}")
-    return ("At rest: " if inputs["at_rest"] else "Steady carve: ") + ", ".join(words)
+    if inputs["at_rest"]:
+        return Message("At rest: {inputs}", inputs=words)
+    return Message("Steady carve: {inputs}", inputs=words)
 
 
 def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> None:
@@ -96,7 +102,7 @@ def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> No
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylabel(label)
-    axes.set_xlabel("position along the ski (m), boot = 0")
+    axes.set_xlabel(Message("position along the ski (m), boot = 0"))
     if key == "edge_depth_mm":
         _draw_surface(axes, answers)
 
@@ -107,7 +113,7 @@ def _draw_surface(axes: Axes, answers: list[Json]) -> None:
     deepest = max(depths, default=1.0)
     axes.set_ylim(1.15 * deepest, -min(0.6 * deepest, max(0.0, -min(depths, default=0.0)) + 0.08 * deepest))
     axes.annotate(
-        "undisturbed surface", (0.52, 0.0), xycoords=("axes fraction", "data"), xytext=(0, 2),
+        Message("undisturbed surface"), (0.52, 0.0), xycoords=("axes fraction", "data"), xytext=(0, 2),
         textcoords="offset points", ha="left", fontsize=6.5, color=GREY,
     )  # fmt: skip
 
@@ -124,8 +130,8 @@ def _draw_plan(axes: Axes, answers: list[Json]) -> None:
             x, y = arc_through(station, line, rear, front)
             axes.plot(x, y / MM, color=_colour(place), linestyle=style, linewidth=0.9)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
-    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
-    axes.set_ylabel("edge towards the\ninside of the turn (mm)")
+    axes.set_xlabel(Message("position along the ski (m); boot = 0, tail left, tip right"))
+    axes.set_ylabel(Message("edge towards the\ninside of the turn (mm)"))
 
 
 def _circles(answer: Json) -> list[tuple[Any, tuple[float, float]]]:

@@ -8,15 +8,19 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from markupsafe import Markup
 
+from .._support.messages import ENGLISH, Message, current_language, decimal_sign, local_number, template, translations
+from .symbols import prose
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 Style: TypeAlias = Literal["typeset", "plain", "latex"]
-"""Typeset: Unicode minus and powers; plain: what any terminal shows; latex: for text mode, by siunitx."""
+"""typeset: in the current language, with Unicode minus and powers; plain: for a terminal; latex: for siunitx."""
 
 ABSENT: Final = {"typeset": "–", "plain": "-", "latex": "--"}
 _SUPERSCRIPTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _SMALLEST_P: Final = 0.001
+_LARGEST_P: Final = 0.99
 
 
 def significant(value: float | None, digits: int = 3, *, style: Style = "typeset") -> str:
@@ -47,7 +51,7 @@ def plain(value: float | None, digits: int = 3) -> str:
 
 def _signed(text: str, style: Style) -> str:
     if style == "typeset":
-        return text.replace("-", "−")
+        return local_number(text.replace("-", "−"))
     return rf"\num{{{text}}}" if style == "latex" else text
 
 
@@ -59,8 +63,9 @@ def interval(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "t
     """
     if pair is None:
         return ABSENT[style]
-    low, high = pair
-    return f"[{significant(low, digits, style=style)}, {significant(high, digits, style=style)}]"
+    low, high = (significant(end, digits, style=style) for end in pair)
+    between = "; " if style == "typeset" and decimal_sign(current_language()) == "," else ", "
+    return f"[{low}{between}{high}]"
 
 
 def aligned_rows(rows: Sequence[Sequence[str]]) -> list[str]:
@@ -86,7 +91,8 @@ def from_to(pair: Sequence[float] | None, digits: int = 3, *, style: Style = "ty
     """
     if pair is None:
         return ABSENT[style]
-    return " to ".join(significant(end, digits, style=style) for end in pair)
+    low, high = (significant(end, digits, style=style) for end in pair)
+    return str(Message("{low} to {high}", low=low, high=high)) if style == "typeset" else f"{low} to {high}"
 
 
 def probability(p: float | None, *, style: Style = "typeset") -> str:
@@ -97,10 +103,10 @@ def probability(p: float | None, *, style: Style = "typeset") -> str:
     """
     if p is None:
         return ABSENT[style]
-    less, more = ("$<$", "$>$") if style == "latex" else ("<", ">")
-    if p < _SMALLEST_P:
-        return f"{less} {_SMALLEST_P}"
-    return f"{more} 0.99" if p > 0.99 else significant(p, 2, style=style)
+    if _SMALLEST_P <= p <= _LARGEST_P:
+        return significant(p, 2, style=style)
+    sign, limit = ("<", _SMALLEST_P) if p < _SMALLEST_P else (">", _LARGEST_P)
+    return f"${sign}$ {limit}" if style == "latex" else f"{sign} {_signed(str(limit), style)}"
 
 
 def p_equals(p: float | None, *, style: Style = "typeset") -> str:
@@ -110,13 +116,13 @@ def p_equals(p: float | None, *, style: Style = "typeset") -> str:
     return sentence.replace(" ", "\u00a0") if style == "typeset" else sentence
 
 
-def counted(number: int, singular: str, plural: str | None = None) -> str:
-    """A number with its noun.
+def counted(number: int, singular: str, plural: str) -> str:
+    """A number with its noun in the current language.
 
-    >>> counted(1, "site"), counted(12345, "reading"), counted(2, "series", "series")
-    ('1 site', '12\u202f345 readings', '2 series')
+    >>> counted(1, "{count} site", "{count} sites"), counted(12345, "{count} reading", "{count} readings")
+    ('1 site', '12\u202f345 readings')
     """
-    return f"{whole(number)} {singular if number == 1 else plural or singular + 's'}"
+    return translations(current_language()).ngettext(singular, plural, number).format(count=whole(number))
 
 
 def whole(number: int) -> str:
@@ -124,41 +130,54 @@ def whole(number: int) -> str:
     return str(number) if abs(number) < 10_000 else f"{number:,}".replace(",", "\u202f")
 
 
-_MONTHS = (
-    "January", "February", "March", "April", "May", "June", "July", "August", "September", "October", "November",
-    "December",
+_MONTHS: Final = (
+    template("January"), template("February"), template("March"), template("April"), template("May"),
+    template("June"), template("July"), template("August"), template("September"), template("October"),
+    template("November"), template("December"),
 )  # fmt: skip
 
 
-def date_words(day: str) -> str:
-    """An ISO date in words; any other text unchanged.
+def date_words(day: date) -> str:
+    """A date with its month as a word, in the current language.
 
-    >>> date_words("2026-01-09"), date_words("2026-02-30")
-    ('9 January 2026', '2026-02-30')
+    >>> date_words(date(2026, 1, 9))
+    '9 January 2026'
     """
-    try:
-        parsed = date.fromisoformat(day)
-    except ValueError:
-        return day
-    return f"{parsed.day} {_MONTHS[parsed.month - 1]} {parsed.year}"
+    return f"{_day_and_month(day)} {day.year}"
+
+
+def _day_and_month(day: date) -> str:
+    return f"{_day(day)} {Message(_MONTHS[day.month - 1])}"
+
+
+def _day(day: date) -> str:
+    return f"{day.day}" if current_language() == ENGLISH else f"{day.day}."
 
 
 def days_words(first: str, last: str) -> Markup:
-    """First and last day of a campaign; a common month and year appear once.
+    """First and last day of a campaign (ISO dates; other text is not changed); a common month and year appear once.
 
     >>> print(days_words("2026-01-09", "2026-01-12").striptags())
     9 to 12 January 2026
     >>> print(days_words("2026-01-30", "2026-02-02").striptags())
     30 January to 2 February 2026
-    >>> print(days_words("2025-12-30", "2026-01-02").striptags())
-    30 December 2025 to 2 January 2026
+    >>> print(days_words("2025-12-30", "2026-02-30").striptags())
+    30 December 2025 to 2026-02-30
     """
+    begin, end = _date(first), _date(last)
+    words, last_words = (date_words(day) if isinstance(day, date) else day for day in (begin, end))
     if first == last:
-        return _time_element(first, date_words(first))
-    begin, end = date_words(first).split(), date_words(last).split()
-    if len(begin) == len(end) == 3 and begin[2] == end[2]:  # of one year
-        begin = begin[:1] if begin[1] == end[1] else begin[:2]
-    return _time_element(first, " ".join(begin)) + " to " + _time_element(last, date_words(last))
+        return _time_element(first, words)
+    if isinstance(begin, date) and isinstance(end, date) and begin.year == end.year:
+        words = _day(begin) if begin.month == end.month else _day_and_month(begin)
+    return prose("{low} to {high}", low=_time_element(first, words), high=_time_element(last, last_words))
+
+
+def _date(text: str) -> date | str:
+    try:
+        return date.fromisoformat(text)
+    except ValueError:
+        return text
 
 
 def moment_words(moment: str) -> Markup:
@@ -173,7 +192,7 @@ def moment_words(moment: str) -> Markup:
         return Markup.escape(moment)
     zone = "" if time.tzinfo is None else " UTC"
     time = time if time.tzinfo is None else time.astimezone(UTC)
-    return _time_element(moment, f"{date_words(time.date().isoformat())}, {time:%H:%M}{zone}")
+    return _time_element(moment, f"{date_words(time)}, {time:%H:%M}{zone}")
 
 
 def _time_element(iso_time: str, words: str) -> Markup:

@@ -14,7 +14,9 @@ import numpy.typing as npt
 from markupsafe import Markup
 from matplotlib.lines import Line2D
 
-from .._support.language import ENGLISH, require_language
+from .._support.errors import require_language
+from .._support.messages import ENGLISH, Message, in_language, template
+from .._support.outcomes import outcome_words
 from .._support.spreadsheet_text import guarded
 from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing
@@ -22,7 +24,7 @@ from .figures.figure_files import picture_files, silent, write_pictures
 from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, ORANGE, PALE, legend_below, new_figure
 from .formatting import counted, interval, json_text, significant
 from .sheet import Header, Section, sheet
-from .symbols import figure_text, html, prose
+from .symbols import figure_text, prose
 from .table import Column, Table
 
 if TYPE_CHECKING:
@@ -81,8 +83,7 @@ def write_identify_report(
         write_file(stage.path / ANSWER, f"{json_text(contents)}\n")
         write_file(stage.path / "fits.csv", fits_csv(result))
         pictures = write_pictures(
-            _drawings(result), stage.path / "figures", every=FIGURES, language=language,
-            names=frozenset(map(figure_text, names_in(result))), progress=report,
+            _drawings(result), stage.path / "figures", every=FIGURES, language=language, progress=report
         )  # fmt: skip
         report("report.html")
         write_file(stage.path / "report.html", identify_page(result, pictures, language=language))
@@ -104,45 +105,44 @@ def fits_csv(result: Identification) -> str:
     return stream.getvalue()
 
 
-def names_in(result: Identification) -> frozenset[str]:
-    """Names of files and keys of the scenario, which are not translated."""
-    parameters = {text for row in result.parameters for text in (row.parameter.name, row.parameter.key)}
-    return frozenset(
-        {result.scenario, *(fit.name for fit in result.fits), *(name for name, _ in result.data), *parameters}
-    )
-
-
 def identify_page(result: Identification, pictures: list[Picture], *, language: str = ENGLISH) -> str:
     """The HTML of the report."""
+    with in_language(language):
+        return _page(result, pictures)
+
+
+def _page(result: Identification, pictures: list[Picture]) -> str:
     fits = [picture for picture in pictures if picture.name != "profiles"]
     profiles = [picture for picture in pictures if picture.name == "profiles"]
-    outcome = result.outcome.replace("_", " ")
+    outcome = outcome_words(result.outcome)
     sections = [
         Section(
             "outcome",
-            "Outcome",
+            Message("Outcome"),
             key=[prose("Outcome: {outcome}. {reason}", outcome=outcome, reason=result.reason)],
             tables=[parameters_table(result)],
         )
     ]
     if result.warnings:
         sections.append(
-            Section("warnings", "Warnings", words=[prose("{text}.", text=text) for text in result.warnings])
+            Section("warnings", Message("Warnings"), words=[prose("{text}.", text=text) for text in result.warnings])
         )
     if fits:
-        sections.append(Section("fit", "Measured and identified", pictures=fits))
+        sections.append(Section("fit", Message("Measured and identified"), pictures=fits))
     if len(result.parameters) > 1:
-        sections.append(Section("correlation", "Correlations", tables=[correlation_table(result)]))
+        sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
     if profiles:
-        sections.append(Section("profiles", "Profiles", pictures=profiles))
-    sections.append(Section("provenance", "How it was computed", words=_methods(result)))
+        sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
+    sections.append(Section("provenance", Message("How it was computed"), words=_methods(result)))
     facts = [
-        ("Scenario", result.scenario),
-        ("Points", str(result.points)),
-        ("Computed", f"skisnow {version('skisnow')}"),
+        (Message("Scenario"), result.scenario),
+        (Message("Points"), str(result.points)),
+        (Message("Computed"), f"skisnow {version('skisnow')}"),
     ]
-    header = Header("Parameters identified from measurements", _title(result), facts, headline=_headline(result))
-    return sheet(header, sections, language=language, names=names_in(result))
+    header = Header(
+        Message("Parameters identified from measurements"), _title(result), facts, headline=_headline(result)
+    )
+    return sheet(header, sections)
 
 
 def _headline(result: Identification) -> Markup:
@@ -150,23 +150,28 @@ def _headline(result: Identification) -> Markup:
     if not result.parameters:
         return Markup("")
     first = result.parameters[0]
-    ends = "without an interval"
+    ends = Message("without an interval")
     if first.interval is not None and None not in first.interval:
-        ends = f"95 % interval {interval([float(end) for end in first.interval if end is not None])}"
+        ends = Message(
+            "95 % interval {interval}", interval=interval([float(end) for end in first.interval if end is not None])
+        )
     value = Markup("<strong>{}</strong>").format(f"{significant(first.value)} {first.parameter.unit}".strip())
     return prose("{name} {value}, {ends}.", name=first.parameter.name, value=value, ends=ends)
 
 
 def _title(result: Identification) -> str:
     names = ", ".join(row.parameter.name for row in result.parameters)
-    return f"{names}: {result.outcome.replace('_', ' ')}"
+    return f"{names}: {outcome_words(result.outcome)}"
 
 
 def _methods(result: Identification) -> list[Markup]:
     effort = result.effort
-    runs = counted(effort.simulations, "simulated run")
+    runs = counted(effort.simulations, "{count} simulated run", "{count} simulated runs")
     last = prose(
-        "{runs}, {rounds}, {wall} s.", runs=runs, rounds=counted(effort.rounds, "Jacobian"), wall=f"{effort.wall_s:.1f}"
+        "{runs}, {rounds}, {wall} s.",
+        runs=runs,
+        rounds=counted(effort.rounds, "{count} Jacobian", "{count} Jacobians"),
+        wall=Message("{seconds:.1f}", seconds=effort.wall_s),
     )
     data = [prose("{name} was taken for {kind}.", name=name, kind=kind) for name, kind in result.data]
     return [*data, *(prose("{text}.", text=text) for text in result.methods), last]
@@ -178,50 +183,68 @@ def _drawings(result: Identification) -> Iterator[Drawing]:
     if tracks:
         yield Drawing(
             "tracks",
-            html("Tracks from above: points measured, lines with the identified parameters."),
-            "Measured points and identified tracks from above.",
+            prose("Tracks from above: points measured, lines with the identified parameters."),
+            Message("Measured points and identified tracks from above."),
             draw_tracks(tracks),
             wide=True,
         )
-    for kind, words in (("track", "along the run"), ("photo_cells", "over the distance"), ("marks", "place by place")):
+    for kind, (caption, alt) in _RESIDUALS.items():
         fits = [fit for fit in result.fits if fit.kind == kind]
         if fits:
-            yield Drawing(
-                f"residuals_{kind}",
-                prose(
-                    "Measured minus identified {words}; the band is ± two standard deviations of the data.", words=words
-                ),
-                f"Residuals {words}.",
-                draw_residuals(fits),
-                wide=True,
-            )
+            yield Drawing(f"residuals_{kind}", prose(caption), alt, draw_residuals(fits), wide=True)
     if result.profiles:
         yield Drawing(
             "profiles",
-            html("Rise of the sum of squares, in squared standard deviations, along each parameter."),
-            "Profiles of the sum of squares.",
+            prose("Rise of the sum of squares, in squared standard deviations, along each parameter."),
+            Message("Profiles of the sum of squares."),
             draw_profiles(result),
             wide=True,
         )
+
+
+_RESIDUALS: Final = {
+    "track": (
+        template("Measured minus identified along the run; the band is ± two standard deviations of the data."),
+        Message("Residuals along the run."),
+    ),
+    "photo_cells": (
+        template("Measured minus identified over the distance; the band is ± two standard deviations of the data."),
+        Message("Residuals over the distance."),
+    ),
+    "marks": (
+        template("Measured minus identified place by place; the band is ± two standard deviations of the data."),
+        Message("Residuals place by place."),
+    ),
+}
+"""Caption and alternative text of the residuals of each kind of data."""
+_RESIDUAL_LABELS: Final = {
+    "x (m)": Message("x\nmeasured − identified (m)"),
+    "y (m)": Message("y\nmeasured − identified (m)"),
+    "speed (m/s)": Message("speed\nmeasured − identified (m/s)"),
+    "time (s)": Message("time\nmeasured − identified (s)"),
+    "depth (mm)": Message("depth\nmeasured − identified (mm)"),
+    "width (mm)": Message("width\nmeasured − identified (mm)"),
+    "turn radius (m)": Message("turn radius\nmeasured − identified (m)"),
+}
 
 
 def parameters_table(result: Identification) -> Table:
     """Table of the identified parameters: values, intervals, bounds, priors."""
     return Table(
         "identified",
-        "Identified parameters with 95 % intervals; a dash: not asked for, or open.",
+        Message("Identified parameters with 95 % intervals; a dash: not asked for, or open."),
         (
-            Column("key", "Key", "text"),
-            Column("value", "Value", digits=4),
-            Column("unit", "Unit", "text"),
-            Column("interval", "Interval by curvature", "interval"),
-            Column("profile", "By profile", "interval"),
-            Column("bootstrap", "By bootstrap", "interval"),
-            Column("posterior", "Posterior", "interval"),
-            Column("start", "Start"),
-            Column("bounds", "Bounds", "range"),
-            Column("prior_mean", "Prior mean"),
-            Column("prior_sd", "Prior s.d."),
+            Column("key", Message("Key"), "text"),
+            Column("value", Message("Value"), digits=4),
+            Column("unit", Message("Unit"), "text"),
+            Column("interval", Message("Interval by curvature"), "interval"),
+            Column("profile", Message("By profile"), "interval"),
+            Column("bootstrap", Message("By bootstrap"), "interval"),
+            Column("posterior", Message("Posterior"), "interval"),
+            Column("start", Message("Start")),
+            Column("bounds", Message("Bounds"), "range"),
+            Column("prior_mean", Message("Prior mean")),
+            Column("prior_sd", Message("Prior s.d.")),
         ),
         [
             (
@@ -242,8 +265,8 @@ def correlation_table(result: Identification) -> Table:
     ]
     return Table(
         "correlation",
-        "Correlations of the estimates. Beyond ±0.9 two parameters are hardly told apart.",
-        (Column("parameter", "Parameter", "text"), *(Column(name, name.replace("_", " ")) for name in names)),
+        Message("Correlations of the estimates. Beyond ±0.9 two parameters are hardly told apart."),
+        (Column("parameter", Message("Parameter"), "text"), *(Column(name, name.replace("_", " ")) for name in names)),
         rows,
     )
 
@@ -281,12 +304,15 @@ def draw_tracks(fits: Sequence[Fit]) -> Figure:
             markersize=3.0,
             color=BLACK,
             zorder=2,
-            label=f"{figure_text(fit.name)}, measured",
+            label=Message("{name}, measured", name=figure_text(fit.name)),
         )
-        handles += [*points, Line2D([], [], color=colour, label=f"{figure_text(fit.name)}, identified")]
+        handles += [
+            *points,
+            Line2D([], [], color=colour, label=Message("{name}, identified", name=figure_text(fit.name))),
+        ]
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("x, down the fall line (m)")
-    axes.set_ylabel("y, to the left (m)")
+    axes.set_xlabel(Message("x, down the fall line (m)"))
+    axes.set_ylabel(Message("y, to the left (m)"))
     legend_below(figure, handles)
     return figure
 
@@ -304,8 +330,12 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
         handles.append(Line2D([], [], color=colour, marker=marker, markerfacecolor="none", label=figure_text(fit.name)))
     for axes, label in zip(rows, labels, strict=True):
         axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
-        axes.set_ylabel(label.replace(" (", "\nmeasured − identified ("))
-    x_labels = {"track": "time (s)", "photo_cells": "distance from the start (m)", "marks": "place"}
+        axes.set_ylabel(_RESIDUAL_LABELS[label])
+    x_labels = {
+        "track": Message("time (s)"),
+        "photo_cells": Message("distance from the start (m)"),
+        "marks": Message("place"),
+    }
     rows[-1].set_xlabel(x_labels[fits[0].kind])
     figure.align_ylabels()
     legend_below(figure, handles)
@@ -345,11 +375,11 @@ def draw_profiles(result: Identification) -> Figure:
         axes.set_ylim(-0.5, 3.0 * profile.limit)
     for axes in panels[len(result.profiles) :]:
         axes.set_visible(False)
-    panels[0].set_ylabel("rise of the sum of squares")
+    panels[0].set_ylabel(Message("rise of the sum of squares"))
     handles = [
-        Line2D([], [], color=BLUE, marker="o", markerfacecolor="none", label="others refitted"),
-        Line2D([], [], color=ORANGE, linestyle=(0, (4, 2)), label="from the curvature"),
-        Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), label="limit of the 95 % interval"),
+        Line2D([], [], color=BLUE, marker="o", markerfacecolor="none", label=Message("others refitted")),
+        Line2D([], [], color=ORANGE, linestyle=(0, (4, 2)), label=Message("from the curvature")),
+        Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), label=Message("limit of the 95 % interval")),
     ]
     legend_below(figure, handles)
     for axes in panels:

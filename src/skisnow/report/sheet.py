@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from .._support.language import ENGLISH
-from .._support.messages import Message, translated, translations
+from .._support.messages import Message, current_language, translated, translations
 from .citation import bibtex, cited_text
+from .symbols import prose
 from .table import table_html
-from .translated import translated_html
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,15 +59,12 @@ class Section:
     after: Sequence[Markup] = ()
 
 
-def sheet(
-    header: Header, sections: Sequence[Section], *, language: str = ENGLISH, names: Set[str] = frozenset()
-) -> str:
-    """HTML of a report in a language; ``names`` from users are not translated."""
+def sheet(header: Header, sections: Sequence[Section]) -> str:
+    """HTML of a report in the current language."""
     pictures = [picture for section in sections for picture in section.pictures]
     every = [table for section in sections for table in section.tables]
-    english = render_template(
+    return render_template(
         "sheet.html",
-        language,
         header=header,
         sections=sections,
         version=version("skisnow"),
@@ -77,13 +73,16 @@ def sheet(
         figure_numbers={picture.name: number for number, picture in enumerate(pictures, start=1)},
         tables={table.name: table_html(table, number=number) for number, table in enumerate(every, start=1)},
     )
-    return translated_html(english, language, names=names)
 
 
-def render_template(name: str, language: str, /, **values: Any) -> str:
-    """HTML of a template of this package in a language; ``css`` is the style sheet. A missing value is an error."""
+def render_template(name: str, /, **values: Any) -> str:
+    """HTML of a template of this package in the current language, with the style sheet ``css``.
+
+    A missing value is an error.
+    """
+    language = current_language()
     css = files("skisnow.report").joinpath("templates", "report.css").read_text(encoding="utf-8")
-    return page_environment(language).get_template(name).render(css=Markup(css), **values)
+    return page_environment(language).get_template(name).render(css=Markup(css), language=language, **values)
 
 
 def page_environment(language: str, *, package: str = "skisnow.report", folder: str = "templates") -> Environment:
@@ -98,6 +97,7 @@ def page_environment(language: str, *, package: str = "skisnow.report", folder: 
     )  # fmt: skip
     environment.policies["ext.i18n.trimmed"] = True
     environment.filters["text"] = text
+    environment.globals["prose"] = prose
     install: Callable[..., None] = environment.install_gettext_translations  # type: ignore[attr-defined]
     install(translations(language), newstyle=True)
     return environment

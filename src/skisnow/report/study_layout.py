@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
-from ..carving.question import CARVE_KEYS
+from .._support.messages import Message, local_number
+from ..carving.keys import CARVE_KEYS
 from ..studies import StudyTable
 from .symbols import figure_text
 
@@ -87,8 +87,8 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
         counts = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
         raise ParameterError(
             Message(
-                "the map would have {count} panels ({counts}); at most {most} are readable. The "
-                "table is written; make a study of fewer of them for the map",
+                "the map would have {count} panels ({counts}); at most {most} are readable. The table is written; make "
+                "a study of fewer of them for the map",
                 count=count,
                 counts=counts,
                 most=MOST_PANELS,
@@ -180,7 +180,7 @@ def short(name: str, value: Any) -> str:
     if isinstance(value, bool):
         text = "true" if value else "false"
     else:
-        text = figure_text(value) if isinstance(value, str) else f"{value:.4g}".replace("-", "−")
+        text = figure_text(value) if isinstance(value, str) else local_number(f"{value:.4g}".replace("-", "−"))
     return f"{before}{text}{behind}"
 
 

@@ -11,6 +11,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.lines import Line2D
 
+from .._support.messages import Message
 from .._support.units import DEGREE
 from .figures.style import (
     BLACK,
@@ -81,7 +82,7 @@ def grip_map(table: StudyTable) -> Figure:
             if not layout.sampled:
                 _draw_field(axes, of_panel, layout)
             _draw_points(axes, of_panel, layout)
-    ordinate = "side force / limit" if layout.second is None else label(layout.second)
+    ordinate = Message("side force / limit") if layout.second is None else label(layout.second)
     _set_scales(every[0], table.rows, layout)
     if layout.second is not None:
         for axes in every:  # room for the symbols at the rim
@@ -170,19 +171,19 @@ def _draw_colour_bar(figure: Figure, panels: Sequence[Axes]) -> None:
     scale = ScalarMappable(BoundaryNorm(bounds, len(_COLOURS)), ListedColormap(_COLOURS))
     bar = figure.colorbar(scale, ax=list(panels), pad=0.01, aspect=35, spacing="uniform")
     bar.set_ticks(list(LEVELS), labels=[plain_number(level) for level in LEVELS])
-    bar.set_label("side force / shear capacity")
+    bar.set_label(Message("side force / shear capacity"))
     bar.ax.axhline(1.0, color=BLACK, linewidth=1.8)
 
 
 def _grip_handles(layout: MapLayout, rows: Sequence[Json]) -> list[Line2D]:
-    texts = {True: "holds", False: "slips", None: "no equilibrium"}
+    texts = {True: Message("holds"), False: Message("slips"), None: Message("no equilibrium")}
     handles = [
         Line2D([], [], linestyle="none", label=texts[holds], **line_style)
         for holds, line_style in _marker_styles(layout.sampled).items()
         if any(row["holds"] is holds for row in rows)
     ]
     if not layout.sampled:
-        handles.append(Line2D([], [], color=BLACK, linewidth=1.8, label="the edge loses grip"))
+        handles.append(Line2D([], [], color=BLACK, linewidth=1.8, label=Message("the edge loses grip")))
     return handles
 
 
@@ -214,7 +215,7 @@ def radius_map(table: StudyTable) -> Figure:
         else:
             _draw_cloud(axes, of_panel, layout, colours)
     _set_limits(every[0], table.rows, layout)
-    label_outside(every, columns, label(layout.x), "turn radius (m):\ncircle through boot and ±0.4 m")
+    label_outside(every, columns, label(layout.x), Message("turn radius (m):\ncircle through boot and ±0.4 m"))
     write_caption(figure, fixed_inputs(table))
     if colours is not None and not _has_lines(layout, values):
         colours.bar(figure)
@@ -302,13 +303,16 @@ def _radius_handles(layout: MapLayout, values: list[Any], rows: Sequence[Json]) 
             for place, value in enumerate(values)
         ]  # fmt: skip
     holds, slips = (("o", GREY), ("o", "white")) if lined else (("o", GREY), ("X", GREY))
-    texts = ((holds, True, "holds"), (slips, False, "slips: radius of an edge held by something else"))
+    texts = (
+        (holds, True, Message("holds")),
+        (slips, False, Message("slips: radius of an edge held by something else")),
+    )
     for (marker, face), value, text in texts:
         if not any(row["holds"] is value and row[RADIUS] is not None for row in rows):
             continue
         handles.append(Line2D([], [], linestyle="none", marker=marker, color=GREY, markerfacecolor=face, label=text))
     if layout.x == "edge_angle_deg":
-        text = "sidecut radius × cos ϑ"
+        text = Message("sidecut radius × cos ϑ")
         handles.append(Line2D([], [], color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9, label=text))
     return handles
 

@@ -10,6 +10,8 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
+from .._support.messages import LocalFormatter, Message, current_language, translations
+
 SYMBOL: Final = re.compile(r"(?<![\w<>/])([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
 _PERCENT: Final = re.compile(r"(?<=\d) %")
 _LATEX_SPECIAL: Final = {
@@ -61,17 +63,26 @@ _LATEX_SPECIAL: Final = {
 
 
 def prose(template: str, **values: Any) -> Markup:
-    """HTML of a template: its symbols become markup, ``{values}`` are escaped unless they are Markup.
+    """HTML of a template in the current language: symbols become markup, values are escaped unless they are Markup.
 
     >>> str(prose("H_V at {site}", site="a_b <i>"))
     '<i>H</i><sub>V</sub> at a_b &lt;i&gt;'
     """
-    return html(template).format(**values)
+    language = current_language()
+    text = translations(language).gettext(template)
+    return Markup(_HtmlFormatter(language).vformat(html(text), (), values))
+
+
+class _HtmlFormatter(LocalFormatter):
+    """Formatter of a language that escapes all values but Markup."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        return value if isinstance(value, Markup) else Markup.escape(super().format_field(value, format_spec))
 
 
 def html(text: str) -> Markup:
-    """HTML of a text of skisnow, with markup for its symbols."""
-    tied = _PERCENT.sub("\u00a0%", text)
+    """HTML of a text of skisnow in the current language, with markup for its symbols."""
+    tied = _PERCENT.sub("\u00a0%", str(text))
     return Markup(SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", str(Markup.escape(tied))))
 
 
@@ -105,7 +116,8 @@ def figure_text(text: str, *, longest: int = 28) -> str:
     A long text is shortened in the middle, because similar names mostly differ at their ends. A leading underscore
     would hide a legend's entry, so a thin space precedes it.
     """
-    line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split()) or "(no name)"
+    line = " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
+    line = line or str(Message("(no name)"))
     head = longest // 2
     short = line if len(line) <= longest else f"{line[:head].rstrip()}…{line[head + 1 - longest :].lstrip()}"
     escaped = short.replace("$", r"\$")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import orjson
 from markupsafe import Markup
 
+from .._support.messages import Message, joined, local_number
 from .._support.spreadsheet_text import guarded
 from . import formatting
 from .symbols import html, prose
@@ -94,7 +95,7 @@ class Table:
     @property
     def full_caption(self) -> str:
         """The caption, marked if the data are synthetic."""
-        return f"{self.caption} Synthetic data." if self.synthetic else self.caption
+        return joined([self.caption, Message("Synthetic data.")]) if self.synthetic else self.caption
 
 
 def record_table(
@@ -178,14 +179,13 @@ def table_html(table: Table, *, number: int) -> Markup:
     return Markup(
         '<div class="table" id="table-{name}" role="region" aria-label="{label}" tabindex="0">'
         '<table role="table"{kind}>\n'
-        "<caption><b>Table {number}.</b> {caption}</caption>\n"
+        "<caption><b>{label}.</b> {caption}</caption>\n"
         '<thead role="rowgroup"><tr role="row">{head}</tr></thead>\n<tbody role="rowgroup">\n{body}\n</tbody>'
         "</table></div>\n{below}"
     ).format(
         name=table.name,
         kind=Markup(' class="narrow"') if len(table.columns) <= COLUMNS_OF_NARROW else Markup(""),
-        label=f"Table {number}",
-        number=number,
+        label=str(Message("Table {number}", number=number)),
         caption=html(table.full_caption),
         head=head,
         body=body,
@@ -208,7 +208,7 @@ def _cell(column: Column, value: Any, index: int) -> Markup:
     content = cell_html(column, value)
     if index == 0:
         return Markup('<th scope="row" role="rowheader">{}</th>').format(content)
-    named = column.header + (f" ({column.unit})" if column.unit else "")
+    named = f"{column.header} ({column.unit})" if column.unit else str(column.header)
     kind = Markup(' class="n"') if column.numeric else Markup("")
     return Markup('<td role="cell"{} data-name="{}">{}</td>').format(kind, named, content)
 
@@ -230,18 +230,20 @@ def _estimate(value: tuple[float | None, Any], digits: int) -> Markup:
 def _first_names(names: list[str]) -> Markup:
     listed = Markup(", ").join(names[:LISTED_NAMES])
     more = len(names) - LISTED_NAMES
-    return listed + f" and {formatting.whole(more)} more" if more > 0 else listed
+    return prose("{listed} and {more} more", listed=listed, more=formatting.whole(more)) if more > 0 else listed
 
 
 _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
-    "text": lambda value, _: Markup.escape(value),
+    "text": lambda value, _: Markup.escape(str(value)),
     "words": lambda value, _: html(value),
     "codes": lambda value, _: _first_names(value),
-    "yes": lambda value, _: Markup("yes" if value else "no"),
-    "tick": lambda value, _: Markup('<span role="img" aria-label="yes">✓</span>' if value else ""),
+    "yes": lambda value, _: html(Message("yes") if value else Message("no")),
+    "tick": lambda value, _: Markup('<span role="img" aria-label="{}">✓</span>' if value else "").format(
+        str(Message("yes"))
+    ),
     "count": lambda value, _: Markup(formatting.whole(value)),
-    "angle": lambda value, _: Markup(f"{value:.6g}"),
-    "hundredths": lambda value, _: Markup(f"{value:.2f}".replace("-", "−")),
+    "angle": lambda value, _: Markup(local_number(f"{value:.6g}")),
+    "hundredths": lambda value, _: Markup(local_number(f"{value:.2f}".replace("-", "−"))),
     "number": lambda value, digits: Markup(formatting.significant(value, digits)),
     "p": lambda value, _: Markup.escape(formatting.probability(value).replace(" ", "\u00a0")),
     "interval": lambda value, digits: Markup(formatting.interval(value, digits)),

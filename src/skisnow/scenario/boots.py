@@ -16,6 +16,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError, require_choice
+from .._support.messages import Message
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
 from .._support.units import DEGREE
 from .._support.user_files import plain_text
@@ -81,7 +82,7 @@ class Boots(Shown):
     axes: FloatArray
     frame: Frame = "sledge"
     over: Over = "time"
-    source: str = "given as numbers"
+    source: str = Message("given as numbers")
     _place: CubicSpline = field(init=False, repr=False)
     _axes: tuple[RotationSpline, ...] = field(init=False, repr=False)
 

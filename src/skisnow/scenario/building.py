@@ -13,7 +13,7 @@ from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..parameters import Word, changed, made, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
-from ..ski.ski_file import Sources
+from ..ski.sources import Sources
 from ..snow import SnowProperties, published_snow
 from ..snow.properties import require_stress
 from ..track.course import Course, course_names, read_course
@@ -182,7 +182,7 @@ def _snow(resolution: Resolution) -> SnowProperties:
             raise ParameterError(
                 "{name} is missing: the failure shear stress S_f. It has no default", code="missing", name=S_F
             )
-        snow = made(SnowProperties, values, section="snow", source="given as numbers")
+        snow = made(SnowProperties, values, section="snow", source=Message("given as numbers"))
     else:
         snow = with_numbers(snow, values)
         require_stress(snow, None, carves=snow_map is None or snow_map.mean_stress is None)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..forces.friction.load import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
@@ -64,7 +65,7 @@ class Contact:
             "snow.unloading_ratio",
             'k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic", left '
             "out where the results measured it",
-            label="unloading ratio",
+            label=Message("unloading ratio"),
             symbol="$k_u/H_V$",
             lowest=1.0,
             highest=1000.0,
@@ -74,7 +75,7 @@ class Contact:
         Word(
             "snow.penetration",
             "whether the snow is plastic (history-dependent), or elastic",
-            label="law of penetration",
+            label=Message("law of penetration"),
             choices=get_args(Penetration),
             default="hypoplastic",
             origin="snow keeps its tracks",
@@ -86,7 +87,7 @@ class Contact:
         Quantity(
             "snow.compaction_resistance",
             "whether pushing the groove brakes the ski",
-            label="pushing the groove brakes",
+            label=Message("pushing the groove brakes"),
             origin="exact: else a gliding ski would cut its groove for nothing",
         ),
     ] = True
@@ -95,7 +96,7 @@ class Contact:
         Quantity(
             "snow.shear_displacement_mm",
             "u_y, the way of an edge across until the snow holds it with all of S_f; left out where results have it",
-            label="shear displacement",
+            label=Message("shear displacement"),
             symbol="$u_y$",
             lowest=0.01,  # below, a step's corrections are as large
             highest=10.0,
@@ -108,7 +109,7 @@ class Contact:
         Quantity(
             "snow.hardness_growth_per_mm",
             "γ' of p = H_V ε (1 + γ' ε), snow that is harder below; 0: alike at every depth",
-            label="growth of the hardness",
+            label=Message("growth of the hardness"),
             symbol="$γ'$",
             lowest=0.0,
             highest=10.0,
@@ -120,7 +121,7 @@ class Contact:
         Quantity(
             "snow.layer_depth_mm",
             "depth at which a lower layer begins, or the ground",
-            label="depth of the upper layer",
+            label=Message("depth of the upper layer"),
             symbol="d",
             lowest=0.01,
             highest=10000.0,
@@ -132,7 +133,7 @@ class Contact:
         Quantity(
             "snow.lower_H_V_N_per_mm3",
             "H_V of that layer: growth of the pressure with depth there",
-            label="hardness of the lower layer",
+            label=Message("hardness of the lower layer"),
             symbol="$H_2$",
             lowest=0.0001,
             highest=10000.0,
@@ -144,7 +145,7 @@ class Contact:
         Quantity(
             "snow.damping_N_s_per_mm3",
             "c of p = H_V ε + c dε/dt, snow that answers to how fast it is pressed; 0: none",
-            label="damping of the snow",
+            label=Message("damping of the snow"),
             symbol="c",
             lowest=0.0,
             highest=10.0,
@@ -157,7 +158,7 @@ class Contact:
         Quantity(
             "snow.delayed_share",
             "delayed elastic depth under a load that stays, over the depth at once; 0: none",
-            label="delayed share",
+            label=Message("delayed share"),
             symbol="$H_V/H_2$",
             lowest=0.0,
             highest=10.0,
@@ -170,7 +171,7 @@ class Contact:
         Quantity(
             "snow.retardation_time_ms",
             "time in which 63 % of the delayed depth has come; without effect if there is no delayed depth",
-            label="retardation time",
+            label=Message("retardation time"),
             symbol="$c_2/H_2$",
             lowest=1.0,
             highest=1e7,
@@ -184,7 +185,7 @@ class Contact:
         Quantity(
             "friction.mu_0",
             "μ_0 of the glide friction μ = μ_0 + μ_1 v",
-            label="friction",
+            label=Message("friction"),
             symbol="$μ_0$",
             lowest=0.0,
             highest=1.0,
@@ -197,7 +198,7 @@ class Contact:
         Quantity(
             "friction.mu_1_s_per_m",
             "μ_1 of it, with the speed v",
-            label="friction that grows with speed",
+            label=Message("friction that grows with speed"),
             symbol="$μ_1$",
             lowest=-0.1,
             highest=0.1,
@@ -210,7 +211,7 @@ class Contact:
         Quantity(
             "friction.acts_on",
             "load that μ is multiplied with: along the snow's normal, or square on the base, side force included",
-            label="friction acts on",
+            label=Message("friction acts on"),
             origin="choice: it does not hang on how the side force spreads along the edge, which was not measured",
         ),
     ] = "snow-normal"
@@ -219,7 +220,7 @@ class Contact:
         Quantity(
             "friction.direction",
             "against the sliding velocity, or along the ski at any slip angle",
-            label="direction of friction",
+            label=Message("direction of friction"),
             origin="Coulomb's law; the paper's turns had friction along the ski",
         ),
     ] = "vector"
@@ -231,7 +232,7 @@ class Contact:
             "instead of these, mu_share times μ",
             word_of=_map_source,
             names_file=True,
-            label="file of the snow over the place",
+            label=Message("file of the snow over the place"),
         ),
     ] = None
 

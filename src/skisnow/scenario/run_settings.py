@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
+from .._support.messages import Message
 from ..forces.penetration.rate import DELAYED_SPACING
 from ..parameters import Condition, Quantity, Search, declared_text, require_declared
 from ..ski.beam import MOST_ELEMENTS
@@ -25,7 +26,7 @@ class Start:
         Quantity(
             "start.x_m",
             "place of the boots' middle down the slope; on a profile its horizontal distance",
-            label="start, down the fall line",
+            label=Message("start, down the fall line"),
             symbol="x",
             origin="choice: where x begins",
             search=Search(1.0, -20.0, 20.0, about=True),
@@ -36,7 +37,7 @@ class Start:
         Quantity(
             "start.y_m",
             "place to the left",
-            label="start, across it",
+            label=Message("start, across it"),
             symbol="y",
             origin="choice: where y begins",
             search=Search(1.0, -20.0, 20.0, about=True),
@@ -47,7 +48,7 @@ class Start:
         Quantity(
             "start.speed_m_per_s",
             "speed along the skis",
-            label="speed at the start",
+            label=Message("speed at the start"),
             symbol="v",
             lowest=0.0,
             highest=100.0,
@@ -59,7 +60,7 @@ class Start:
         Quantity(
             "start.heading_deg",
             "heading of the skis from the fall line, positive left",
-            label="heading at the start",
+            label=Message("heading at the start"),
             lowest=-180.0,
             highest=180.0,
             origin="choice: down the fall line",
@@ -88,7 +89,7 @@ class Stop:
         Quantity(
             "run.duration_s",
             "simulated time; with length_m beside it, whichever comes first",
-            label="ends after",
+            label=Message("ends after"),
             lowest=0.0,
             highest=3600.0,
             above=True,
@@ -99,7 +100,7 @@ class Stop:
         Quantity(
             "run.length_m",
             "length of the path of the boots' middle after which the run is done",
-            label="ends after a way of",
+            label=Message("ends after a way of"),
             lowest=0.0,
             highest=100_000.0,
             above=True,
@@ -130,7 +131,7 @@ class Solver:
         Quantity(
             "solver.method",
             "how exact: fast holds the error of a step to ten times the tolerance",
-            label="method",
+            label=Message("method"),
             origin="choice: the more exact one",
         ),
     ] = "default"
@@ -139,7 +140,7 @@ class Solver:
         Quantity(
             "solver.step_ms",
             "the first time step; with fixed = true every step",
-            label="time step",
+            label=Message("time step"),
             lowest=0.001,  # below, rounding counts
             highest=5.0,  # above, a ski's first bending mode is not resolved
             origin="choice: near what a start takes",
@@ -150,7 +151,7 @@ class Solver:
         Quantity(
             "solver.tolerance_mm",
             "largest error of place that one step may make by its own estimate; with method = fast ten times as large",
-            label="tolerance",
+            label=Message("tolerance"),
             lowest=1e-9,
             highest=10.0,
             origin="choice: see the tests of convergence",
@@ -161,7 +162,7 @@ class Solver:
         Quantity(
             "solver.fixed",
             "whether the step stays as it is, without control of the error",
-            label="fixed time step",
+            label=Message("fixed time step"),
             origin="choice: a step that is too long is wrong without a sign",
         ),
     ] = False
@@ -170,7 +171,7 @@ class Solver:
         Quantity(
             "solver.elements",
             "finite elements over a ski; default: from ski and snow",
-            label="elements of a ski",
+            label=Message("elements of a ski"),
             lowest=4,
             highest=MOST_ELEMENTS,
         ),
@@ -180,7 +181,7 @@ class Solver:
         Quantity(
             "solver.line_spacing_mm",
             "distance along the path between the lines that keep the snow's groove; default: from ski and snow",
-            label="distance of the snow lines",
+            label=Message("distance of the snow lines"),
             lowest=0.1,
             highest=200.0,
         ),
@@ -191,7 +192,7 @@ class Solver:
             "solver.groove_tolerance",
             "share of a contact's depth times width by which the groove on a line may be simplified; with method = "
             "fast three times as large",
-            label="tolerance of the groove",
+            label=Message("tolerance of the groove"),
             lowest=1e-9,
             highest=0.1,
             origin="choice: see the tests of convergence",
@@ -202,7 +203,7 @@ class Solver:
         Quantity(
             "solver.delayed_spacing_mm",
             "distance across a groove between the places that keep their delayed depth",
-            label="spacing of delayed depths",
+            label=Message("spacing of delayed depths"),
             lowest=0.01,
             highest=20.0,
             origin="choice: see the page on rate",
@@ -214,7 +215,7 @@ class Solver:
         Quantity(
             "run.output_ms",
             "time between the rows that are kept",
-            label="time between outputs",
+            label=Message("time between outputs"),
             lowest=0.1,
             highest=1000.0,
             origin="choice: a tenth of a metre at 10 m/s",

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import DEGREE, STANDARD_GRAVITY
 from ..parameters import Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
@@ -19,8 +20,9 @@ from .boots import Boots
 from .checks import require_skier, require_sound
 from .contact import Contact
 from .run_settings import Solver, Start, Stop
+from .shear import Shear
 from .skier import Skier
-from .sledge import Air, RigidSledge, Shear
+from .sledge import Air, RigidSledge
 from .slope import Plane, Profile
 from .terrain import Slope, Terrain
 
@@ -92,7 +94,7 @@ class Scenario(Shown):
         Word(
             "slope.kind",
             "a plane, a measured profile of heights, or a grid of them",
-            label="shape of the slope",
+            label=Message("shape of the slope"),
             choices=("plane", "profile", "grid"),
             default="plane",
             origin="choice: the simpler one",
@@ -104,11 +106,11 @@ class Scenario(Shown):
     sledge: RigidSledge
     ski: Annotated[
         Ski,
-        Word("ski.name", "a ski of the catalogue", label="ski", word_of=_ski_name),
+        Word("ski.name", "a ski of the catalogue", label=Message("ski"), word_of=_ski_name),
         Word(
             "ski.file",
             "the path of a ski file, instead of a name",
-            label="file of the ski",
+            label=Message("file of the ski"),
             word_of=_ski_file,
             names_file=True,
         ),
@@ -118,7 +120,7 @@ class Scenario(Shown):
         Quantity(
             "ski.camber_rounding_mm",
             "length before each contact point over which the camber levels out; default: the ski's own",
-            label="rounding of the camber",
+            label=Message("rounding of the camber"),
             lowest=1.0,
             highest=1000.0,
         ),
@@ -128,7 +130,7 @@ class Scenario(Shown):
         Quantity(
             "ski.stiffness_factor",
             "factor of the ski's EI and GJ",
-            label="stiffness factor",
+            label=Message("stiffness factor"),
             lowest=0.01,
             highest=100.0,
             origin="the ski as it is given",
@@ -140,7 +142,7 @@ class Scenario(Shown):
         Quantity(
             "ski.clamp_length_m",
             "length of ski that boot and binding keep straight",
-            label="clamp length",
+            label=Message("clamp length"),
             lowest=0.0,
             origin="choice: about a boot's sole",
         ),
@@ -150,7 +152,7 @@ class Scenario(Shown):
         Quantity(
             "ski.footprint_stiffness_N_per_mm2",
             "stiffness of boot and binding under each metre of the clamp length, against bending; default: rigid",
-            label="footprint stiffness",
+            label=Message("footprint stiffness"),
             lowest=0.0,
             highest=1e4,
             above=True,
@@ -161,7 +163,7 @@ class Scenario(Shown):
         Quantity(
             "ski.damping_ratio",
             "damping ratio of the ski's first bending mode",
-            label="damping ratio of the ski",
+            label=Message("damping ratio of the ski"),
             lowest=0.0,
             highest=1.0,
             origin="choice: a lightly damped beam",
@@ -186,7 +188,7 @@ class Scenario(Shown):
         Quantity(
             "slope.gravity_m_per_s2",
             "acceleration of gravity",
-            label="gravity",
+            label=Message("gravity"),
             symbol="g",
             lowest=0.0,
             highest=100.0,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
+from .._support.messages import Message
 from .._support.units import DEGREE
 from ..parameters import Condition, Quantity, declared_text, require_declared
 
@@ -53,7 +54,7 @@ class Skier:
         Quantity(
             "skier.steers",
             "basis of the steering: turns planned over time, or the gates of the course",
-            label="steers by",
+            label=Message("steers by"),
             origin="choice: needs no course",
         ),
     ] = "turns"
@@ -62,7 +63,7 @@ class Skier:
         Quantity(
             "skier.first_turn_s",
             "when the first half turn begins",
-            label="first turn",
+            label=Message("first turn"),
             lowest=0.0,
             origin="choice: time to begin to lean",
             condition=Condition("skier.steers", "turns"),
@@ -73,7 +74,7 @@ class Skier:
         Quantity(
             "skier.turn_time_s",
             "from edge change to edge change",
-            label="time of a turn",
+            label=Message("time of a turn"),
             lowest=0.0,
             highest=1e6,
             above=True,
@@ -86,7 +87,7 @@ class Skier:
         Quantity(
             "skier.turns",
             "how many turns, the first one a half; then straight on",
-            label="turns",
+            label=Message("turns"),
             lowest=0.0,
             highest=1e6,
             above=True,
@@ -99,7 +100,7 @@ class Skier:
         Quantity(
             "skier.turn_angle_deg",
             "course at the edge change, from the fall line",
-            label="course at the edge change",
+            label=Message("course at the edge change"),
             lowest=1.0,
             highest=80.0,
             origin="choice: that of gates 13 m apart and 3 m across",
@@ -111,7 +112,7 @@ class Skier:
         Quantity(
             "skier.first_to_left",
             "whether the first turn goes to the left",
-            label="first turn to the left",
+            label=Message("first turn to the left"),
             condition=Condition("skier.steers", "turns"),
         ),
     ] = True
@@ -120,7 +121,7 @@ class Skier:
         Quantity(
             "skier.pole_clearance_m",
             "how far beside a turning pole the middle of the boots is to pass",
-            label="clearance from the pole",
+            label=Message("clearance from the pole"),
             lowest=0.0,
             highest=10.0,
             origin="choice: half the stance, and what the line is missed by",
@@ -132,7 +133,7 @@ class Skier:
         Quantity(
             "skier.brakes_to_m_per_s",
             "speed to which skidded turns brake; 0: turns are carved, as far as the snow holds",
-            label="brakes to",
+            label=Message("brakes to"),
             lowest=0.0,
             highest=40.0,
             origin="choice: carved turns",
@@ -143,7 +144,7 @@ class Skier:
         Quantity(
             "skier.assumed_H_V_N_per_mm3",
             "H_V that the control assumes; 0: that of the scenario",
-            label="assumed H_V",
+            label=Message("assumed H_V"),
             lowest=0.0,
             highest=100.0,
             origin="choice: the nominal snow",
@@ -154,7 +155,7 @@ class Skier:
         Quantity(
             "skier.assumed_S_f_N_per_mm2",
             "S_f that the control assumes; 0: that of the scenario",
-            label="assumed S_f",
+            label=Message("assumed S_f"),
             lowest=0.0,
             highest=100.0,
             origin="choice: the nominal snow",
@@ -165,7 +166,7 @@ class Skier:
         Quantity(
             "skier.line_rate_per_s",
             "rate at which carved turns go back to the line through gates",
-            label="rate back to the line",
+            label=Message("rate back to the line"),
             lowest=0.0,
             highest=100.0,
             origin="found by trial",
@@ -177,7 +178,7 @@ class Skier:
         Quantity(
             "skier.longest_leg_m",
             "greatest distance from the middle of the feet to the centre of mass",
-            label="longest leg",
+            label=Message("longest leg"),
             lowest=0.1,
             highest=2.0,
             origin="centre of mass of a man of 1.76 m who stands, and 7 cm of sole, binding and ski",
@@ -188,7 +189,7 @@ class Skier:
         Quantity(
             "skier.greatest_edge_deg",
             "greatest edge angle that it sets",
-            label="greatest edge angle",
+            label=Message("greatest edge angle"),
             lowest=1.0,
             highest=80.0,
             origin="measured of slalom racers at gates 10 m apart, 65.7 ± 1.7° (Reid 2020)",
@@ -200,7 +201,7 @@ class Skier:
         Quantity(
             "skier.greatest_hip_deg",
             "greatest yaw of the body against the skis, hips and trunk together",
-            label="greatest hip angle",
+            label=Message("greatest hip angle"),
             lowest=10.0,
             highest=90.0,
             origin="rotation of hips (35 to 45°) and trunk (30 to 40°) of adults together, less a margin",
@@ -211,7 +212,7 @@ class Skier:
         Quantity(
             "skier.hip_torque_Nm",
             "greatest torque of both legs about the body's long axis",
-            label="greatest hip torque",
+            label=Message("greatest hip torque"),
             lowest=1.0,
             highest=500.0,
             origin="isometric rotation strength of the hips of men, some 60 to 90 N m a leg",
@@ -222,7 +223,7 @@ class Skier:
         Quantity(
             "skier.shift_m",
             "greatest shift of the centre of mass along the skis",
-            label="greatest shift fore and aft",
+            label=Message("greatest shift fore and aft"),
             lowest=0.0,
             highest=0.5,
             origin="half a foot and what boot and ski hold besides",
@@ -233,7 +234,7 @@ class Skier:
         Quantity(
             "skier.shift_speed_m_per_s",
             "greatest speed of this shift",
-            label="greatest speed fore and aft",
+            label=Message("greatest speed fore and aft"),
             lowest=0.0,
             highest=10.0,
             origin="found by trial: with 2.5 the loads peak at seven weights",
@@ -244,7 +245,7 @@ class Skier:
         Quantity(
             "skier.greatest_lean_deg",
             "greatest lean of balance that it plans, from the snow's normal",
-            label="greatest planned lean",
+            label=Message("greatest planned lean"),
             lowest=1.0,
             highest=80.0,
             origin="found by trial: below the leg's reach, arccos(0.6/1.05) = 55°",
@@ -255,7 +256,7 @@ class Skier:
         Quantity(
             "skier.greatest_slip_deg",
             "greatest planned angle between skis and path",
-            label="greatest planned slip",
+            label=Message("greatest planned slip"),
             lowest=1.0,
             highest=60.0,
             origin="found by trial on 10 to 19°",
@@ -266,7 +267,7 @@ class Skier:
         Quantity(
             "skier.least_slip_deg",
             "planned angle between skis and path in a turn that need not brake",
-            label="least planned slip",
+            label=Message("least planned slip"),
             lowest=1.0,
             highest=60.0,
             origin="found by trial: skis grip below 3°",
@@ -277,7 +278,7 @@ class Skier:
         Quantity(
             "skier.braking_per_s",
             "deceleration over the speed that is too much",
-            label="braking",
+            label=Message("braking"),
             lowest=0.0,
             highest=10.0,
             origin="found by trial",
@@ -288,7 +289,7 @@ class Skier:
         Quantity(
             "skier.outer_share",
             "share of the load that the outer ski is to bear in a turn",
-            label="share of the outer ski",
+            label=Message("share of the outer ski"),
             lowest=0.5,
             highest=0.9,
             origin="choice: within 55 to 80 %",
@@ -299,7 +300,7 @@ class Skier:
         Quantity(
             "skier.edge_rate_per_s",
             "corner frequency of the edge angle",
-            label="speed of the edge angle",
+            label=Message("speed of the edge angle"),
             lowest=0.1,
             highest=1000.0,
             origin="found by trial: 5.6 Hz",
@@ -310,7 +311,7 @@ class Skier:
         Quantity(
             "skier.leg_gain",
             "gain of the legs on the error of the capture point",
-            label="gain of the legs",
+            label=Message("gain of the legs"),
             lowest=0.0,
             highest=100.0,
             origin="found by trial",
@@ -321,7 +322,7 @@ class Skier:
         Quantity(
             "skier.leg_yielding_per_s",
             "speed aside at which legs give way, over how far the centre of pressure is from where it is asked for",
-            label="yielding of the legs",
+            label=Message("yielding of the legs"),
             lowest=0.0,
             highest=100.0,
             origin="found by trial: at 5 ms a straight run magnifies the last bits with 1 more than with 0.7",
@@ -332,7 +333,7 @@ class Skier:
         Quantity(
             "skier.edge_gain",
             "gain of the edges on the same error",
-            label="gain of the edges",
+            label=Message("gain of the edges"),
             lowest=0.0,
             highest=100.0,
             origin="choice: what balances it",
@@ -343,7 +344,7 @@ class Skier:
         Quantity(
             "skier.control_period_ms",
             "time between two decisions of the control, independent of run.output_ms",
-            label="period of the control",
+            label=Message("period of the control"),
             lowest=1.0,
             highest=50.0,
             origin="choice: with 10 legs that give way make the loads swing",

@@ -49,7 +49,7 @@ class Plane:
         Quantity(
             "slope.angle_deg",
             'inclination of the plane; only with kind = "plane"',
-            label="slope angle",
+            label=Message("slope angle"),
             symbol="α",
             lowest=0.0,
             highest=STEEPEST_DEG,
@@ -106,18 +106,18 @@ class Profile(Shown):
         Word(
             "slope.profile",
             'CSV file with the columns x and y, horizontal distance and height in m; only with kind = "profile"',
-            label="file of the profile",
+            label=Message("file of the profile"),
             word_of=str,
             names_file=True,
             condition=Condition("slope.kind", "profile"),
         ),
-    ] = field(default="given as numbers", kw_only=True)
+    ] = field(default=Message("given as numbers"), kw_only=True)
     gap: Annotated[
         Gap,
         Quantity(
             "slope.profile_gap",
             "what to do where points of the profile are more than 5 m apart",
-            label="gaps in the profile",
+            label=Message("gaps in the profile"),
             origin="choice: there are no measurements in between",
             condition=Condition("slope.kind", "profile"),
         ),

@@ -60,7 +60,7 @@ class SnowMap(Shown):
     hardness: Grid | None = None
     failure_shear_stress: Grid | None = None
     friction_share: Grid | None = None
-    source: str = "given as numbers"
+    source: str = Message("given as numbers")
 
     def __post_init__(self) -> None:
         grids = (("H_V", self.hardness), ("S_f", self.failure_shear_stress), ("mu_share", self.friction_share))

@@ -81,7 +81,7 @@ class Terrain(Shown):
             names_file=True,
             condition=Condition("slope.kind", "grid"),
         ),
-    ] = field(default="given as numbers", kw_only=True)
+    ] = field(default=Message("given as numbers"), kw_only=True)
     smoothing: Annotated[
         float,
         Quantity(
@@ -98,7 +98,7 @@ class Terrain(Shown):
         Quantity(
             "slope.origin_x_m",
             "x of the grid's file (east of a map) where the scenario's x is 0; only with kind = \"grid\"",
-            label="x of the grid at the origin",
+            label=Message("x of the grid at the origin"),
             origin="choice: the file's own",
             condition=Condition("slope.kind", "grid"),
         ),
@@ -108,7 +108,7 @@ class Terrain(Shown):
         Quantity(
             "slope.origin_y_m",
             "y of the grid's file (north of a map) where the scenario's y is 0; only with kind = \"grid\"",
-            label="y of the grid at the origin",
+            label=Message("y of the grid at the origin"),
             origin="choice: the file's own",
             condition=Condition("slope.kind", "grid"),
         ),

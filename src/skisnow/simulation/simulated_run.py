@@ -21,9 +21,9 @@ from ..scenario.terrain import down_and_left
 from ..skier import BalancedSkier, Controller
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
+from .run_gates import GatesAhead, run_gates
 from .run_record import Record
 from .run_setup import AT_REST, Setup, hardness_at_start, set_up
-from .run_summary import GatesAhead, run_gates
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
@@ -49,28 +49,42 @@ _REACHED: Final = 1e-6
 """Run length (m) that counts as none left."""
 
 REMEDIES: Final[dict[Outcome, str]] = {
-    "finished": "Completed: the whole duration was simulated.",
-    "distance_reached": "The run length was reached.",
-    "end_of_slope": "The tips reached the end of the profile, or a border of the grid. Give a longer or wider slope, "
-    "or a shorter run.",
-    "tipped_over": "The sledge leant more than 60° from the snow's normal, or more than 40° ahead or back: it has "
-    "tipped over. Lower its centre of mass, widen the stance, or take less edge or speed.",
-    "fell": "The skier leant more than 60° from the snow's normal: it fell. Take less speed, a gentler slope or "
-    "shorter turns; figures/balance shows where the lean left what would be in balance.",
-    "airborne": "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a "
-    "smoother slope.",
-    "sunk": "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. "
-    "Take harder snow, less mass or a wider ski.",
-    "missed_gate": "Change line or start, or the course; gates.csv says of each gate what became of it.",
+    "finished": Message("Completed: the whole duration was simulated."),
+    "distance_reached": Message("The run length was reached."),
+    "end_of_slope": Message(
+        "The tips reached the end of the profile, or a border of the grid. Give a longer or wider slope, or a shorter "
+        "run."
+    ),
+    "tipped_over": Message(
+        "The sledge leant more than 60° from the snow's normal, or more than 40° ahead or back: it has tipped over. "
+        "Lower its centre of mass, widen the stance, or take less edge or speed."
+    ),
+    "fell": Message(
+        "The skier leant more than 60° from the snow's normal: it fell. Take less speed, a gentler slope or shorter "
+        "turns; figures/balance shows where the lean left what would be in balance."
+    ),
+    "airborne": Message(
+        "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a smoother "
+        "slope."
+    ),
+    "sunk": Message(
+        "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. Take "
+        "harder snow, less mass or a wider ski."
+    ),
+    "missed_gate": Message("Change line or start, or the course; gates.csv says of each gate what became of it."),
     "straddled": "By the rules this is not a passage. Change line or start, or the course; gates.csv says of each gate "
     "what became of it.",
-    "energy_open": "The energy residual is more than 0.5 % of the energy exchanged: do not rely on these numbers. Take "
-    "smaller steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
-    "smaller tolerance.",
-    "step_too_small": "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen "
-    "the tolerance, or take a smaller k_u/H_V.",
-    "not_finite": "The numbers diverged. Take a smaller step, or leave the error control on.",
-    "interrupted": "The run was stopped; what had been computed is kept.",
+    "energy_open": Message(
+        "The energy residual is more than 0.5 % of the energy exchanged: do not rely on these numbers. Take smaller "
+        "steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
+        "smaller tolerance."
+    ),
+    "step_too_small": Message(
+        "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen the tolerance, "
+        "or take a smaller k_u/H_V."
+    ),
+    "not_finite": Message("The numbers diverged. Take a smaller step, or leave the error control on."),
+    "interrupted": Message("The run was stopped; what had been computed is kept."),
 }
 
 
@@ -182,9 +196,8 @@ def _warn_of_zero_friction(run: Run) -> None:
     if contact.friction + contact.friction_by_speed * fastest < 0.0:
         zero_at = -contact.friction / contact.friction_by_speed
         text = Message(
-            "mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction "
-            "counts as 0 "
-            "there. Use a friction.mu_1_s_per_m nearer to 0",
+            "mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction counts "
+            "as 0 there. Use a friction.mu_1_s_per_m nearer to 0",
             zero_at=zero_at,
             fastest=fastest,
         )

@@ -7,6 +7,7 @@ from typing import Annotated, Final, TypeAlias
 
 from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..parameters import Quantity, Search, Word, require_declared
 
@@ -62,7 +63,7 @@ class SnowProperties(Shown):
         Quantity(
             "H_V_N_per_mm3",
             "snow hardness H_V",
-            label="snow hardness",
+            label=Message("snow hardness"),
             symbol="$H_V$",
             lowest=0.0,
             above=True,
@@ -75,7 +76,7 @@ class SnowProperties(Shown):
         Quantity(
             "S_f_N_per_mm2",
             "failure shear stress S_f",
-            label="failure shear stress",
+            label=Message("failure shear stress"),
             symbol="$S_f$",
             lowest=0.0,
             above=True,

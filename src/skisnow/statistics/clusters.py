@@ -27,8 +27,7 @@ from .least_squares import (
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .._support.arrays import BoolArray, FloatArray
-
+    from .least_squares import BoolArray, FloatArray
 
 _WHOLLY = 1e-9
 """A direction of which a cluster holds all but this share is known from that cluster alone."""

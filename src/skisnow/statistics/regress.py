@@ -24,7 +24,7 @@ from .least_squares import (
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .._support.arrays import FloatArray
+    from .least_squares import FloatArray
 
 
 class RegressStatistics(NamedTuple):

@@ -18,7 +18,7 @@ from .language import language_of, said, said_as_written
 from .layout import error_sentence, heading, sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable, Sequence, Set
+    from collections.abc import Awaitable, Callable, Sequence
     from typing import TypeAlias
 
     from nicegui.events import ValueChangeEventArguments
@@ -136,7 +136,7 @@ class AnalysisView:
                     heading("Figures")
                 begun = True
             with self._figures:
-                _figure(shown, result.numbers.names)
+                _figure(shown)
         if not self._is_old(number):
             self._status.set_text(_counts(result.numbers))
 
@@ -149,24 +149,25 @@ class AnalysisView:
                 for verdict in numbers.verdicts:
                     with ui.element("li"):
                         sentence(verdict)
-                for words in numbers.key_results:
+                for words in numbers.key_results[language_of()]:
                     with ui.element("li"):
-                        html_words(words, numbers.names)
+                        html_words(words)
             for warning in numbers.results["penetration"]["warnings"]:
                 sentence(warning, "quiet")
-            if FIRST_TABLE in numbers.tables:
-                _table(numbers.tables[FIRST_TABLE], numbers.names)
+            tables = numbers.tables[language_of()]
+            if FIRST_TABLE in tables:
+                html_words(tables[FIRST_TABLE])
 
     def _show_tables(self, numbers: Numbers) -> None:
         self._tables.clear()
         with self._tables:
-            for name, html in numbers.tables.items():
+            for name, html in numbers.tables[language_of()].items():
                 if name == FIRST_TABLE:
                     continue
                 if name in LONG_TABLES:
-                    _add_folded(LONG_TABLES[name], partial(_table, html, numbers.names))
+                    _add_folded(LONG_TABLES[name], partial(html_words, html))
                 else:
-                    _table(html, numbers.names)
+                    html_words(html)
 
     def _show_choices(self, numbers: Numbers) -> None:
         with self._choices:
@@ -228,7 +229,7 @@ def _list_errors(lines: Sequence[str]) -> None:
                 ui.label(said_as_written(line, NAMES_IN_FILES))
 
 
-def _add_folded(words: str, fill: Callable[[], None]) -> None:
+def _add_folded(words: str, fill: Callable[[], object]) -> None:
     """Add a folded section that is filled when it is opened."""
     with ui.element("details") as details, ui.element("summary"):
         Words(words)
@@ -241,26 +242,23 @@ def _add_folded(words: str, fill: Callable[[], None]) -> None:
     details.on("toggle", opened)
 
 
-def _table(html: str, names: Set[str]) -> None:
-    html_words(html, names)
-
-
 def _counts(numbers: Numbers) -> str:
     pressed, sheared = (numbers.results[kind]["experiments"] for kind in ("penetration", "shear"))
     used = [sum(row["used"] for row in rows) for rows in (pressed, sheared)]
     return (
-        f"{counted(len(pressed), 'penetration experiment')}, {used[0]} used; "
-        f"{counted(len(sheared), 'shear experiment')}, {used[1]} used."
+        f"{counted(len(pressed), '{count} penetration experiment', '{count} penetration experiments')}, {used[0]} "
+        f"used; "
+        f"{counted(len(sheared), '{count} shear experiment', '{count} shear experiments')}, {used[1]} used."
     )
 
 
-def _figure(shown: FigureImage, names: Set[str]) -> None:
+def _figure(shown: FigureImage) -> None:
     with ui.element("figure"):
         with ui.element("div") as box:
             image = ui.element("img")
         if shown.wide:
-            box.classes("scroll").props("tabindex=0 role=region").props["aria-label"] = said(shown.alt)
+            box.classes("scroll").props("tabindex=0 role=region").props["aria-label"] = shown.alt
         image.props["src"] = shown.image
-        image.props["alt"] = said(shown.alt)
+        image.props["alt"] = shown.alt
         with ui.element("figcaption"):
-            html_words(shown.caption, names)
+            html_words(shown.caption)

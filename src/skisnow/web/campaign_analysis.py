@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from .._support.errors import FieldDataError, SkisnowError
+from .._support.messages import in_language, languages
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.problems import ALWAYS_EXCLUDE, Problem, lines_of
 from ..estimation import analyse
@@ -19,9 +20,7 @@ from ..report.campaign.page import DRAWERS, tables_html
 from ..report.campaign.tables import campaign_tables
 from ..report.campaign.verdicts import verdicts
 from ..report.figures.drawing import Drawing, data_uri, drawing_svg
-from ..report.figures.style import journal_style, site_styles
-from ..report.figures.translated import translate_figure
-from ..report.symbols import figure_text
+from ..report.figures.style import journal_style, local_axes, site_styles
 
 if TYPE_CHECKING:
     from .._support.messages import Message
@@ -52,22 +51,20 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Analysis of a campaign with a choice, its verdicts, and the report's key results and tables (by name) as HTML."""
+    """Analysis of a campaign with a choice, its verdicts, and the report's key results and tables as HTML.
+
+    Both are by language, the tables also by name.
+    """
 
     analysis: Analysis
     verdicts: tuple[Message, ...]
-    key_results: tuple[str, ...]
-    tables: dict[str, str]
+    key_results: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    tables: dict[str, dict[str, str]] = field(default_factory=dict)
 
     @property
     def results(self) -> dict[str, Any]:
         """Contents of results.json."""
         return self.analysis.results
-
-    @property
-    def names(self) -> frozenset[str]:
-        """Names from users, which are not translated."""
-        return ReportData(self.analysis).names
 
     @property
     def excluding(self) -> frozenset[str]:
@@ -107,20 +104,26 @@ def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     except SkisnowError as error:
         return Refusal(error.message)
     data = ReportData(analysis)
-    html = tables_html({name: table for name, table in campaign_tables(data).items() if table.rows})
-    shown: dict[str, str] = {name: str(html[name]) for name in SHOWN_TABLES if name in html}
-    return Numbers(analysis, tuple(verdicts(analysis.results)), tuple(map(str, key_results(data))), shown)
+    numbers = Numbers(analysis, tuple(verdicts(analysis.results)))
+    for language in languages():
+        with in_language(language):
+            html = tables_html({name: table for name, table in campaign_tables(data).items() if table.rows})
+            numbers.tables[language] = {name: str(html[name]) for name in SHOWN_TABLES if name in html}
+            numbers.key_results[language] = tuple(map(str, key_results(data)))
+    return numbers
 
 
 def figure(analysis: Analysis, number: int, language: str) -> FigureImage | None:
     """Image of one of the report's figures, counted from 0; None if the campaign has no data for it."""
     data = ReportData(analysis)
-    with journal_style():
+    with journal_style(), in_language(language):
         drawn = DRAWERS[number](data, site_styles(data))
         if not isinstance(drawn, Drawing):
             return None
-        translate_figure(drawn.figure, language, names=frozenset(map(figure_text, data.names)))
-        return FigureImage(drawn.name, drawn.alt, str(drawn.whole_caption), data_uri(drawing_svg(drawn)), drawn.wide)
+        local_axes(drawn.figure)
+        return FigureImage(
+            drawn.name, str(drawn.alt), str(drawn.whole_caption), data_uri(drawing_svg(drawn)), drawn.wide
+        )
 
 
 def load_drawing() -> None:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from ..report.symbols import SYMBOL
-from ..report.translated import translated_html
-from .language import language_of, said
+from .language import said
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence, Set
+    from collections.abc import Callable, Sequence
     from typing import TypeVar
 
     AnyElement = TypeVar("AnyElement", bound=ui.element)
@@ -110,14 +109,6 @@ def named(element: AnyElement, name: str) -> AnyElement:
     return element
 
 
-def html_words(html: str, names: Set[str] = frozenset()) -> ui.html:
-    """HTML of the reports in the language of the page.
-
-    Parameters
-    ----------
-    html
-        HTML in English, in which text from users is escaped.
-    names
-        Names from users, which are not translated.
-    """
-    return ui.html(translated_html(html, language_of(), names=names), sanitize=False)
+def html_words(html: str) -> ui.html:
+    """HTML of the reports in the language of the page, in which text from users is escaped."""
+    return ui.html(html, sanitize=False)

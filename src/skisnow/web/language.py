@@ -10,7 +10,7 @@ from nicegui import Client, ui
 
 from .._support.language import ENGLISH, catalogue, languages
 from .._support.language.catalogues import DECIMAL
-from .._support.messages import Message
+from .._support.messages import Message, use_language_of_pages
 
 if TYPE_CHECKING:
     from collections.abc import Set
@@ -42,14 +42,16 @@ def language_asked(chosen: str | None, accepted: str) -> str:
 
 def language_of(client: Client | None = None) -> str:
     """Code of a page's language (default: of the current page)."""
-    if client is None:
-        try:
-            client = ui.context.client
-        except RuntimeError:  # outside of a page
-            return ENGLISH
-    if client not in _OF_PAGES:
-        _OF_PAGES[client] = language_of_request(client.request)
+    try:
+        client = client or ui.context.client
+        if client not in _OF_PAGES:
+            _OF_PAGES[client] = language_of_request(client.request)
+    except RuntimeError:  # outside of a page
+        return ENGLISH
     return _OF_PAGES[client]
+
+
+use_language_of_pages(language_of)
 
 
 def language_of_request(request: Request) -> str:

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH
 from .._support.messages import Message
+from .._support.outcomes import outcome_words
 from .._support.staging import write_file
 from .._support.user_files import GivenError, read_json, read_record
 
@@ -76,7 +77,7 @@ class FinishedRun:
     @property
     def outcome_in_words(self) -> str:
         """The outcome without underscores."""
-        return self.outcome.replace("_", " ")
+        return outcome_words(self.outcome)
 
     @property
     def extent(self) -> str:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 from .._support.errors import ParameterError, SkisnowError
 from .._support.language import ENGLISH
 from .._support.messages import Message
+from .._support.outcomes import outcome_words
 from .._support.processes.batch import available_cores
 from .._support.processes.executors import LOCAL
 from .._support.processes.kept_rows import KeptRows
@@ -203,7 +204,7 @@ class Studies(Runs):
             counts = self.table(name)[1].counts()
         except SkisnowError as error:
             return error.message
-        every = "; ".join(f"{outcome.replace('_', ' ')} {count}" for outcome, count in counts.items())
+        every = "; ".join(f"{outcome_words(outcome)} {count}" for outcome, count in counts.items())
         return f"{sum(counts.values())} points: {every}."
 
 

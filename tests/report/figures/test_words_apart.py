@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from skisnow._support.messages import in_language
 from skisnow.report.figures.drawing import left_title, letter_panels
-from skisnow.report.figures.style import journal_style
-from skisnow.report.figures.translated import translate_figure
+from skisnow.report.figures.style import journal_style, local_axes
 from skisnow.report.run.track_figure import run_track
 
 from ..runs import circle_run
@@ -47,9 +47,9 @@ def over_one_another(figure: Figure) -> list[tuple[str, str]]:
 
 @pytest.mark.parametrize(("radius", "duration", "language"), [(17.0, 2.0, "de"), (12.0, 4.0, "en")])
 def test_a_run_from_above(radius: float, duration: float, language: str) -> None:
-    with journal_style():
+    with journal_style(), in_language(language):
         figure = run_track(circle_run(radius=radius, duration=duration))
-        translate_figure(figure, language)
+        local_axes(figure)
         letter_panels(figure)
         assert over_one_another(figure) == []
 

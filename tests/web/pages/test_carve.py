@@ -15,7 +15,8 @@ import pandas
 import pytest
 
 from skisnow.campaign import read_campaign
-from skisnow.carving.answer import answer_dict, answered
+from skisnow.carving.answer import answered
+from skisnow.carving.answer_dict import answer_dict
 from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
@@ -451,7 +452,7 @@ def test_a_question_names_its_numbers(desk: Desk, monkeypatch: pytest.MonkeyPatc
 
 def test_the_sliders_in_german(desk: Desk) -> None:
     page = desk.open("/carve", "de")
-    page.shows("carver: equilibrium.")  # said in German by its label
+    page.shows("carver: Gleichgewicht.")
     assert slider(page, "Kantwinkel (°)").props["aria-valuetext"] == "45"
     move(page, "Schneehärte H_V (N/mm³)", "8")
     page.shows("Schneehärte H_V (N/mm³): 0.25")

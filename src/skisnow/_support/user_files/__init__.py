@@ -12,7 +12,6 @@ from .text_files import (
     plain_bytes,
     plain_text,
     read_toml,
-    toml_text,
     toml_values,
 )
 from .workbook import workbook_sheets
@@ -32,7 +31,6 @@ __all__ = [
     "read_json",
     "read_record",
     "read_toml",
-    "toml_text",
     "toml_values",
     "workbook_sheets",
     "xml_tree",

@@ -130,9 +130,13 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
         actions.append(Message("No heading looks like {columns}: rename or add it.", columns=left))
     if other:
         actions.append(Message("Convert first: {headings}.", headings=other))
-    allowed = Message("{required}, or headings that campaign.toml maps to them", required=list(form.required))
-    action = joined(actions)
-    return error("missing_column", form.file, row=header.row, allowed=allowed, action=action)
+    return error(
+        "missing_column",
+        form.file,
+        row=header.row,
+        allowed=Message("{required}, or headings that campaign.toml maps to them", required=list(form.required)),
+        action=joined(actions),
+    )
 
 
 def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
@@ -143,9 +147,15 @@ def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
 
 
 def _repeated(form: TableForm, name: str, row: int) -> Problem:
-    allowed = Message("each column once")
-    action = Message("Rename or remove one of the columns of this name.")
-    return error("unreadable_file", form.file, row=row, column=name, value=name, allowed=allowed, action=action)
+    return error(
+        "unreadable_file",
+        form.file,
+        row=row,
+        column=name,
+        value=name,
+        allowed=Message("each column once"),
+        action=Message("Rename or remove one of the columns of this name."),
+    )
 
 
 def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
@@ -163,8 +173,15 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
         if meant
         else Message("Add it; the unit belongs to the name.")
     )
-    allowed = Message("the columns {required}", required=list(form.required))
-    return error("missing_column", form.file, row=row, column=name, value=meant, allowed=allowed, action=action)
+    return error(
+        "missing_column",
+        form.file,
+        row=row,
+        column=name,
+        value=meant,
+        allowed=Message("the columns {required}", required=list(form.required)),
+        action=action,
+    )
 
 
 def _unknown(form: TableForm, name: str, header: Header) -> Problem:
@@ -252,12 +269,24 @@ def _note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
 
 def _other_unit(form: TableForm, heading: str, column: str, row: int, *, is_number: bool) -> Problem:
     units = units_for(column)
-    allowed = Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0])
-    action = Message("Correct the unit, or convert the numbers.")
-    return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)
+    return error(
+        "other_unit",
+        form.file,
+        row=row,
+        column=column,
+        value=heading,
+        allowed=Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0]),
+        action=Message("Correct the unit, or convert the numbers."),
+    )
 
 
 def _two_units(form: TableForm, heading: str, column: str, row: int) -> Problem:
-    allowed = Message("one unit among {units}", units=units_for(column))
-    action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
-    return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)
+    return error(
+        "other_unit",
+        form.file,
+        row=row,
+        column=column,
+        value=heading,
+        allowed=Message("one unit among {units}", units=units_for(column)),
+        action=Message("Correct the heading, the row of units or campaign.toml: they state different units."),
+    )

@@ -18,8 +18,7 @@ from . import design, draws
 from .design import ReferenceNoise
 
 if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
-    from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+    from ..records import DensitySamples, DropConeTests, FloatArray, PenetrationTests, ShearTests
 
 
 DEFAULT_NOISE: Final = ReferenceNoise()

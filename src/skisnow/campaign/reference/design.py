@@ -28,7 +28,7 @@ from ...geometry import SkiPiece
 from ...snow.published import moessner_2013
 
 if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
+    from ..records import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

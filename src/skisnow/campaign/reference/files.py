@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
 import tempfile
 from pathlib import Path
@@ -10,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..._support.errors import OutputError
-from ..._support.spreadsheet_text import csv_text
 from ..._support.units import DEGREE, MM, N_PER_MM2
 from ..reading.table_forms import LOADING, UNLOADING
 from . import design
@@ -19,7 +20,7 @@ from .campaign import DEFAULT_NOISE, reference_campaign
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from ..._support.arrays import FloatArray
+    from ..records import FloatArray
     from .campaign import ReferenceCampaign
     from .design import ReferenceNoise
 
@@ -114,7 +115,11 @@ def _move_into_place(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _csv(header: Sequence[str], columns: Iterable[Sequence[str]]) -> str:
-    return csv_text([header, *zip(*columns, strict=True)])
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(zip(*columns, strict=True))
+    return stream.getvalue()
 
 
 def _number_texts(values: FloatArray, unit: float, decimals: int) -> list[str]:

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
 from ..parameter_checks import require_not_below_zero
-from .law import FrictionLaw
+from .law import FloatArray, FrictionLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..._support.arrays import FloatArray
 from ..parameter_checks import require_finite, require_not_below_zero
-from .law import FrictionLaw
+from .law import FloatArray, FrictionLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from ..._support.arrays import FloatArray
+FloatArray = npt.NDArray[np.float64]
 
 
 class PointLaw(abc.ABC):

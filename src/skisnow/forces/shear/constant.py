@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..._support.arrays import FloatArray
 from ..measured_ranges import FAILURE_SHEAR_STRESS
 from ..parameter_checks import require_above_zero
-from .law import ShearLaw
+from .law import FloatArray, ShearLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,14 +12,15 @@ import numpy.typing as npt
 
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
-from ...estimation.regressions import DENSITY_KEY
+from ...estimation.observations import DENSITY_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ...campaign.records import Campaign
     from ...estimation import Analysis
-    from ...estimation.regressions import Observations, Source
+    from ...estimation.observations import Observations
+    from ...estimation.regressions import Source
     from ...geometry import GeometryForm
 
 FloatArray = npt.NDArray[np.float64]

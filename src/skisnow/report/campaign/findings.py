@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from markupsafe import Markup
 
-from ..formatting import counted, interval, p_equals, significant, whole
+from ..._support.messages import Message
+from ..formatting import interval, p_equals, significant, whole
 from ..symbols import html, prose
 from .data import numbers, pairs
 from .key_results import SIGNIFICANT
@@ -19,12 +20,12 @@ if TYPE_CHECKING:
     from .data import Json, ReportData
 
 _STEP: Final = {
-    "edge_angle_rad": (math.pi / 2.0, "from 0° to 90°"),
-    "snow_density_kg_per_m3": (100.0, "per 100 kg/m³"),
-    "drop_cone_depth_mm": (10.0, "per 10 mm"),
-    "smp_mean_force_N": (1.0, "per 1 N"),
-    "smp_snow_density_kg_per_m3": (100.0, "per 100 kg/m³"),
-    "H_V_N_per_mm3": (1.0, "per 1 N/mm³"),
+    "edge_angle_rad": (math.pi / 2.0, Message("from 0° to 90°")),
+    "snow_density_kg_per_m3": (100.0, Message("per 100 kg/m³")),
+    "drop_cone_depth_mm": (10.0, Message("per 10 mm")),
+    "smp_mean_force_N": (1.0, Message("per 1 N")),
+    "smp_snow_density_kg_per_m3": (100.0, Message("per 100 kg/m³")),
+    "H_V_N_per_mm3": (1.0, Message("per 1 N/mm³")),
 }
 """Step of each predictor for which a sentence gives the change of the response."""
 MOST_SENTENCES: Final = 40
@@ -39,22 +40,31 @@ def caveats(data: ReportData) -> list[Markup]:
 
 def _missing_uncertainties(data: ReportData) -> list[str]:
     campaign = data.results["campaign"]
-    sentences = []
+    sentences: list[str] = []
     if campaign["gauge_resolution_mm"] is None:
         sentences.append(
-            "The gauge's resolution is not stated: no interval carries a depth uncertainty, and no experiment could be "
-            "flagged as below the resolution. Where depths are small the intervals are then too narrow."
+            Message(
+                "The gauge's resolution is not stated: no interval carries a depth uncertainty, and no experiment "
+                "could be flagged as below the resolution. Where depths are small the intervals are then too narrow."
+            )
         )
     uncertainties = (
-        ("load_uncertainty_N", "uncertainty of the loads", bool(data.penetration)),
-        ("moment_uncertainty_Nm", "uncertainty of the moments", bool(data.shear)),
-        ("lever_arm_uncertainty_mm", "uncertainty of the lever arms", bool(data.shear)),
+        (
+            "load_uncertainty_N",
+            Message("The uncertainty of the loads is not stated; it counts as 0."),
+            data.penetration,
+        ),
+        ("moment_uncertainty_Nm", Message("The uncertainty of the moments is not stated; it counts as 0."), data.shear),
+        (
+            "lever_arm_uncertainty_mm",
+            Message("The uncertainty of the lever arms is not stated; it counts as 0."),
+            data.shear,
+        ),
     )
-    missing = [name for key, name, applies in uncertainties if applies and campaign[key] is None]
-    sentences += [f"The {name} is not stated; it counts as 0." for name in missing]
+    sentences += [sentence for key, sentence, tests in uncertainties if tests and campaign[key] is None]
     if data.shear and all(row["S_f_interval_N_per_mm2"] is None for row in data.shear):
         sentences.append(
-            "No uncertainty that bears on a shear test is stated, so S_f has no intervals for single tests."
+            Message("No uncertainty that bears on a shear test is stated, so S_f has no intervals for single tests.")
         )
     return sentences
 
@@ -62,18 +72,24 @@ def _missing_uncertainties(data: ReportData) -> list[str]:
 def _missing_data(data: ReportData) -> list[str]:
     sentences: list[str] = []
     if not data.penetration:
-        sentences.append("The campaign has no penetration experiments: there is no H_V and no choice between laws.")
+        sentences.append(
+            Message("The campaign has no penetration experiments: there is no H_V and no choice between laws.")
+        )
     if not data.shear:
-        sentences.append("The campaign has no shear experiments: there is no S_f.")
+        sentences.append(Message("The campaign has no shear experiments: there is no S_f."))
     densities = np.concatenate((data.penetration_density, data.shear_density))
     if not np.isfinite(densities).any():
-        sentences.append("No snow density is given at a used experiment: the regressions on density have no data.")
+        sentences.append(
+            Message("No snow density is given at a used experiment: the regressions on density have no data.")
+        )
     if data.campaign.drop_cone is None and not _has_drop_cone(data):
-        sentences.append("No drop-cone test is given: the regression of H_V on drop-cone depth has no data.")
+        sentences.append(Message("No drop-cone test is given: the regression of H_V on drop-cone depth has no data."))
     if data.results["provenance"]["options"]["geometry"] == "paper":
         sentences.append(
-            "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its base "
-            "is under the surface (flagged beyond_tool)."
+            Message(
+                "The paper's plain wedge was chosen: an edged tool counts as a wedge at every depth, also where its "
+                "base is under the surface (flagged beyond_tool)."
+            )
         )
     return sentences
 
@@ -87,11 +103,11 @@ def readings_used(data: ReportData) -> Markup:
     """Numbers of readings and series behind the nine candidate models."""
     row = data.results["penetration"]["models"][0]
     return prose(
-        "All nine candidate models are fitted to the same {n} of {m}. With b = 1 the last residual of a series is zero "
-        "by definition, because its reading defines the hardness: the RMSE without the defining reading leaves these "
-        "out and divides by n − m = {free}.",
-        n=counted(row["n"], "reading"),
-        m=counted(row["n_series"], "series", "series"),
+        "All nine candidate models are fitted to the same {n} readings of {m} series. With b = 1 the last residual of "
+        "a series is zero by definition, because its reading defines the hardness: the RMSE without the defining "
+        "reading leaves these out and divides by n − m = {free}.",
+        n=whole(row["n"]),
+        m=whole(row["n_series"]),
         free=whole(row["n"] - row["n_series"]),
     )
 
@@ -119,22 +135,20 @@ def seating_findings(data: ReportData) -> list[Markup]:
     rows = data.seating
     without = int(data.penetration_used.sum()) - len(rows)
     if not rows:
-        return [html("No used series has the readings that an offset can be estimated from.")]
+        return [prose("No used series has the readings that an offset can be estimated from.")]
     half_widths = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
     sentences = [
         prose(
-            "{shown} of {all} have an offset whose 95 % interval leaves out zero; the median half-width of the "
-            "intervals is {half} mm. {file} lists every offset.",
+            "{shown} of {all} used series have an offset whose 95 % interval leaves out zero; the median half-width of "
+            "the intervals is {half} mm. {file} lists every offset.",
             shown=whole(count_resolved_offsets(rows)),
-            all=counted(len(rows), "used series", "used series"),
+            all=whole(len(rows)),
             half=significant(float(np.nanmedian(half_widths))),
             file=_table_file("seating", data),
         )
     ]
     if without:
-        sentences.append(
-            prose("For {n} no offset could be estimated.", n=counted(without, "used series", "used series"))
-        )
+        sentences.append(prose("For {n} used series no offset could be estimated.", n=whole(without)))
     return sentences
 
 
@@ -142,14 +156,14 @@ def unloading_findings(data: ReportData) -> list[Markup]:
     """Number of series whose k_u / H_V has an upper end."""
     used = [row for row in data.unloaded if row["used"]]
     if not used:
-        return [html("No used series was unloaded.")]
+        return [prose("No used series was unloaded.")]
     resolved = [row for row in used if row["unloading_ratio_interval"] is not None]
     return [
         prose(
-            "{resolved} of {all} give both ends of k_u / H_V; of the others only the lower end is known, the "
-            "inverse of the upper end of H_V / k_u. {file} lists every series.",
+            "{resolved} of {all} used series with unloading give both ends of k_u / H_V; of the others only the lower "
+            "end is known, the inverse of the upper end of H_V / k_u. {file} lists every series.",
             resolved=whole(len(resolved)),
-            all=counted(len(used), "used series with unloading", "used series with unloading"),
+            all=whole(len(used)),
             file=_table_file("unloading", data),
         )
     ]
@@ -164,65 +178,55 @@ def regression_sentences(data: ReportData) -> list[Markup]:
     rows = data.results["regressions"]
     sentences = [_sentence(row) for row in rows[:MOST_SENTENCES]]
     if len(rows) > MOST_SENTENCES:
-        sentences.append(html(f"{len(rows) - MOST_SENTENCES} further regressions are only in the table."))
+        sentences.append(
+            prose("{n_rows} further regressions are only in the table.", n_rows=len(rows) - MOST_SENTENCES)
+        )
     return sentences
 
 
 def _sentence(row: Json) -> Markup:
-    head = prose(
-        "{response} on {predictor}, {group} (n = {n}):",
+    if row["b"] is None and row["n"] == 0:
+        return _on(row, Message("no data."))
+    if row["b"] is None:
+        return _on(row, Message("no slope: too few experiments, or the predictor does not vary."))
+    if row["withheld"]:
+        judgement = prose(
+            "not judged: {reason}; the slope over them is {change} {unit} {step}.",
+            reason=row["withheld"], **_slope(row),
+        )  # fmt: skip
+        return _on(row, judgement)
+    if row["p"] is None:
+        return _on(row, Message("too few experiments for an interval or a test."))
+    if row["p"] < SIGNIFICANT:
+        judgement = prose(
+            "significant ({p}); {response} changes by {change} {unit} {step}, 95 % interval {ends}.",
+            p=p_equals(row["p"]), ends=_changes(row, row["interval"][1]), **_slope(row),
+        )  # fmt: skip
+    else:
+        judgement = prose(
+            "not significant ({p}); yet {response} could still change by anything in {ends} {unit} {step} (95 % "
+            "interval; estimate {change}).",
+            p=p_equals(row["p"]), ends=_changes(row, row["interval"][1]), **_slope(row),
+        )  # fmt: skip
+    return html(" ").join([_on(row, judgement), *_by_site(row)])
+
+
+def _on(row: Json, judgement: str) -> Markup:
+    return prose(
+        "{response} on {predictor}, {group} (n = {n}): {judgement}",
         response=html(QUANTITY[row["response"]][0]),
         predictor=html(QUANTITY[row["terms"][1]][0]),
-        group="all sites" if row["group"] == "all" else row["group"],
+        group=Message("all sites") if row["group"] == "all" else row["group"],
         n=row["n"],
-    )
-    if row["b"] is None:
-        reason = " no data." if row["n"] == 0 else " no slope: too few experiments, or the predictor does not vary."
-        return head + html(reason)
-    if row["withheld"]:
-        return head + _not_judged(row)
-    if row["p"] is None:
-        return head + html(" too few experiments for an interval or a test.")
-    return head + (_significant(row) if row["p"] < SIGNIFICANT else _not_significant(row))
-
-
-def _significant(row: Json) -> Markup:
-    return prose(
-        " significant ({p}); {response} changes by {change} {unit} {step}, 95 % interval {ends}.",
-        p=p_equals(row["p"]),
-        response=html(QUANTITY[row["response"]][0]),
-        change=_change(row, row["b"][1]),
-        unit=QUANTITY[row["response"]][1],
-        step=_STEP[row["terms"][1]][1],
-        ends=_changes(row, row["interval"][1]),
-    ) + _by_site(row)
-
-
-def _not_significant(row: Json) -> Markup:
-    return prose(
-        " not significant ({p}); yet {response} could still change by anything in {ends} {unit} {step} (95 % interval; "
-        "estimate {change}).",
-        p=p_equals(row["p"]),
-        response=html(QUANTITY[row["response"]][0]),
-        ends=_changes(row, row["interval"][1]),
-        unit=QUANTITY[row["response"]][1],
-        step=_STEP[row["terms"][1]][1],
-        change=_change(row, row["b"][1]),
-    ) + _by_site(row)
-
-
-def _not_judged(row: Json) -> Markup:
-    return prose(
-        " not judged: {reason}; the slope over them is {change} {unit} {step}.",
-        reason=row["withheld"],
-        change=_change(row, row["b"][1]),
-        unit=QUANTITY[row["response"]][1],
-        step=_STEP[row["terms"][1]][1],
+        judgement=judgement if isinstance(judgement, Markup) else html(judgement),
     )
 
 
-def _change(row: Json, slope: float) -> str:
-    return significant(slope * _STEP[row["terms"][1]][0])
+def _slope(row: Json) -> dict[str, Any]:
+    """Response with its unit, change over the step of the predictor, and that step, for a sentence."""
+    (response, unit), (factor, step) = QUANTITY[row["response"]], _STEP[row["terms"][1]]
+    change = significant(row["b"][1] * factor)
+    return {"response": html(response), "unit": unit, "change": change, "step": step}
 
 
 def _changes(row: Json, slopes: list[float] | None) -> str:
@@ -230,16 +234,22 @@ def _changes(row: Json, slopes: list[float] | None) -> str:
     return interval(None if slopes is None else [end * factor for end in slopes])
 
 
-def _by_site(row: Json) -> Markup:
+def _by_site(row: Json) -> list[Markup]:
+    """Sentence about the interval with sites as clusters; empty without one."""
     if row["interval_by_site"] is None:
-        return html("")
-    ends = row["interval_by_site"][1]
-    if ends is None:
-        return html(" The sites do not give a separate interval.")
-    contains_zero = ends[0] <= 0.0 <= ends[1]
-    sentence = prose(" With sites as clusters the interval is {ends}", ends=_changes(row, ends))
+        return []
+    pair = row["interval_by_site"][1]
+    if pair is None:
+        return [prose("The sites do not give a separate interval.")]
+    contains_zero, ends = pair[0] <= 0.0 <= pair[1], _changes(row, pair)
     if contains_zero and row["p"] < SIGNIFICANT:
-        return sentence + html(": it contains zero, so what looks significant may be a difference between a few sites.")
+        return [
+            prose(
+                "With sites as clusters the interval is {ends}: it contains zero, so what looks significant may be a "
+                "difference between a few sites.",
+                ends=ends,
+            )
+        ]
     if not contains_zero and row["p"] >= SIGNIFICANT:
-        return sentence + html(": it leaves out zero.")
-    return sentence + html(".")
+        return [prose("With sites as clusters the interval is {ends}: it leaves out zero.", ends=ends)]
+    return [prose("With sites as clusters the interval is {ends}.", ends=ends)]

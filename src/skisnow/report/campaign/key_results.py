@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from markupsafe import Markup
 
+from ..._support.messages import Message, template
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
 from ..formatting import counted, interval, p_equals, significant, whole
@@ -29,9 +30,9 @@ def key_results(data: ReportData) -> list[Markup]:
 
 def headline(data: ReportData) -> Markup:
     """Mean H_V with its interval, or S_f in a campaign without H_V; empty without either, and with several sites."""
-    for key, name, unit in (
-        ("H_V_N_per_mm3", "Snow hardness H_V", "N/mm³"),
-        ("S_f_N_per_mm2", "Failure shear stress S_f", "N/mm²"),
+    for key, sentence, unit in (
+        ("H_V_N_per_mm3", template("Snow hardness H_V {value}, {ends}, over {sites}."), "N/mm³"),
+        ("S_f_N_per_mm2", template("Failure shear stress S_f {value}, {ends}, over {sites}."), "N/mm²"),
     ):
         row = own_value(data, key)
         if row is not None and len(_sites(data, key)) > 1:
@@ -39,11 +40,12 @@ def headline(data: ReportData) -> Markup:
         if row is not None:
             ends = row["own_interval"]
             return prose(
-                "{name} {value}, {ends}, over {sites}.",
-                name=html(name),
+                sentence,
                 value=Markup("<strong>{} {}</strong>").format(significant(row["own"]), unit),
-                ends="without an interval" if ends is None else f"95 % interval {interval(ends)} {unit}",
-                sites=counted(len(_sites(data, key)), "site"),
+                ends=Message("without an interval")
+                if ends is None
+                else Message("95 % interval {ends} {unit}", ends=interval(ends), unit=unit),
+                sites=counted(len(_sites(data, key)), "{count} site", "{count} sites"),
             )
     return Markup("")
 
@@ -61,8 +63,11 @@ def own_value(data: ReportData, quantity: str) -> Json | None:
 
 
 def _hardness(data: ReportData) -> Markup | None:
-    quantity = Quantity("Snow hardness H_V: geometric mean", "H_V", "H_V_N_per_mm3", "N/mm³", "penetration experiment")
-    return _mean(data, quantity, data.penetration, len(data.hardness), data.penetration_site)
+    n = counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments")
+    used = Message("{used} of {n} used", used=whole(len(data.hardness)), n=n)
+    mean_name = Message("Snow hardness H_V: geometric mean")
+    quantity = Quantity(mean_name, "H_V", "H_V_N_per_mm3", "N/mm³", n, used, _site_count(data.penetration_site))
+    return _mean(data, quantity) if data.penetration else None
 
 
 def _unloading(data: ReportData) -> Markup | None:
@@ -76,7 +81,7 @@ def _unloading(data: ReportData) -> Markup | None:
         bound = (
             prose("above {lower}", lower=significant(1.0 / upper_rebound))
             if upper_rebound and upper_rebound > 0
-            else html("not resolved")
+            else prose("not resolved")
         )
         return prose("Unloading ratio k_u / H_V: {bound}, from {n} series.", bound=bound, n=whole(row["n"]))
     return prose(
@@ -88,8 +93,15 @@ def _unloading(data: ReportData) -> Markup | None:
 
 
 def _stress(data: ReportData) -> Markup | None:
-    quantity = Quantity("Failure shear stress S_f: mean", "S_f", "S_f_N_per_mm2", "N/mm²", "shear experiment")
-    return _mean(data, quantity, data.shear, len(data.stress), data.shear_site)
+    n = counted(len(data.shear), "{count} shear experiment", "{count} shear experiments")
+    used = Message("{used} of {n} used", used=whole(len(data.stress)), n=n)
+    mean_name = Message("Failure shear stress S_f: mean")
+    quantity = Quantity(mean_name, "S_f", "S_f_N_per_mm2", "N/mm²", n, used, _site_count(data.shear_site))
+    return _mean(data, quantity) if data.shear else None
+
+
+def _site_count(sites: TextArray) -> int:
+    return len(set(sites.tolist()))
 
 
 def _displacement(data: ReportData) -> Markup | None:
@@ -102,47 +114,47 @@ def _displacement(data: ReportData) -> Markup | None:
         "Shear displacement u_y: geometric mean {value} mm{ends}, from {n} with turning angles.",
         value=_strong(row["shear_displacement_mm"]),
         ends="" if ends is None else prose(" (95 % interval {pair} mm)", pair=interval(ends)),
-        n=counted(row["n"], "shear experiment"),
+        n=counted(row["n"], "{count} shear experiment", "{count} shear experiments"),
     )
 
 
 class Quantity(NamedTuple):
-    """A measured quantity: name of its mean, symbol, key, unit and kind of experiment."""
+    """A measured quantity: name of its mean, symbol, key, unit, and numbers of its experiments and sites in words."""
 
     mean_name: str
     symbol: str
     key: str
     unit: str
-    experiment: str
+    experiments: str
+    used: str
+    sites: int
 
 
-def _mean(data: ReportData, quantity: Quantity, experiments: list[Json], used: int, site: TextArray) -> Markup | None:
-    if not experiments:
-        return None
-    n = counted(len(experiments), quantity.experiment)
-    row = own_value(data, quantity.key)
+def _mean(data: ReportData, quantity: Quantity) -> Markup:
+    row, sites = own_value(data, quantity.key), quantity.sites
     if row is None:
-        return prose("None of the {n} can be used, so there is no {symbol}.", n=n, symbol=html(quantity.symbol))
-    sites = len(set(site.tolist()))
+        return prose(
+            "None of the {n} can be used, so there is no {symbol}.",
+            n=quantity.experiments, symbol=html(quantity.symbol),
+        )  # fmt: skip
     if 1 < sites < FEWEST_SITES:
-        return _few_sites(data, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
+        return _few_sites(data, quantity, row)
     if sites > 1:
-        return _many_sites(data, quantity, row, prose("{used} of {n} used", used=whole(used), n=n))
+        return _many_sites(data, quantity, row)
     return prose(
-        "{mean_name} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used} of {n} used, at {sites}.",
+        "{mean_name} {value} {unit}{ends}, single experiments {low} to {high} {unit}; {used}, at {sites}.",
         mean_name=html(quantity.mean_name),
         value=_strong(row["own"]),
         unit=quantity.unit,
         ends=_ends(row["own_interval"], quantity.unit, sites),
         low=significant(row["own_range"][0]),
         high=significant(row["own_range"][1]),
-        used=whole(used),
-        n=n,
-        sites=counted(sites, "site"),
+        used=quantity.used,
+        sites=counted(sites, "{count} site", "{count} sites"),
     )
 
 
-def _many_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
+def _many_sites(data: ReportData, quantity: Quantity, pooled: Json) -> Markup:
     """Means of the sites from the smallest to the largest, then the mean over all sites."""
     rows = [row for row in data.results["site_means"] if row["quantity"] == quantity.key and row["mean"] is not None]
     rows.sort(key=lambda row: row["mean"])
@@ -155,14 +167,14 @@ def _many_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup
         high=_strong(rows[-1]["mean"]),
         hardest=rows[-1]["site"],
         unit=quantity.unit,
-        sites=counted(len(rows), "site"),
-        used=used,
+        sites=counted(len(rows), "{count} site", "{count} sites"),
+        used=quantity.used,
         value=significant(pooled["own"]),
         ends=_ends(pooled["own_interval"], quantity.unit, len(rows)),
     )
 
 
-def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup) -> Markup:
+def _few_sites(data: ReportData, quantity: Quantity, pooled: Json) -> Markup:
     """Means of the sites, and the mean over all sites without an interval."""
     sites = [row for row in data.results["site_means"] if row["quantity"] == quantity.key]
     site_means = [
@@ -177,15 +189,15 @@ def _few_sites(data: ReportData, quantity: Quantity, pooled: Json, used: Markup)
         for row in sites
     ]
     return prose(
-        "{mean_name} of each site: {site_means}; {used}. Over the {sites} together {value} {unit}, without "
-        "an interval: {fewer} sites do not show how sites scatter. Single experiments {low} to {high} {unit}.",
+        "{mean_name} of each site: {site_means}; {used}. Over the {sites} together {value} {unit}, without an "
+        "interval: fewer than {fewest} sites do not show how sites scatter. Single experiments {low} to {high} {unit}.",
         mean_name=html(quantity.mean_name),
         site_means=html("; ").join(site_means),
-        used=used,
-        sites=counted(len(sites), "site"),
+        used=quantity.used,
+        sites=counted(len(sites), "{count} site", "{count} sites"),
         value=significant(pooled["own"]),
         unit=quantity.unit,
-        fewer=f"fewer than {FEWEST_SITES}",
+        fewest=FEWEST_SITES,
         low=significant(pooled["own_range"][0]),
         high=significant(pooled["own_range"][1]),
     )
@@ -197,30 +209,29 @@ def _strong(value: float) -> Markup:
 
 def _ends(pair: list[float] | None, unit: str, sites: int) -> Markup:
     if pair is None:
-        return html(" (no interval: the scatter is not known)")
-    source = "from the scatter between sites" if sites > 1 else "from the scatter between experiments"
-    return prose(" (95 % interval {pair} {unit}, {source})", pair=interval(pair), unit=unit, source=source)
+        return prose(" (no interval: the scatter is not known)")
+    if sites > 1:
+        return prose(" (95 % interval {pair} {unit}, from the scatter between sites)", pair=interval(pair), unit=unit)
+    return prose(" (95 % interval {pair} {unit}, from the scatter between experiments)", pair=interval(pair), unit=unit)
 
 
 def _law(data: ReportData) -> Markup | None:
     selected = data.results["penetration"]["selected"]
     if selected is None:
         return None
-    same = " This is the law that the paper proposes (its Eqn 12)." if selected["id"] == "H_V:a=none,b=one" else ""
-    return prose(
-        "Selected law of the penetration force: {law}. {reason}{same}",
-        law=Markup("<strong>F = {}</strong>").format(html(formula(selected["id"]))),
-        reason=_reason(data),
-        same=same,
-    )
+    law = Markup("<strong>F = {}</strong>").format(html(formula(selected["id"])))
+    sentences = [prose("Selected law of the penetration force: {law}.", law=law), _reason(data)]
+    if selected["id"] == "H_V:a=none,b=one":
+        sentences.append(prose("This is the law that the paper proposes (its Eqn 12)."))
+    return Markup(" ").join(sentences)
 
 
 def _reason(data: ReportData) -> Markup:
     """Reason for the selection, with the names of the models instead of their ids."""
-    reason: str = data.results["penetration"]["selected"]["reason"]
-    for row in data.results["penetration"]["models"]:
-        reason = reason.replace(f"of {row['id']}", f"of the row {model_name(row['id'])}")
-    return html(reason)
+    reason: Message = data.results["penetration"]["selected"]["reason"]
+    names = {row["id"]: Message("the row {name}", name=model_name(row["id"]))
+             for row in data.results["penetration"]["models"]}  # fmt: skip
+    return html(Message(reason.template, **{key: names.get(value, value) for key, value in reason.fields.items()}))
 
 
 def _relations(data: ReportData) -> Markup | None:
@@ -228,29 +239,32 @@ def _relations(data: ReportData) -> Markup | None:
     withheld = [row for row in data.results["regressions"] if row["withheld"]]
     if not judged and not withheld:
         return None
-    return prose(
-        "Relations: significant at 5 %: {yes}; not significant: {no}{withheld}. How large each slope could still be "
-        "is listed with the regressions.",
-        withheld=prose(
-            "; not judged, as the predictor takes fewer than {few} different values: {rows}",
-            few=FEWEST_VALUES,
-            rows=_listed(withheld),
-        )
-        if withheld
-        else "",
-        yes=_listed([row for row in judged if row["p"] < SIGNIFICANT]),
-        no=_listed([row for row in judged if row["p"] >= SIGNIFICANT]),
-    )
+    lists = {
+        "yes": _listed([row for row in judged if row["p"] < SIGNIFICANT]),
+        "no": _listed([row for row in judged if row["p"] >= SIGNIFICANT]),
+    }
+    if withheld:
+        sentence = prose(
+            "Relations: significant at 5 %: {yes}; not significant: {no}; not judged, as the predictor takes fewer "
+            "than {few} different values: {rows}.",
+            few=FEWEST_VALUES, rows=_listed(withheld), **lists,
+        )  # fmt: skip
+    else:
+        sentence = prose("Relations: significant at 5 %: {yes}; not significant: {no}.", **lists)
+    return prose("{relations} How large each slope could still be is listed with the regressions.", relations=sentence)
 
 
-def _cluster_remark(row: Json) -> str:
-    """Remark on a significant slope whose interval with sites as clusters contains zero."""
-    if row["group"] != "all" or row["p"] >= SIGNIFICANT or row["interval_by_site"] is None:
+def _significance(row: Json) -> str:
+    """The p value in brackets, with a remark on the interval with sites as clusters; empty without a test."""
+    if row["p"] is None:
         return ""
+    p = p_equals(row["p"])
+    if row["group"] != "all" or row["p"] >= SIGNIFICANT or row["interval_by_site"] is None:
+        return f" ({p})"
     pair = row["interval_by_site"][1]
     if pair is None:
-        return "; the sites are too few or too alike to tell"
-    return "" if pair[0] > 0 or pair[1] < 0 else "; not with sites as clusters"
+        return Message(" ({p}; the sites are too few or too alike to tell)", p=p)
+    return f" ({p})" if pair[0] > 0 or pair[1] < 0 else Message(" ({p}; not with sites as clusters)", p=p)
 
 
 def _listed(rows: list[Json]) -> Markup:
@@ -259,11 +273,11 @@ def _listed(rows: list[Json]) -> Markup:
             "{response} on {predictor}{group}{p}",
             response=html(QUANTITY[row["response"]][0]),
             predictor=html(QUANTITY[row["terms"][1]][0]),
-            group="" if row["group"] == "all" else f" at {row['group']}",
-            p="" if row["p"] is None else f" ({p_equals(row['p'])}{_cluster_remark(row)})",
+            group="" if row["group"] == "all" else Message(" at {site}", site=row["group"]),
+            p=_significance(row),
         )
         for row in rows[:LISTED]
     ]
     if len(rows) > LISTED:
-        named.append(html(f"{whole(len(rows) - LISTED)} more"))
+        named.append(prose("{n_rows} more", n_rows=whole(len(rows) - LISTED)))
     return html(", ").join(named) if named else html("none")

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.lines import Line2D
 
+from ..._support.messages import Message
+from ...estimation.models import FORMS
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
     from .data import FloatArray, Json, ReportData
 
 MOST_GROUPS: Final = 12
-TOO_FEW: Final = "the series are too few, or all at one edge angle"
+TOO_FEW: Final = Message("the series are too few, or all at one edge angle")
 _WIDE_RATIO: Final = 20.0
 
 
@@ -44,9 +46,9 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
     """Dot chart of the rmse in this campaign (filled) and in the paper (open)."""
     rows = [row for row in data.results["penetration"]["models"] if row["n"]]
     if not rows:
-        return LeftOut("model_rmse", "rmse of the nine laws", "no penetration experiment is used")
+        return LeftOut("model_rmse", Message("rmse of the nine laws"), Message("no penetration experiment is used"))
     if data.results["penetration"]["selected"] is None:
-        return LeftOut("model_rmse", "rmse of the nine laws", TOO_FEW)
+        return LeftOut("model_rmse", Message("rmse of the nine laws"), TOO_FEW)
     own = [row["rmse_N"] for row in rows]
     printed = [PRINTED_RMSE_N.get(row["id"], math.nan) for row in rows]
     finite = [value for value in own + printed if math.isfinite(value)]
@@ -62,21 +64,29 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
         axes.set_xscale("log")
     else:
         axes.set_xlim(0.0, max(finite) * 1.06)
-    axes.set_xlabel("rmse over all readings (N)")
+    axes.set_xlabel(Message("rmse over all readings (N)"))
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="x", color="#E6E6E6", linewidth=0.5)
     axes.set_axisbelow(True)
     mark_synthetic(data, axes)
     handles = [
-        Line2D([], [], linestyle="none", marker="o", color=BLUE, markersize=4.4, label="this campaign"),
-        Line2D([], [], linestyle="none", marker="D", color=VERMILLION, markerfacecolor="white", label="paper, printed"),
+        Line2D([], [], linestyle="none", marker="o", color=BLUE, markersize=4.4, label=Message("this campaign")),
+        Line2D(
+            [],
+            [],
+            linestyle="none",
+            marker="D",
+            color=VERMILLION,
+            markerfacecolor="white",
+            label=Message("paper, printed"),
+        ),
     ]
     legend_below(figure, handles)
     caption = prose(
         "Root-mean-square error of the nine laws over all readings, with the values printed by Mössner and others "
         "(2013) for their data, which are not public. The pointer marks the selected law."
     )
-    alt = "Dot chart of the rmse of nine laws, this campaign and the paper."
+    alt = Message("Dot chart of the rmse of nine laws, this campaign and the paper.")
     return Drawing("model_rmse", caption, alt, figure)
 
 
@@ -88,17 +98,19 @@ def _label(row: Json, data: ReportData) -> str:
 
 def _model_label(row: Json) -> str:
     if row["a"] == "none":
-        return "$b = 1$" if row["b"] == "one" else f"$b$ {row['b']}"
-    return f"$a$, $b$ {row['b']}"
+        return "$b = 1$" if row["b"] == "one" else f"$b$ {FORMS[row['b']]}"
+    return f"$a$, $b$ {FORMS[row['b']]}"
 
 
 def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:  # noqa: ARG001
     """Force of the selected model minus applied load, with median and 90 % range along the load."""
     penetration = data.analysis.penetration
     if penetration is None or penetration.table is None:
-        return LeftOut("residuals", "Residuals of the selected law", "no penetration experiment is used")
+        return LeftOut(
+            "residuals", Message("Residuals of the selected law"), Message("no penetration experiment is used")
+        )
     if penetration.selected is None:
-        return LeftOut("residuals", "Residuals of the selected law", TOO_FEW)
+        return LeftOut("residuals", Message("Residuals of the selected law"), TOO_FEW)
     readings = penetration.readings.of(penetration.screened.used)
     selected = penetration.selected
     hardness = penetration.hardness[selected.model.hardness].value[penetration.screened.used]
@@ -119,8 +131,8 @@ def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         zorder=2,
     )
     _draw_ranges(axes, readings.load, residual)
-    axes.set_xlabel("load $F$ (N)")
-    axes.set_ylabel("law − load (N)")
+    axes.set_xlabel(Message("load $F$ (N)"))
+    axes.set_ylabel(Message("law − load (N)"))
     axes.set_xlim(0.0, float(readings.load.max()) * 1.05)
     mark_synthetic(data, axes)
     caption = prose(
@@ -132,7 +144,7 @@ def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         m=whole(readings.n_series),
         rmse=significant(selected.rmse, 4),
     )
-    alt = "Residuals of the selected law in newtons against the load in newtons."
+    alt = Message("Residuals of the selected law in newtons against the load in newtons.")
     return Drawing("residuals", caption, alt, figure, points=readings.n)
 
 

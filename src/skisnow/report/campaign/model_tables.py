@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from ..._support.messages import Message, joined
 from ...estimation.models import MODELS
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..table import ROWS_IN_HTML, Column, Table, record_table
@@ -14,10 +15,10 @@ if TYPE_CHECKING:
 
 COEFFICIENTS: Final = ("a0", "a1", "b0", "b1")
 _COEFFICIENT_COLUMNS: Final = tuple(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS)
-_RMSE: Final = Column("rmse_N", "RMSE with 1/n", unit="N", digits=4)
-_RMSE_FREE: Final = Column("rmse_free_N", "RMSE without the defining reading", unit="N", digits=4)
-_AT_BOUND: Final = Column("at_bound", "on its bound", "codes")
-_UNIT_NOTE: Final = (
+_RMSE: Final = Column("rmse_N", Message("RMSE with 1/n"), unit="N", digits=4)
+_RMSE_FREE: Final = Column("rmse_free_N", Message("RMSE without the defining reading"), unit="N", digits=4)
+_AT_BOUND: Final = Column("at_bound", Message("on its bound"), "codes")
+_UNIT_NOTE: Final = Message(
     "a = a_0 + a_1 ϑ and b = b_0 + b_1 ϑ with F in N, A in mm², V in mm³, ϑ in rad, H_e in N/mm, H_A in N/mm², H_V in "
     "N/mm³: with H_e, H_A, H_V in this order a_0 is in 1/mm, 1, mm and b_0 in 1/mm², 1/mm, 1."
 )
@@ -50,15 +51,15 @@ def models_table(data: ReportData) -> Table:
     penetration = data.results["penetration"]
     selected_id = penetration["selected"]["id"] if penetration["selected"] else None
     columns = (
-        Column("row", "Model", "words"),
-        Column("selected", "sel.", "tick"),
+        Column("row", Message("Model"), "words"),
+        Column("selected", Message("sel."), "tick"),
         *_COEFFICIENT_COLUMNS,
         _AT_BOUND,
-        Column("n_parameters", "fitted", "count"),
+        Column("n_parameters", Message("fitted"), "count"),
         _RMSE,
-        Column("rmse_dof_N", "RMSE with 1/(n − p)", unit="N", digits=4),
+        Column("rmse_dof_N", Message("RMSE with 1/(n − p)"), unit="N", digits=4),
         _RMSE_FREE,
-        Column("printed_rmse_N", "paper, printed", unit="N"),
+        Column("printed_rmse_N", Message("paper, printed"), unit="N"),
     )
     rows = [
         (
@@ -73,12 +74,21 @@ def models_table(data: ReportData) -> Table:
     ]
     return Table(
         "models",
-        "The nine candidate models F = H (a(ϑ) A + b(ϑ) V) of the penetration force (Eqn 6), with 95 % intervals from "
-        "resampling whole experiments, and the rmse printed by Mössner and others (2013).",
+        Message(
+            "The nine candidate models F = H (a(ϑ) A + b(ϑ) V) of the penetration force (Eqn 6), with 95 % intervals "
+            "from resampling whole experiments, and the rmse printed by Mössner and others (2013)."
+        ),
         columns,
         rows,
-        note=_UNIT_NOTE + " b = 1 is fixed, not fitted. The paper's own data are not "
-        "public: its rmse are for its snow and its loads, not a target for others.",
+        note=joined(
+            [
+                _UNIT_NOTE,
+                Message(
+                    "b = 1 is fixed, not fitted. The paper's own data are not public: its rmse are for its snow and "
+                    "its loads, not a target for others."
+                ),
+            ]
+        ),
         rows_in_html=_rows_in_html(data),
     )
 
@@ -107,16 +117,16 @@ def nested_table(data: ReportData) -> Table:
         for row in data.results["penetration"]["tests"]
     ]
     columns = (
-        Column("full", "Fuller model", "words"),
-        Column("reduced", "Simpler model", "words"),
+        Column("full", Message("Fuller model"), "words"),
+        Column("reduced", Message("Simpler model"), "words"),
         Column("F", "F"),
-        Column("df1", "df 1", "count"),
-        Column("df2", "df 2", "count"),
+        Column("df1", Message("df 1"), "count"),
+        Column("df2", Message("df 2"), "count"),
         Column("p", "p", "p"),
-        Column("rmse_change_percent", "rmse grows by", unit="%"),
-        Column("valid_classically", "F distribution valid", "yes"),
+        Column("rmse_change_percent", Message("rmse grows by"), unit="%"),
+        Column("valid_classically", Message("F distribution valid"), "yes"),
     )
-    caption = "F tests of each simpler law against the fuller one that contains it, and the effect size."
+    caption = Message("F tests of each simpler law against the fuller one that contains it, and the effect size.")
     return record_table("model_tests", caption, columns, records, rows_in_html=_rows_in_html(data))
 
 
@@ -131,26 +141,30 @@ def errors_in_depth_table(data: ReportData) -> Table:
             *(row[key] for key in ("at_bound", "rmse_N", "rmse_free_N")),
         )
         for fits in zip(penetration["models"], penetration["errors_in_depth"]["models"], strict=True)
-        for procedure, row in zip(("the paper's", "errors in depth"), fits, strict=True)
+        for procedure, row in zip((Message("the paper's"), Message("errors in depth")), fits, strict=True)
         if row["n"]
     ]
     return Table(
         "errors_in_depth",
-        "The nine laws by two procedures: the paper's, with H from each series' largest load and all error in the "
-        "load; and with errors in depth and load, H estimated from all readings of a series.",
+        Message(
+            "The nine laws by two procedures: the paper's, with H from each series' largest load and all error in the "
+            "load; and with errors in depth and load, H estimated from all readings of a series."
+        ),
         (
-            Column("row", "Model", "words"),
-            Column("procedure", "procedure", "words"),
+            Column("row", Message("Model"), "words"),
+            Column("procedure", Message("procedure"), "words"),
             *_COEFFICIENT_COLUMNS,
             _AT_BOUND,
             _RMSE,
             _RMSE_FREE,
         ),
         rows,
-        note="No intervals with errors in depth: H of each series comes from the same readings, so a bootstrap of "
-        "whole experiments says too little of b; in simulated campaigns it covered b in 7 to 90 %. Both rmse are "
-        "unweighted and in force. The second procedure minimises weighted squares and does "
-        "not pass through each series' last reading: the two columns of rmse do not rank the procedures.",
+        note=Message(
+            "No intervals with errors in depth: H of each series comes from the same readings, so a bootstrap of whole "
+            "experiments says too little of b; in simulated campaigns it covered b in 7 to 90 %. Both rmse are "
+            "unweighted and in force. The second procedure minimises weighted squares and does not pass through each "
+            "series' last reading: the two columns of rmse do not rank the procedures."
+        ),
         rows_in_html=_rows_in_html(data),
     )
 
@@ -171,11 +185,11 @@ def fitted_hardness_table(data: ReportData) -> Table:
         EXPERIMENT,
         SITE,
         USED,
-        Column("H_V_N_per_mm3", "H_V, largest load", "estimate", "N/mm³", interval="H_V_interval_N_per_mm3"),
-        Column("H_V_fitted_N_per_mm3", "H_V, all readings", "estimate", "N/mm³", interval="fitted_interval"),
-        Column("relative_scatter", "relative scatter s"),
+        Column("H_V_N_per_mm3", Message("H_V, largest load"), "estimate", "N/mm³", interval="H_V_interval_N_per_mm3"),
+        Column("H_V_fitted_N_per_mm3", Message("H_V, all readings"), "estimate", "N/mm³", interval="fitted_interval"),
+        Column("relative_scatter", Message("relative scatter s")),
     )
-    caption = (
+    caption = Message(
         "H_V of each experiment from its largest load (Eqn 1) and from all its readings with errors in depth and load."
     )
     return record_table("hardness_by_procedure", caption, columns, records, rows_in_html=0)

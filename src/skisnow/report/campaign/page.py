@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 from markupsafe import Markup
 
 from ..._support.environment import paused_collector
-from ..._support.errors import ParameterError
-from ..._support.language import ENGLISH, require_language
-from ..._support.messages import Message
+from ..._support.errors import ParameterError, require_language
+from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import prepare_folder, staged, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
@@ -23,10 +22,8 @@ from ..figures.figure_files import picture_files, render_pictures, silent, write
 from ..figures.style import site_styles
 from ..formatting import counted, days_words, moment_words, significant, whole
 from ..sheet import render_template
-from ..symbols import figure_text
 from ..table import table_csv, table_html
 from ..table_latex import table_latex
-from ..translated import translated_html
 from .data import ReportData
 from .findings import (
     caveats,
@@ -54,19 +51,19 @@ if TYPE_CHECKING:
 
 RESULTS: Final = "results.json"
 SECTIONS: Final = {
-    "key-results": "Key results",
-    "caveats": "Warnings and missing statements",
-    "law": "The law of the penetration force",
-    "seating": "Seating: offsets of the depth zero",
-    "unloading": "Unloading: the permanent depth of a groove",
-    "displacement": "Shear displacement: how far until the full shear strength",
-    "relations": "Relations between snow parameters",
-    "sites": "Sites compared",
-    "published": "Compared with published values",
-    "marks": "Quality flags of the screening",
-    "experiments": "All experiments",
-    "methods": "Methods",
-    "provenance": "Provenance",
+    "key-results": Message("Key results"),
+    "caveats": Message("Warnings and missing statements"),
+    "law": Message("The law of the penetration force"),
+    "seating": Message("Seating: offsets of the depth zero"),
+    "unloading": Message("Unloading: the permanent depth of a groove"),
+    "displacement": Message("Shear displacement: how far until the full shear strength"),
+    "relations": Message("Relations between snow parameters"),
+    "sites": Message("Sites compared"),
+    "published": Message("Compared with published values"),
+    "marks": Message("Quality flags of the screening"),
+    "experiments": Message("All experiments"),
+    "methods": Message("Methods"),
+    "provenance": Message("Provenance"),
 }
 _ONLY_WITH_PENETRATION: Final = ("law", "seating", "unloading")
 
@@ -119,8 +116,8 @@ def write_report(
     if not isinstance(analysis, Analysis):
         raise ParameterError(
             Message(
-                "a report is written of an analysis, into a folder: write_report(analyse(campaign), "
-                "folder); given is a {kind}",
+                "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is "
+                "a {kind}",
                 kind=type(analysis).__name__,
             ),
             code="wrong_type",
@@ -171,9 +168,14 @@ def page(
     language: str = ENGLISH,
 ) -> str:
     """HTML of the report, with styles, figures and tables inside."""
-    english = render_template(
-        "report.html",
-        language,
+    with in_language(language):
+        return render_template("report.html", **_contents(data, tables, pictures, missing))
+
+
+def _contents(
+    data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]
+) -> dict[str, Any]:
+    return dict(
         **_frame(data),
         key_results=key_results(data),
         caveats=caveats(data),
@@ -190,7 +192,6 @@ def page(
         cited=cited_text(),
         bibtex=bibtex(data.results["campaign"] | {"files": data.campaign.file_hashes}),
     )
-    return translated_html(english, language, names=data.names)
 
 
 def tables_html(tables: Mapping[str, Table]) -> dict[str, Markup]:
@@ -231,21 +232,26 @@ def _frame(data: ReportData) -> dict[str, Any]:
 
 
 def _counts(data: ReportData) -> str:
-    return (
-        f"{counted(len(data.penetration), 'penetration experiment')} ({whole(len(data.hardness))} used), "
-        f"{counted(len(data.shear), 'shear experiment')} ({whole(len(data.stress))} used), "
-        f"{counted(len(data.sites), 'site')}"
+    return Message(
+        "{penetration} ({hardness} used), {shear} ({stress} used), {sites}",
+        penetration=counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments"),
+        hardness=whole(len(data.hardness)),
+        shear=counted(len(data.shear), "{count} shear experiment", "{count} shear experiments"),
+        stress=whole(len(data.stress)),
+        sites=counted(len(data.sites), "{count} site", "{count} sites"),
     )
 
 
 def _uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
     def in_words(key: str, unit: str) -> str:
         value = campaign[key]
-        return "not stated, counted as 0" if value is None else f"{significant(value)} {unit}"
+        return Message("not stated, counted as 0") if value is None else f"{significant(value)} {unit}"
 
     gauge = campaign["gauge_resolution_mm"]
     return {
-        "gauge": "not stated, so that no depth uncertainty is counted" if gauge is None else f"{significant(gauge)} mm",
+        "gauge": Message("not stated, so that no depth uncertainty is counted")
+        if gauge is None
+        else f"{significant(gauge)} mm",
         "load": in_words("load_uncertainty_N", "N"),
         "moment": in_words("moment_uncertainty_Nm", "N m"),
         "lever_arm": in_words("lever_arm_uncertainty_mm", "mm"),
@@ -286,5 +292,4 @@ def campaign_figures(
             else:
                 missing.append(drawing)
 
-    names = frozenset(map(figure_text, data.names))
-    return render_pictures(drawings(), language=language, names=names, progress=progress), missing
+    return render_pictures(drawings(), language=language, progress=progress), missing

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from markupsafe import Markup
 
+from ..._support.messages import Message
 from ..._support.units import MM
-from ...estimation.regressions import PEN_FORCE_KEY
+from ...estimation.observations import PEN_FORCE_KEY
 from ...geometry import in_form
 from ..charts import law_of_series
 from ..figures.drawing import Drawing, LeftOut
@@ -34,7 +36,6 @@ from .series_tables import count_resolved_offsets
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from markupsafe import Markup
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 MOST_SERIES: Final = 40
 """Maximum number of series in one panel of Fig 5."""
 _THRESHOLD_MM: Final = 0.1
-_HARDNESS: Final = r"snow hardness $H_\mathrm{V}$ (N/mm³)"
+_HARDNESS: Final = Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")
 
 
 def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
@@ -54,7 +55,7 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
     tests = data.campaign.penetration
     angles = shown_angles(data)
     if tests is None or not angles:
-        return LeftOut(name, "Load against penetration depth", "no penetration experiment is used")
+        return LeftOut(name, Message("Load against penetration depth"), Message("no penetration experiment is used"))
     figure = new_figure(width_mm=DOUBLE_MM if len(angles) > 1 else SINGLE_MM, height_mm=80.0)
     panels = figure.subplots(1, len(angles), squeeze=False, sharey=True)[0]
     handles: dict[str, Line2D] = {}
@@ -67,13 +68,16 @@ def force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Left
         for handle in _draw_panel(panel, data, tests, indices, styles, wide_range=wide_range):
             handles.setdefault(str(handle.get_label()), handle)
         panel.set_title(_angle_name(angle), loc="left")
-    panels[0].set_ylabel("load $F$ (N)")
+    panels[0].set_ylabel(Message("load $F$ (N)"))
     mark_synthetic(data, panels[-1])
     legend_below(figure, [handles[style.label] for style in styles if style.label in handles])
     n_other = int(data.penetration_used.sum()) - sum(map(len, series))
     caption = _force_caption(counts, n_other, wide_range=wide_range)
-    names = " and ".join(_angle_name(angle) for angle in angles)
-    alt = f"Scatter of load in newtons against penetration depth in millimetres, {names}, with a fitted law per series."
+    names = [_angle_name(angle) for angle in angles]
+    alt = Message(
+        "Scatter of load in newtons against penetration depth in millimetres, {names}, with a fitted law per series.",
+        names=names,
+    )
     return Drawing(name, caption, alt, figure, wide=len(angles) > 1)
 
 
@@ -87,7 +91,7 @@ def shown_angles(data: ReportData) -> list[float]:
 
 
 def _angle_name(angle: float) -> str:
-    return "ϑ = 0°" if angle == 0 else f"edged, ϑ = {angle:.4g}°"
+    return "ϑ = 0°" if angle == 0 else str(Message("edged, ϑ = {angle:.4g}°", angle=angle))
 
 
 def _series_at(data: ReportData, angle: float) -> list[int]:
@@ -126,7 +130,7 @@ def _draw_panel(
     else:
         panel.set_xlim(0.0, float(depth.max()) * 1.05)
         panel.set_ylim(0.0, float(load.max()) * 1.08)
-    panel.set_xlabel("penetration depth $e$ (mm)")
+    panel.set_xlabel(Message("penetration depth $e$ (mm)"))
     return handles
 
 
@@ -143,32 +147,41 @@ def _fitted_law(
 
 
 def _force_caption(counts: list[tuple[float, int, int]], n_other: int, *, wide_range: bool) -> Markup:
-    panels = "; ".join(
-        f"{whole(shown)} of {whole(total)} ({_angle_name(angle)})"
-        + (", evenly spaced in the rank of their hardness" if shown < total else "")
-        for angle, shown, total in counts
-    )
-    return prose(
+    panels = [_panel_words(angle, shown, total) for angle, shown, total in counts]
+    caption = prose(
         "Load against penetration depth (the paper's Fig. 5). Symbols: readings by site; lines: F = H_V V with each "
-        "series' own H_V, which meets the reading under the largest load by definition. Series shown: "
-        "{panels}.{others}{axes}",
-        panels=panels,
-        others=f" Series at other edge angles, not shown: {whole(n_other)}." if n_other else "",
-        axes=" Both axes are logarithmic, as the depths span more than a decade: the law is a straight line there, of "
-        "slope 1 for a flat tool and 2 for a wedge; readings of depth 0 have no place on them."
-        if wide_range
-        else "",
+        "series' own H_V, which meets the reading under the largest load by definition. Series shown: {panels}.",
+        panels="; ".join(panels),
     )
+    if n_other:
+        caption += prose(" Series at other edge angles, not shown: {number}.", number=whole(n_other))
+    if wide_range:
+        caption += prose(
+            " Both axes are logarithmic, as the depths span more than a decade: the law is a straight line there, of "
+            "slope 1 for a flat tool and 2 for a wedge; readings of depth 0 have no place on them."
+        )
+    return caption
+
+
+def _panel_words(angle: float, shown: int, total: int) -> str:
+    fields = {"shown": whole(shown), "total": whole(total), "angle": _angle_name(angle)}
+    if shown < total:
+        return str(Message("{shown} of {total} ({angle}), evenly spaced in the rank of their hardness", **fields))
+    return str(Message("{shown} of {total} ({angle})", **fields))
 
 
 def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Offset of the depth zero of each series with its interval, against hardness."""
     name, rows = "seating", data.seating
     if not rows:
-        return LeftOut(name, "Offsets of the depth zero", "no used series has the three readings that an offset needs")
+        return LeftOut(
+            name,
+            Message("Offsets of the depth zero"),
+            Message("no used series has the three readings that an offset needs"),
+        )
     offset, intervals = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
     hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
-    plot = SitePlot.new(_HARDNESS, r"depth offset $\delta$ (mm)", height_mm=80.0)
+    plot = SitePlot.new(_HARDNESS, Message("depth offset $\\delta$ (mm)"), height_mm=80.0)
     plot.axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     error_bars(plot.axes, hardness, intervals, site, styles)
     handles = scatter(plot.axes, hardness, offset, site, styles, size=3.0)
@@ -185,7 +198,7 @@ def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
         shown=whole(count_resolved_offsets(rows)),
         all=whole(len(rows)),
     )
-    alt = "Depth offset in millimetres with intervals against snow hardness, by site."
+    alt = Message("Depth offset in millimetres with intervals against snow hardness, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
 
 
@@ -194,10 +207,12 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
     name = "unloading"
     rows = [row for row in data.unloaded if row["used"] and row["unloading_ratio_interval"] is not None]
     if not rows:
-        return LeftOut(name, "Unloading", "no used series was read while its discs were taken off one by one")
+        return LeftOut(
+            name, Message("Unloading"), Message("no used series was read while its discs were taken off one by one")
+        )
     ratio, intervals = numbers(rows, "unloading_ratio"), pairs(rows, "unloading_ratio_interval")
     hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
-    plot = SitePlot.new(_HARDNESS, r"unloading ratio $k_\mathrm{u}/H_\mathrm{V}$", height_mm=80.0)
+    plot = SitePlot.new(_HARDNESS, Message("unloading ratio $k_\\mathrm{{u}}/H_\\mathrm{{V}}$"), height_mm=80.0)
     error_bars(plot.axes, hardness, intervals, site, styles)
     handles = scatter(plot.axes, hardness, ratio, site, styles, size=3.0)
     if hardness.max() > 10.0 * hardness.min():
@@ -211,24 +226,23 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
         "which springs back; the larger the ratio, the larger the permanent depth of the groove.",
         n=whole(len(rows)),
     )
-    alt = "Unloading ratio with intervals against snow hardness, by site."
+    alt = Message("Unloading ratio with intervals against snow hardness, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
 
 
 def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Snow hardness with its interval against density (Fig 6)."""
-    name, title = "fig06_hardness_density", "Snow hardness against density"
+    name, title = "fig06_hardness_density", Message("Snow hardness against density")
     if len(data.hardness) == 0:
-        return LeftOut(name, title, "no penetration experiment is used")
+        return LeftOut(name, title, Message("no penetration experiment is used"))
     if not np.isfinite(data.penetration_density).any():
-        return LeftOut(name, title, "the campaign gives no snow density at its penetration experiments")
-    plot = SitePlot.new(r"snow density $\rho$ (kg/m³)", _HARDNESS, height_mm=80.0)
+        return LeftOut(name, title, Message("the campaign gives no snow density at its penetration experiments"))
+    plot = SitePlot.new(Message("snow density $\\rho$ (kg/m³)"), _HARDNESS, height_mm=80.0)
     handles, n = _draw_hardness(plot.axes, data, data.penetration_density, styles)
     caption = prose(
-        "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment.{regression}",
-        regression=_p_sentence(data.regression("H_V_N_per_mm3", "snow_density_kg_per_m3")),
-    )
-    alt = "Snow hardness against snow density with intervals, by site."
+        "Snow hardness H_V against density (the paper's Fig. 6) with the 95 % interval of each experiment."
+    ) + _p_sentence(data.regression("H_V_N_per_mm3", "snow_density_kg_per_m3"))
+    alt = Message("Snow hardness against snow density with intervals, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=n)
 
 
@@ -236,21 +250,20 @@ def hardness_mean_force(data: ReportData, styles: Sequence[SiteStyle]) -> Drawin
     """Snow hardness with its interval against the mean force of a SnowMicroPen at the same place."""
     name, force = "hardness_mean_force", data.observations["penetration"].columns[PEN_FORCE_KEY]
     if not np.isfinite(force).any():
-        reason = "no used recording is at the site of a used penetration experiment"
-        return LeftOut(name, "Snow hardness against the SnowMicroPen's mean force", reason)
-    plot = SitePlot.new("mean force of the SnowMicroPen (N)", _HARDNESS, height_mm=80.0)
+        reason = Message("no used recording is at the site of a used penetration experiment")
+        return LeftOut(name, Message("Snow hardness against the SnowMicroPen's mean force"), reason)
+    plot = SitePlot.new(Message("mean force of the SnowMicroPen (N)"), _HARDNESS, height_mm=80.0)
     handles, n = _draw_hardness(plot.axes, data, force, styles)
     if spans_a_decade(force[np.isfinite(force)]):
         logarithmic(plot.axes, "x", force)
     settings = data.results["snow_micro_pen"]
     caption = prose(
         "Snow hardness H_V against the mean force of the SnowMicroPen, {first} to {last} mm below the surface, at the "
-        "same spot or else site, with the 95 % interval of each experiment.{regression}",
-        first=f"{settings['from_depth_mm']:g}",
-        last=f"{settings['to_depth_mm']:g}",
-        regression=_p_sentence(data.regression("H_V_N_per_mm3", PEN_FORCE_KEY)),
-    )
-    alt = "Snow hardness against the SnowMicroPen's mean force with intervals, by site."
+        "same spot or else site, with the 95 % interval of each experiment.",
+        first=settings["from_depth_mm"],
+        last=settings["to_depth_mm"],
+    ) + _p_sentence(data.regression("H_V_N_per_mm3", PEN_FORCE_KEY))
+    alt = Message("Snow hardness against the SnowMicroPen's mean force with intervals, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=n)
 
 
@@ -267,5 +280,7 @@ def _draw_hardness(
     return handles, len(hardness)
 
 
-def _p_sentence(row: Json | None) -> str:
-    return f" Linear regression over all: {p_equals(row['p'])}." if row and row["p"] is not None else ""
+def _p_sentence(row: Json | None) -> Markup:
+    if row is None or row["p"] is None:
+        return Markup("")
+    return prose(" Linear regression over all: {p}.", p=p_equals(row["p"]))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.lines import Line2D
 
+from ..._support.messages import Message
 from ..._support.units import MM
 from ...estimation.snow_micro_pen import depth_profile
 from ..figures.drawing import Drawing, LeftOut
@@ -23,9 +24,9 @@ if TYPE_CHECKING:
 MOST_DRAWN: Final = 24
 """Recordings that stay legible in one figure; the first ones are drawn."""
 _PANELS: Final = (
-    ("force", "force (N)"),
-    ("snow_density", "density (kg/m³)"),
-    ("specific_surface_area", "specific surface area (m²/kg)"),
+    ("force", Message("force (N)")),
+    ("snow_density", Message("density (kg/m³)")),
+    ("specific_surface_area", Message("specific surface area (m²/kg)")),
 )
 
 
@@ -34,7 +35,7 @@ def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | L
     name, pen = "snow_profiles", data.analysis.snow_micro_pen
     usable = [] if pen is None else [i for i, each in enumerate(pen.evaluated) if each.is_used]
     if pen is None or not usable:
-        return LeftOut(name, "Profiles of the SnowMicroPen", "no recording is used")
+        return LeftOut(name, "Profiles of the SnowMicroPen", Message("no recording is used"))
     recordings, drawn = pen.recordings, usable[:MOST_DRAWN]
     sites = sorted({recordings.site[index] for index in drawn})
     colours = {site: COLOURS[place % len(COLOURS)] for place, site in enumerate(sites)}
@@ -53,7 +54,7 @@ def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | L
     forces = np.concatenate([each.force for _, each in found])
     if spans_a_decade(forces):
         logarithmic(every[0], "x", forces)
-    every[0].set_ylabel("depth below the snow surface (mm)")
+    every[0].set_ylabel(Message("depth below the snow surface (mm)"))
     every[0].set_ylim(max(float(each.depth.max()) for _, each in found) / MM, 0.0)
     legend_below(figure, [Line2D([], [], color=colours[site], label=figure_text(site)) for site in sites])
     mark_synthetic(data, every[-1])
@@ -62,7 +63,7 @@ def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | L
         "overlapping windows. Density and surface area by {relation}, which was fitted to ungroomed snow.",
         relation=recordings.settings.relation,
     )
-    alt = "Force, density and specific surface area against depth, one line for each recording."
+    alt = Message("Force, density and specific surface area against depth, one line for each recording.")
     return Drawing(name, caption, alt, figure, wide=len(panels) > 1)
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.units import MM
 from ..table import Column, Table, record_table
 from .data import numbers, pairs
@@ -16,16 +17,16 @@ if TYPE_CHECKING:
 QUANTILES: Final = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
 LARGEST: Final = 12
 
-EXPERIMENT: Final = Column("experiment", "Experiment", "text")
-SITE: Final = Column("site", "Site", "text")
+EXPERIMENT: Final = Column("experiment", Message("Experiment"), "text")
+SITE: Final = Column("site", Message("Site"), "text")
 ANGLE: Final = Column("edge_angle_deg", "ϑ", "angle", "°")
-USED: Final = Column("used", "used", "yes")
-FLAGS: Final = Column("flags", "flags", "codes")
+USED: Final = Column("used", Message("used"), "yes")
+FLAGS: Final = Column("flags", Message("flags"), "codes")
 HARDNESS: Final = Column("H_V_N_per_mm3", "H_V", unit="N/mm³")
 
-_OFFSET: Final = Column("depth_offset_mm", "offset δ", "estimate", "mm", interval="interval_mm")
-_CHANGE: Final = Column("H_V_change_percent", "H_V would change by", unit="%")
-_GROWTH: Final = Column("growth_percent", "growth γ", "estimate", "%", interval="growth_interval_percent")
+_OFFSET: Final = Column("depth_offset_mm", Message("offset δ"), "estimate", "mm", interval="interval_mm")
+_CHANGE: Final = Column("H_V_change_percent", Message("H_V would change by"), unit="%")
+_GROWTH: Final = Column("growth_percent", Message("growth γ"), "estimate", "%", interval="growth_interval_percent")
 _UNLOADING: Final = (
     Column("unloading_ratio", "k_u / H_V", "estimate", interval="unloading_ratio_interval"),
     Column("rebound_ratio_interval", "H_V / k_u, 95 %", "interval"),
@@ -41,16 +42,16 @@ def penetration_table(data: ReportData) -> Table:
     columns = (
         EXPERIMENT,
         SITE,
-        Column("tool", "Tool", "text"),
+        Column("tool", Message("Tool"), "text"),
         ANGLE,
-        Column("n_loads", "loads", "count"),
+        Column("n_loads", Message("loads"), "count"),
         USED,
         FLAGS,
         Column("H_e_N_per_mm", "H_e", "estimate", "N/mm", interval="H_e_interval_N_per_mm"),
         Column("H_A_N_per_mm2", "H_A", "estimate", "N/mm²", interval="H_A_interval_N_per_mm2"),
         Column("H_V_N_per_mm3", "H_V", "estimate", "N/mm³", interval="H_V_interval_N_per_mm3"),
     )
-    caption = "Penetration experiments: hardness from the largest load (Eqn 1) with 95 % interval."
+    caption = Message("Penetration experiments: hardness from the largest load (Eqn 1) with 95 % interval.")
     return record_table("penetration_experiments", caption, columns, data.penetration)
 
 
@@ -62,7 +63,7 @@ def shear_table(data: ReportData) -> Table:
     columns = (
         EXPERIMENT,
         SITE,
-        Column("plate", "Plate", "text"),
+        Column("plate", Message("Plate"), "text"),
         ANGLE,
         Column("depth_mm", "e", unit="mm"),
         Column("F_t_N", "F_t", unit="N"),
@@ -70,7 +71,7 @@ def shear_table(data: ReportData) -> Table:
         USED,
         FLAGS,
     )
-    caption = (
+    caption = Message(
         "Shear experiments: force and failure shear stress (Eqns 7 to 9) with the 95 % interval that the instruments "
         "allow."
     )
@@ -86,19 +87,21 @@ def count_resolved_offsets(rows: list[Json]) -> int:
 def seating_quantiles_table(data: ReportData) -> Table:
     """Quantiles of the offsets and of their effect on H_V over the used series."""
     offsets, changes = numbers(data.seating, "depth_offset_mm"), numbers(data.seating, "H_V_change_percent")
-    names = {0.0: "minimum", 50.0: "median", 100.0: "maximum"}
+    names = {0.0: Message("minimum"), 50.0: Message("median"), 100.0: Message("maximum")}
     rows = [
         (names.get(percent, f"{percent:g} %"), _quantile(offsets, percent), _quantile(changes, percent))
         for percent in QUANTILES
     ]
     return Table(
         "seating_distribution",
-        "Offsets of the depth zero over the used series, and what taking them off would do to H_V: quantiles, each "
-        "column by itself.",
+        Message(
+            "Offsets of the depth zero over the used series, and what taking them off would do to H_V: quantiles, each "
+            "column by itself."
+        ),
         (
-            Column("quantile", "Quantile", "words"),
-            Column("depth_offset_mm", "offset δ", unit="mm"),
-            Column("H_V_change_percent", "H_V would change by", unit="%"),
+            Column("quantile", Message("Quantile"), "words"),
+            Column("depth_offset_mm", Message("offset δ"), unit="mm"),
+            Column("H_V_change_percent", Message("H_V would change by"), unit="%"),
         ),
         rows if data.seating else [],
     )
@@ -115,9 +118,14 @@ def seating_largest_table(data: ReportData) -> Table:
     factors = np.abs(np.log(np.maximum(1.0 + changes / 100.0, 1e-6)))
     order = np.argsort(-factors, kind="stable")[: min(LARGEST, int(np.isfinite(factors).sum()))]
     caption = (
-        f"The {LARGEST} used series whose H_V would change most, by factor, if their offset were taken off."
+        Message(
+            "The {largest} used series whose H_V would change most, by factor, if their offset were taken off.",
+            largest=LARGEST,
+        )
         if len(order) == LARGEST
-        else "The used series in the order of how much H_V would change, by factor, if their offset were taken off."
+        else Message(
+            "The used series in the order of how much H_V would change, by factor, if their offset were taken off."
+        )
     )
     columns = (EXPERIMENT, SITE, ANGLE, HARDNESS, _OFFSET, _CHANGE)
     return record_table("seating_largest", caption, columns, [data.seating[index] for index in order.tolist()])
@@ -144,12 +152,16 @@ def growth_sites_table(data: ReportData) -> Table:
     """Growth of the hardness with depth, by site."""
     return _sites_table(
         "hardness_growth_sites",
-        "A hardness that grows linearly with depth, F = H_0 (V + γ W/e₇): its growth γ from the surface to the depth "
-        "of the largest load, by site, with 95 % intervals.",
-        (SITE, Column("n", "series", "count"), _GROWTH),
+        Message(
+            "A hardness that grows linearly with depth, F = H_0 (V + γ W/e₇): its growth γ from the surface to the "
+            "depth of the largest load, by site, with 95 % intervals."
+        ),
+        (SITE, Column("n", Message("series"), "count"), _GROWTH),
         data.results["penetration"]["growing_hardness"]["sites"],
-        note="The mean is that of ln(1 + γ) over the used series; its interval comes from their scatter, over all "
-        "sites from the scatter between sites. An interval that contains 0 agrees with even snow.",
+        note=Message(
+            "The mean is that of ln(1 + γ) over the used series; its interval comes from their scatter, over all sites "
+            "from the scatter between sites. An interval that contains 0 agrees with even snow."
+        ),
     )
 
 
@@ -164,20 +176,22 @@ def unloading_sites_table(data: ReportData) -> Table:
     """k_u / H_V and k_u, by site."""
     return _sites_table(
         "unloading_sites",
-        "Unloading by site: k_u / H_V and k_u with 95 % intervals.",
-        (SITE, Column("n", "series", "count"), *_UNLOADING),
+        Message("Unloading by site: k_u / H_V and k_u with 95 % intervals."),
+        (SITE, Column("n", Message("series"), "count"), *_UNLOADING),
         data.results["penetration"]["unloading"],
-        note="k_u / H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between "
-        "the series and that within each in its interval; k_u is the geometric mean. Over all sites the series count "
-        "as draws from one snow for the ratio, and k_u has an interval from four sites on.",
+        note=Message(
+            "k_u / H_V is the harmonic mean over the series, which keeps the mean rebound, with the scatter between "
+            "the series and that within each in its interval; k_u is the geometric mean. Over all sites the series "
+            "count as draws from one snow for the ratio, and k_u has an interval from four sites on."
+        ),
     )
 
 
 def displacement_table(data: ReportData) -> Table:
     """Every shear experiment with turning angles."""
     records = [row for row in data.shear if row["n_turning"]]
-    columns = (EXPERIMENT, SITE, ANGLE, Column("n_turning", "rising readings", "count"), USED, _DISPLACEMENT)
-    caption = "Shear displacement u_y of each test, with 95 % intervals."
+    columns = (EXPERIMENT, SITE, ANGLE, Column("n_turning", Message("rising readings"), "count"), USED, _DISPLACEMENT)
+    caption = Message("Shear displacement u_y of each test, with 95 % intervals.")
     return record_table("shear_displacement", caption, columns, records)
 
 
@@ -185,8 +199,8 @@ def displacement_sites_table(data: ReportData) -> Table:
     """Shear displacement u_y, by site."""
     return _sites_table(
         "shear_displacement_sites",
-        "Shear displacement by site: geometric means with 95 % intervals from the scatter between the tests.",
-        (SITE, Column("n", "tests", "count"), _DISPLACEMENT),
+        Message("Shear displacement by site: geometric means with 95 % intervals from the scatter between the tests."),
+        (SITE, Column("n", Message("tests"), "count"), _DISPLACEMENT),
         data.results["shear"]["displacement"],
     )
 
@@ -199,7 +213,7 @@ def _with_details(data: ReportData, details: list[Json]) -> list[Json]:
 def _sites_table(name: str, caption: str, columns: tuple[Column, ...], rows: list[Json], note: str = "") -> Table:
     """One row for each site, and one for all sites if there are several."""
     records: list[dict[str, Any]] = [
-        row | {"site": "all sites" if row["site"] is None else row["site"]}
+        row | {"site": Message("all sites") if row["site"] is None else row["site"]}
         for row in rows
         if row["site"] is not None or len(rows) > 2
     ]

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.lines import Line2D
 
+from ..._support.messages import Message
 from ..._support.units import CONFIDENCE, DEGREE
-from ...estimation.regressions import HARDNESS_KEY, STRESS_KEY
+from ...estimation.observations import HARDNESS_KEY, STRESS_KEY
 from ...forces.cutting import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
 from ..figures.drawing import Drawing, LeftOut
@@ -22,6 +23,7 @@ from .data import numbers
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from markupsafe import Markup
     from matplotlib.axes import Axes
 
     from ..figures.style import SiteStyle
@@ -31,10 +33,13 @@ SIGNIFICANT: Final = 0.05
 MOST_SENTENCES: Final = 6
 FRICTION: Final = 0.2
 """Transverse friction of the thin machining curve, as in the paper's figure."""
-_CURVES: Final = ((0.0, 1.6, "machining, β = 0"), (FRICTION, 0.7, "β = arctan 0.2"))
+_CURVES: Final = (
+    (0.0, 1.6, Message("machining, β = 0")),
+    (FRICTION, 0.7, Message("β = arctan {friction}", friction=FRICTION)),
+)
 _HEADROOM: Final = 2.5
-_ANGLE: Final = r"edge angle $\vartheta$ (°)"
-_STRESS: Final = r"failure shear stress $S_\mathrm{f}$ (N/mm²)"
+_ANGLE: Final = Message("edge angle $\\vartheta$ (°)")
+_STRESS: Final = Message("failure shear stress $S_\\mathrm{{f}}$ (N/mm²)")
 
 
 @dataclass(frozen=True)
@@ -82,9 +87,11 @@ def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing 
     """Failure shear force against plate depth (Fig 7)."""
     name = "fig07_shear_force_depth"
     if len(data.stress) == 0:
-        return LeftOut(name, "Failure shear force against depth", "no shear experiment is used")
+        return LeftOut(name, Message("Failure shear force against depth"), Message("no shear experiment is used"))
     force = numbers(data.shear, "F_t_N")[data.shear_used]
-    plot = SitePlot.new("penetration depth $e$ (mm)", r"failure shear force $F_\mathrm{t}$ (N)", height_mm=76.0)
+    plot = SitePlot.new(
+        Message("penetration depth $e$ (mm)"), Message("failure shear force $F_\\mathrm{{t}}$ (N)"), height_mm=76.0
+    )
     handles = scatter(plot.axes, data.shear_depth, force, data.shear_site, styles)
     plot.start_at_zero("x", data.shear_depth, 1.06)
     plot.start_at_zero("y", force, 1.08)
@@ -92,7 +99,7 @@ def shear_force_depth(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing 
         "Failure shear force F_t against penetration depth of the plate (the paper's Fig. 7), by site. With one plate, "
         "points of equal S_f lie on a straight line through the origin."
     )
-    alt = "Failure shear force in newtons against depth in millimetres, by site."
+    alt = Message("Failure shear force in newtons against depth in millimetres, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(force))
 
 
@@ -109,8 +116,8 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
     """Failure shear stress against edge angle, with lines of significant slope (Fig 8)."""
     name, rows = "fig08_stress_angle", varied_sites(data)
     if not rows:
-        reason = "no site has five used shear experiments at three edge angles"
-        return LeftOut(name, "Failure shear stress against edge angle", reason)
+        reason = Message("no site has five used shear experiments at three edge angles")
+        return LeftOut(name, Message("Failure shear stress against edge angle"), reason)
     chosen = np.isin(data.shear_site, [row["group"] for row in rows])
     theta, stress, site = data.shear_angle[chosen], data.stress[chosen], data.shear_site[chosen]
     plot = SitePlot.new(_ANGLE, _STRESS, height_mm=70.0)
@@ -123,19 +130,21 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
                 draw_line(plot.axes, line, colour=style.colour, x_unit=DEGREE)
     _angle_axis(plot.axes)
     plot.start_at_zero("y", stress, 1.08)
-    judgements = (
-        f"{row['group']}: n = {row['n']}, "
-        + ("too few different angles to judge" if row["withheld"] else p_equals(row["p"]))
-        for row in rows[:MOST_SENTENCES]
-    )
+    judgements = "; ".join(map(_judgement, rows[:MOST_SENTENCES]))
     caption = prose(
         "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), "
         "with the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn "
         "only where p < 0.05. {judgements}.",
-        judgements="; ".join(judgements),
+        judgements=judgements,
     )
-    alt = "Failure shear stress against edge angle in degrees, by site."
+    alt = Message("Failure shear stress against edge angle in degrees, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
+
+
+def _judgement(row: Json) -> str:
+    if row["withheld"]:
+        return str(Message("{site}: n = {n}, too few different angles to judge", site=row["group"], n=row["n"]))
+    return f"{row['group']}: n = {row['n']}, {p_equals(row['p'])}"
 
 
 def _angle_axis(axes: Axes) -> None:
@@ -161,8 +170,8 @@ def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
     """Stress of the softest site against edge angle, with machining theory for two frictions (Eqn 10, Fig 9)."""
     name, softest = "fig09_machining", softest_varied(data)
     if softest is None:
-        reason = "no site has five used shear experiments at three edge angles with a positive stress at 90°"
-        return LeftOut(name, "Shear stress against machining theory", reason)
+        reason = Message("no site has five used shear experiments at three edge angles with a positive stress at 90°")
+        return LeftOut(name, Message("Shear stress against machining theory"), reason)
     row, upright = softest
     at_site = data.shear_site == row["group"]
     stress = data.stress[at_site]
@@ -183,56 +192,61 @@ def machining(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         S=significant(upright / 2.0),
         upright=significant(upright),
     )
-    alt = "Shear stress of one site against edge angle, with two curves of machining."
+    alt = Message("Shear stress of one site against edge angle, with two curves of machining.")
     return Drawing(name, caption, alt, plot.finish(data, handles))
 
 
 def stress_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Failure shear stress against density with the regression line over all sites (Fig 10)."""
-    name, title = "fig10_stress_density", "Failure shear stress against density"
+    name, title = "fig10_stress_density", Message("Failure shear stress against density")
     if len(data.stress) == 0:
-        return LeftOut(name, title, "no shear experiment is used")
+        return LeftOut(name, title, Message("no shear experiment is used"))
     finite = np.isfinite(data.shear_density)
     if not finite.any():
-        return LeftOut(name, title, "the campaign gives no snow density at its shear experiments")
+        return LeftOut(name, title, Message("the campaign gives no snow density at its shear experiments"))
     density, stress = data.shear_density[finite], data.stress[finite]
-    plot = SitePlot.new(r"snow density $\rho$ (kg/m³)", _STRESS, height_mm=76.0)
+    plot = SitePlot.new(Message("snow density $\\rho$ (kg/m³)"), _STRESS, height_mm=76.0)
     handles = scatter(plot.axes, density, stress, data.shear_site[finite], styles)
     row = data.regression("S_f_N_per_mm2", "snow_density_kg_per_m3")
     if row is not None:
         draw_line(plot.axes, regression_line(row, density), colour=BLACK, dashed=not _is_significant(row))
     plot.start_at_zero("y", stress, 1.08)
-    caption = prose(
-        "Failure shear stress S_f against density (the paper's Fig. 10), by site.{line}",
-        line=_line_in_words(row) if row else "",
-    )
-    alt = "Failure shear stress against snow density with a regression line, by site."
+    caption = prose("Failure shear stress S_f against density (the paper's Fig. 10), by site.")
+    caption += _line_in_words(row) if row else ""
+    alt = Message("Failure shear stress against snow density with a regression line, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
 
 
-def _line_in_words(row: Json) -> str:
-    judgement = p_equals(row["p"])
+def _line_in_words(row: Json) -> Markup:
     if row["withheld"]:
-        judgement = "dashed because too few different densities allow no judgement"
-    elif not _is_significant(row):
-        judgement += ", dashed because not significant"
-    text = (
-        f" Line: {significant(row['b'][0])} {'−' if row['b'][1] < 0 else '+'} {significant(abs(row['b'][1]))} ρ, "
-        f"n = {row['n']}, {judgement}; band: 95 % interval of its mean, as if all experiments were independent."
+        judgement: str = Message("dashed because too few different densities allow no judgement")
+    elif _is_significant(row):
+        judgement = p_equals(row["p"])
+    else:
+        judgement = Message("{p}, dashed because not significant", p=p_equals(row["p"]))
+    sentence = prose(
+        " Line: {intercept} {sign} {slope} ρ, n = {n}, {judgement}; band: 95 % interval of its mean, as if all "
+        "experiments were independent.",
+        intercept=significant(row["b"][0]),
+        sign="−" if row["b"][1] < 0 else "+",
+        slope=significant(abs(row["b"][1])),
+        n=row["n"],
+        judgement=judgement,
     )
     if row["interval_by_site"] and row["interval_by_site"][1]:
-        text += f" With sites as clusters the slope's interval is {interval(row['interval_by_site'][1])}."
-    return text
+        ends = interval(row["interval_by_site"][1])
+        sentence += prose(" With sites as clusters the slope's interval is {ends}.", ends=ends)
+    return sentence
 
 
 def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     """Failure shear stress against snow hardness, one point for each spot with both (Fig 11)."""
     name, spots = "fig11_stress_hardness", data.observations["spots"]
     if not spots.site:
-        reason = "no spot has both a used penetration and a used shear experiment"
-        return LeftOut(name, "Failure shear stress against snow hardness", reason)
+        reason = Message("no spot has both a used penetration and a used shear experiment")
+        return LeftOut(name, Message("Failure shear stress against snow hardness"), reason)
     hardness, stress = spots.columns[HARDNESS_KEY], spots.columns[STRESS_KEY]
-    plot = SitePlot.new(r"snow hardness $H_\mathrm{V}$ (N/mm³)", _STRESS, height_mm=70.0)
+    plot = SitePlot.new(Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)"), _STRESS, height_mm=70.0)
     handles = scatter(plot.axes, hardness, stress, np.array(spots.site), styles)
     if spans_a_decade(hardness):
         logarithmic(plot.axes, "x", hardness)
@@ -240,9 +254,10 @@ def stress_hardness(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
     row = data.regression("S_f_N_per_mm2", "H_V_N_per_mm3")
     caption = prose(
         "Failure shear stress S_f against snow hardness H_V at {spots} (the paper's Fig. 11): geometric mean of H_V "
-        "and mean of S_f over the used experiments of a spot.{regression}",
-        spots=counted(len(spots.site), "spot"),
-        regression=f" Linear regression: {p_equals(row['p'])}." if row and row["p"] is not None else "",
+        "and mean of S_f over the used experiments of a spot.",
+        spots=counted(len(spots.site), "{count} spot", "{count} spots"),
     )
-    alt = "Failure shear stress against snow hardness, one point for each spot."
+    if row and row["p"] is not None:
+        caption += prose(" Linear regression: {p}.", p=p_equals(row["p"]))
+    alt = Message("Failure shear stress against snow hardness, one point for each spot.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))

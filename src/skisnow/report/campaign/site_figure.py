@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import BLUE, GREY, logarithmic, mark_synthetic, new_figure, spans_a_decade
 from ..symbols import figure_text, prose
@@ -25,8 +26,8 @@ _MARGIN_MM: Final = 22.0
 _GOLDEN_SHARE: Final = 0.618034
 """Its multiples spread points evenly across a row without a random number."""
 _PANELS: Final = (
-    ("H_V_N_per_mm3", r"snow hardness $H_\mathrm{V}$ (N/mm³)"),
-    ("S_f_N_per_mm2", r"failure shear stress $S_\mathrm{f}$ (N/mm²)"),
+    ("H_V_N_per_mm3", Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")),
+    ("S_f_N_per_mm2", Message("failure shear stress $S_\\mathrm{{f}}$ (N/mm²)")),
 )
 
 
@@ -36,9 +37,9 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     rows = {key: [row for row in data.results["site_means"] if row["quantity"] == key] for key, _ in _PANELS}
     panels = [(key, label) for key, label in _PANELS if len(rows[key]) > 1 and numbers(rows[key], "mean").min() > 0]
     if not panels:
-        return LeftOut(name, "Sites compared", "no two sites have used experiments of one kind")
+        return LeftOut(name, Message("Sites compared"), Message("no two sites have used experiments of one kind"))
     if max(len(rows[key]) for key, _ in panels) > MOST_SITES:
-        return LeftOut(name, "Sites compared", f"there are more than {MOST_SITES} sites")
+        return LeftOut(name, Message("Sites compared"), Message("there are more than {most} sites", most=MOST_SITES))
     most = max(len(rows[key]) for key, _ in panels)
     figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + _ROW_MM * most)
     for place, (key, label) in enumerate(panels, start=1):
@@ -51,7 +52,7 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
         "Sites compared: mean (of H_V: geometric) with its 95 % interval, and the single experiments. Sites that share "
         "a letter are not shown to differ (5 %, Holm’s correction for the number of pairs)."
     )
-    alt = "Mean of each site with its interval, in the order of the means, with letters of groups."
+    alt = Message("Mean of each site with its interval, in the order of the means, with letters of groups.")
     points = len(data.hardness) + len(data.stress)
     return Drawing(name, caption, alt, figure, wide=len(panels) > 1, points=points)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ...campaign import QUALITY_FLAGS
 from ...estimation.comparisons import own_mean
 from ..table import Column, Table, record_table
@@ -32,19 +33,19 @@ if TYPE_CHECKING:
 QUANTITY: Final = {
     "S_f_N_per_mm2": ("S_f", "N/mm²"),
     "H_V_N_per_mm3": ("H_V", "N/mm³"),
-    "edge_angle_rad": ("edge angle ϑ", "rad"),
-    "snow_density_kg_per_m3": ("snow density ρ", "kg/m³"),
-    "drop_cone_depth_mm": ("drop-cone depth H_p", "mm"),
-    "smp_mean_force_N": ("SnowMicroPen mean force", "N"),
-    "smp_snow_density_kg_per_m3": ("SnowMicroPen density", "kg/m³"),
+    "edge_angle_rad": (Message("edge angle ϑ"), "rad"),
+    "snow_density_kg_per_m3": (Message("snow density ρ"), "kg/m³"),
+    "drop_cone_depth_mm": (Message("drop-cone depth H_p"), "mm"),
+    "smp_mean_force_N": (Message("SnowMicroPen mean force"), "N"),
+    "smp_snow_density_kg_per_m3": (Message("SnowMicroPen density"), "kg/m³"),
 }
 """Symbol and unit of each response and predictor of a regression."""
 
 _PUBLISHED: Final = {
     "H_V_N_per_mm3": "H_V in N/mm³",
     "S_f_N_per_mm2": "S_f in N/mm²",
-    "b0": "b_0 of Eqn 11",
-    "b1_per_rad": "b_1 of Eqn 11, per rad",
+    "b0": Message("b_0 of Eqn 11"),
+    "b1_per_rad": Message("b_1 of Eqn 11, per rad"),
 }
 
 
@@ -61,26 +62,27 @@ def sites_table(data: ReportData) -> Table:
     if len(data.sites) > 1:
         hardness = _mean_and_range(data.hardness, data.penetration_site, geometric=True)
         stress = _mean_and_range(data.stress, data.shear_site, geometric=False)
-        rows.append(("all sites", len(data.penetration), *hardness, len(data.shear), *stress))
+        rows.append((Message("all sites"), len(data.penetration), *hardness, len(data.shear), *stress))
     return Table(
         "sites",
-        "Snow hardness and failure shear stress by site, with 95 % intervals of the means.",
+        Message("Snow hardness and failure shear stress by site, with 95 % intervals of the means."),
         (
-            Column("site", "Site", "text"),
-            Column("penetration_n", "penetration tests", "count"),
-            Column("penetration_used", "used", "count"),
-            Column("H_V_N_per_mm3", "H_V, geometric mean", "estimate", "N/mm³"),
-            Column("H_V_range_N_per_mm3", "H_V, range", "range", "N/mm³"),
-            Column("shear_n", "shear tests", "count"),
-            Column("shear_used", "used", "count"),
-            Column("S_f_N_per_mm2", "S_f, mean", "estimate", "N/mm²"),
-            Column("S_f_range_N_per_mm2", "S_f, range", "range", "N/mm²"),
+            Column("site", Message("Site"), "text"),
+            Column("penetration_n", Message("penetration tests"), "count"),
+            Column("penetration_used", Message("used"), "count"),
+            Column("H_V_N_per_mm3", Message("H_V, geometric mean"), "estimate", "N/mm³"),
+            Column("H_V_range_N_per_mm3", Message("H_V, range"), "range", "N/mm³"),
+            Column("shear_n", Message("shear tests"), "count"),
+            Column("shear_used", Message("used"), "count"),
+            Column("S_f_N_per_mm2", Message("S_f, mean"), "estimate", "N/mm²"),
+            Column("S_f_range_N_per_mm2", Message("S_f, range"), "range", "N/mm²"),
         ),
         rows,
-        note="The interval of a site comes from the scatter between its experiments; that of all sites from the "
-        "scatter between sites, and is withheld for fewer than four. H_V spans decades, so its mean is the geometric "
-        "one. All intervals are computed on "
-        "logarithms: no bound is negative.",
+        note=Message(
+            "The interval of a site comes from the scatter between its experiments; that of all sites from the scatter "
+            "between sites, and is withheld for fewer than four. H_V spans decades, so its mean is the geometric one. "
+            "All intervals are computed on logarithms: no bound is negative."
+        ),
     )
 
 
@@ -94,29 +96,36 @@ def _mean_and_range(values: FloatArray, sites: TextArray, *, geometric: bool) ->
     return len(values), (value, interval), (mean.minimum, mean.maximum) if np.isfinite(mean.minimum) else None
 
 
+_GROUPS: Final = {
+    "site": Message("site"), "tool": Message("tool"), "observer": Message("observer"), "day": Message("day")
+}  # fmt: skip
+
+
 def group_comparison_table(data: ReportData) -> Table:
     """Ratio of the means of every pair of sites, tools, observers and days."""
     columns = (
-        Column("quantity", "Quantity", "words"),
-        Column("by", "Groups", "words"),
+        Column("quantity", Message("Quantity"), "words"),
+        Column("by", Message("Groups"), "words"),
         Column("group_a", "A", "text"),
-        Column("n_a", "n of A", "count"),
+        Column("n_a", Message("n of A"), "count"),
         Column("group_b", "B", "text"),
-        Column("n_b", "n of B", "count"),
+        Column("n_b", Message("n of B"), "count"),
         Column("ratio", "A / B", "estimate", interval="interval"),
         Column("p", "p", "p"),
-        Column("p_holm", "p, corrected", "p"),
-        Column("n_needed", "tests needed in each group", "count"),
+        Column("p_holm", Message("p, corrected"), "p"),
+        Column("n_needed", Message("tests needed in each group"), "count"),
     )
     return record_table(
         "group_comparisons",
-        "Ratios of the geometric means of group A over group B, with 95 % intervals.",
+        Message("Ratios of the geometric means of group A over group B, with 95 % intervals."),
         columns,
-        data.results["group_comparisons"],
-        note="Intervals and p are those of a pair by itself. The corrected p accounts for the number of pairs of the "
-        "same kind (Holm). Tools, observers and days are compared at their common sites. Last column: tests in each "
-        "group that would find a difference of "
-        f"{data.results['provenance']['options']['difference_percent']:.3g} % with a power of 80 %.",
+        [row | {"by": _GROUPS[row["by"]]} for row in data.results["group_comparisons"]],
+        note=Message(
+            "Intervals and p are those of a pair by itself. The corrected p accounts for the number of pairs of the "
+            "same kind (Holm). Tools, observers and days are compared at their common sites. Last column: tests in "
+            "each group that would find a difference of {difference_percent:.3g} % with a power of 80 %.",
+            difference_percent=data.results["provenance"]["options"]["difference_percent"],
+        ),
     )
 
 
@@ -131,15 +140,15 @@ def published_table(data: ReportData) -> Table:
         for row in data.results["comparisons"]
     ]
     columns = (
-        Column("source", "Source", "text"),
-        Column("quantity", "Quantity", "words"),
-        Column("value", "published"),
-        Column("range", "published range", "range"),
-        Column("own", "this campaign", "estimate", interval="own_interval"),
-        Column("own_range", "its range", "range"),
-        Column("own_over_published", "own / published"),
+        Column("source", Message("Source"), "text"),
+        Column("quantity", Message("Quantity"), "words"),
+        Column("value", Message("published")),
+        Column("range", Message("published range"), "range"),
+        Column("own", Message("this campaign"), "estimate", interval="own_interval"),
+        Column("own_range", Message("its range"), "range"),
+        Column("own_over_published", Message("own / published")),
     )
-    caption = (
+    caption = Message(
         "Published values beside this campaign's own: mean (H_V: geometric) with 95 % interval, and range over the "
         "used experiments."
     )
@@ -150,52 +159,67 @@ def regressions_table(data: ReportData) -> Table:
     """Coefficients, intervals and F test of every regression."""
     return Table(
         "regressions",
-        "Linear regressions with intercept: coefficients with 95 % intervals, goodness of fit and F test of the slope.",
+        Message(
+            "Linear regressions with intercept: coefficients with 95 % intervals, goodness of fit and F test of the "
+            "slope."
+        ),
         (
-            Column("response", "Response", "words"),
-            Column("predictor", "on", "words"),
-            Column("group", "group", "text"),
+            Column("response", Message("Response"), "words"),
+            Column("predictor", Message("on"), "words"),
+            Column("group", Message("group"), "text"),
             Column("n", "n", "count"),
-            Column("intercept", "intercept", "estimate"),
-            Column("slope", "slope", "estimate"),
-            Column("slope_by_site", "sites as clusters", "interval"),
-            Column("rmse", "RMSE with 1/n"),
-            Column("rmse_dof", "RMSE with 1/(n − 2)"),
+            Column("intercept", Message("intercept"), "estimate"),
+            Column("slope", Message("slope"), "estimate"),
+            Column("slope_by_site", Message("sites as clusters"), "interval"),
+            Column("rmse", Message("RMSE with 1/n")),
+            Column("rmse_dof", Message("RMSE with 1/(n − 2)")),
             Column("r2", "R²"),
             Column("F", "F"),
             Column("p", "p", "p"),
         ),
         [_regression_row(row) for row in data.results["regressions"]],
-        note="Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
-        "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent for "
-        "a single site and where the sites do not tell. F and p are withheld where the predictor takes fewer than four "
-        "different values: whatever else differs between them would show as well.",
+        note=Message(
+            "Intercept and rmse are in the unit of the response, slopes in that per unit of the predictor. Sites as "
+            "clusters: the interval of the slope that knows that experiments of one site belong together; it is absent "
+            "for a single site and where the sites do not tell. F and p are withheld where the predictor takes fewer "
+            "than four different values: whatever else differs between them would show as well."
+        ),
     )
 
 
 def _regression_row(row: Json) -> tuple[Any, ...]:
     coefficients, intervals = row["b"] or (None, None), row["interval"] or (None, None)
     by_site = row["interval_by_site"]
-    names = ("{} ({})".format(*QUANTITY[key]) for key in (row["response"], row["terms"][1]))
+    quantities = (QUANTITY[key] for key in (row["response"], row["terms"][1]))
+    names = (Message("{name} ({unit})", name=name, unit=unit) for name, unit in quantities)
     estimates = zip(coefficients, intervals, strict=True)
     fit = (row[key] for key in ("rmse", "rmse_dof", "r2", "F", "p"))
-    return (*names, row["group"], row["n"], *estimates, by_site[1] if by_site else None, *fit)
+    return (
+        *names,
+        Message("all") if row["group"] == "all" else row["group"],
+        row["n"],
+        *estimates,
+        by_site[1] if by_site else None,
+        *fit,
+    )
 
 
 def weather_table(data: ReportData) -> Table:
     """Means of the weather at the experiments, by site."""
     weather = data.results["weather"]
     columns = (
-        Column("site", "Site", "text"),
-        Column("n", "experiments", "count"),
-        Column("air_temperature_C", "air", unit="°C"),
-        Column("relative_humidity_percent", "humidity", unit="%"),
-        Column("snow_surface_temperature_C", "snow surface", unit="°C"),
-        Column("wind_speed_m_per_s", "wind", unit="m/s"),
-        Column("incoming_short_wave_W_per_m2", "short-wave radiation", unit="W/m²"),
+        Column("site", Message("Site"), "text"),
+        Column("n", Message("experiments"), "count"),
+        Column("air_temperature_C", Message("air"), unit="°C"),
+        Column("relative_humidity_percent", Message("humidity"), unit="%"),
+        Column("snow_surface_temperature_C", Message("snow surface"), unit="°C"),
+        Column("wind_speed_m_per_s", Message("wind"), unit="m/s"),
+        Column("incoming_short_wave_W_per_m2", Message("short-wave radiation"), unit="W/m²"),
     )
-    caption = f"Weather at the times of the experiments, by the station {weather['station']}: means by site."
-    note = "Linear between the station's readings; experiments whose time of day is not noted are not counted."
+    caption = Message(
+        "Weather at the times of the experiments, by the station {station}: means by site.", station=weather["station"]
+    )
+    note = Message("Linear between the station's readings; experiments whose time of day is not noted are not counted.")
     return record_table("weather", caption, columns, [row for row in weather["sites"] if row["n"]], note=note)
 
 
@@ -203,25 +227,33 @@ def snow_micro_pen_table(data: ReportData) -> Table:
     """Every recording of a SnowMicroPen."""
     recordings = data.results["snow_micro_pen"]
     columns = (
-        Column("recording", "Recording", "text"),
-        Column("site", "Site", "text"),
+        Column("recording", Message("Recording"), "text"),
+        Column("site", Message("Site"), "text"),
         Column("spot", "spot", "text"),
-        Column("surface_mm", "surface at", unit="mm", digits=4),
-        Column("air_force_N", "force in air", unit="N"),
-        Column("mean_force_N", "mean force", unit="N"),
-        Column("penetration_resistance_kPa", "penetration resistance", unit="kPa"),
+        Column("surface_mm", Message("surface at"), unit="mm", digits=4),
+        Column("air_force_N", Message("force in air"), unit="N"),
+        Column("mean_force_N", Message("mean force"), unit="N"),
+        Column("penetration_resistance_kPa", Message("penetration resistance"), unit="kPa"),
         Column("rupture_force_N", "f₀", unit="N"),
         Column("deflection_mm", "δ", unit="mm"),
         Column("element_size_mm", "L", unit="mm"),
         Column("snow_density_kg_per_m3", "ρ", unit="kg/m³"),
         Column("specific_surface_area_m2_per_kg", "SSA", unit="m²/kg"),
-        Column("used", "used", "yes"),
-        Column("flags", "flags", "codes"),
+        Column("used", Message("used"), "yes"),
+        Column("flags", Message("flags"), "codes"),
     )
-    depths = f"{recordings['from_depth_mm']:g} to {recordings['to_depth_mm']:g} mm below the surface"
+    depths = Message(
+        "{from_depth_mm:g} to {to_depth_mm:g} mm below the surface",
+        from_depth_mm=recordings["from_depth_mm"],
+        to_depth_mm=recordings["to_depth_mm"],
+    )
     return record_table(
         "snow_micro_pen",
-        f"Recordings of the SnowMicroPen, {depths}, density and surface area by {recordings['relation']}.",
+        Message(
+            "Recordings of the SnowMicroPen, {depths}, density and surface area by {relation}.",
+            depths=depths,
+            relation=recordings["relation"],
+        ),
         columns,
         recordings["recordings"],
         note="The penetration resistance is the mean force over the cross-section of the tip, the hardness of the "
@@ -235,28 +267,37 @@ def files_table(data: ReportData) -> Table:
     """Every campaign file with its checksum."""
     return Table(
         "files",
-        "Files read, with the SHA-256 of their bytes.",
-        (Column("file", "File", "text"), Column("sha256", "SHA-256", "text")),
+        Message("Files read, with the SHA-256 of their bytes."),
+        (Column("file", Message("File"), "text"), Column("sha256", "SHA-256", "text")),
         list(data.results["provenance"]["files"].items()),
     )
 
 
+_FILE: Final = (Column("file", Message("file"), "text"), Column("row", Message("row"), "count"))
+_EXPERIMENT: Final = Column("experiment", Message("experiment"), "text")
+_COLUMN: Final = Column("column", Message("column"), "text")
+
+
+def _texts(headers: dict[str, Message]) -> tuple[Column, ...]:
+    return tuple(Column(key, header, "text") for key, header in headers.items())
+
+
 def corrections_table(data: ReportData) -> Table:
     """Every cell whose value a correction replaces."""
-    keys = ("file", "row", "experiment", "column", "old", "new", "who", "when", "why")
-    caption = "Corrections applied when the files were read; the raw files keep the old values."
-    return record_table("corrections", caption, _key_columns(keys), data.results["campaign"]["corrections"])
+    headers = {"old": Message("old"), "new": Message("new"), "who": Message("who"), "when": Message("when"),
+               "why": Message("why")}  # fmt: skip
+    columns = (*_FILE, _EXPERIMENT, _COLUMN, *_texts(headers))
+    caption = Message("Corrections applied when the files were read; the raw files keep the old values.")
+    return record_table("corrections", caption, columns, data.results["campaign"]["corrections"])
 
 
 def warnings_table(data: ReportData) -> Table:
     """Every warning of the campaign reader."""
-    keys = ("severity", "code", "file", "row", "column", "experiment", "value", "allowed", "action")
-    caption = "Warnings of reading the campaign's files."
-    return record_table("warnings", caption, _key_columns(keys), data.results["campaign"]["warnings"], rows_in_html=50)
-
-
-def _key_columns(keys: tuple[str, ...]) -> tuple[Column, ...]:
-    return tuple(Column(key, key, "count" if key == "row" else "text") for key in keys)
+    first = {"severity": Message("severity"), "code": Message("code")}
+    last = {"value": Message("value"), "allowed": Message("allowed"), "action": Message("action")}
+    columns = (*_texts(first), *_FILE, _COLUMN, _EXPERIMENT, *_texts(last))
+    caption = Message("Warnings of reading the campaign's files.")
+    return record_table("warnings", caption, columns, data.results["campaign"]["warnings"], rows_in_html=50)
 
 
 def quality_flags_table(data: ReportData) -> Table:
@@ -277,16 +318,18 @@ def quality_flags_table(data: ReportData) -> Table:
     ]
     return Table(
         "marks",
-        "Quality flags of the screening. A flag deletes nothing; one that excludes keeps its experiments out of the "
-        "estimates.",
+        Message(
+            "Quality flags of the screening. A flag deletes nothing; one that excludes keeps its experiments out of "
+            "the estimates."
+        ),
         (
-            Column("code", "Code", "text"),
-            Column("sentence", "What it says", "words"),
-            Column("excludes", "excludes", "yes"),
-            Column("penetration_n", "penetration", "count"),
-            Column("penetration_experiments", "penetration experiments", "codes"),
-            Column("shear_n", "shear", "count"),
-            Column("shear_experiments", "shear experiments", "codes"),
+            Column("code", Message("Code"), "text"),
+            Column("sentence", Message("What it says"), "words"),
+            Column("excludes", Message("excludes"), "yes"),
+            Column("penetration_n", Message("penetration"), "count"),
+            Column("penetration_experiments", Message("penetration experiments"), "codes"),
+            Column("shear_n", Message("shear"), "count"),
+            Column("shear_experiments", Message("shear experiments"), "codes"),
         ),
         rows,
     )

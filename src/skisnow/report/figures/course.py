@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,7 @@ from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ...scenario import Plane
 from ...scenario.terrain import normals_of
-from ...simulation.run_summary import run_gates
+from ...simulation.run_gates import run_gates
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:
@@ -37,7 +37,13 @@ _MARGIN: Final = 0.04
 
 
 def course_line(
-    result: CourseResult, place: FloatArray, values: FloatArray, *, label: str, diverging: bool, axes_words: str = ""
+    result: CourseResult,
+    place: FloatArray,
+    values: FloatArray,
+    *,
+    label: str,
+    diverging: bool,
+    axes_words: str = "$x$ (m)",
 ) -> Figure:
     """Draw the figure.
 
@@ -54,7 +60,7 @@ def course_line(
     diverging
         True for a colour scale that is symmetric about 0, such as left and right.
     axes_words
-        Label of x without the unit (default: the symbol).
+        Label of x with the unit (default: the symbol).
     """
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
     axes = figure.add_subplot()
@@ -109,19 +115,21 @@ def _set_axes(axes: Axes, points: FloatArray, words: str) -> None:
     axes.set_xlim(low[0] - margin[0], high[0] + margin[0])
     axes.set_ylim(low[1] - margin[1] - 1.0, high[1] + margin[1] + 1.0)
     axes.set_aspect("auto" if stretched else "equal", adjustable="box")
-    axes.set_xlabel(f"{words or '$x$'} (m)")
-    axes.set_ylabel("to the left $y$ (m)" + (",\nanother scale" if stretched else ""))
+    axes.set_xlabel(words)
+    axes.set_ylabel(Message("to the left $y$ (m),\nanother scale") if stretched else Message("to the left $y$ (m)"))
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
 
 
 def _handles(result: CourseResult) -> list[Line2D]:
-    style = {"linestyle": "none", "marker": "o"}
-    handles = [Line2D([], [], color=c, markersize=4.2, label=w, **style)  # type: ignore[arg-type]
-               for c, w in ((VERMILLION, "turning pole of gate 1, 3, 5 …"), (BLUE, "of gate 2, 4, 6 …"))]  # fmt: skip
+    style: dict[str, Any] = {"linestyle": "none", "marker": "o"}
+    poles = ((VERMILLION, Message("turning pole of gate 1, 3, 5 …")), (BLUE, Message("of gate 2, 4, 6 …")))
+    handles = [Line2D([], [], color=colour, markersize=4.2, label=label, **style) for colour, label in poles]
     if any(gate.outer is not None for gate in result.course.gates):
-        handles.append(Line2D([], [], color=GREY, markerfacecolor="none", markersize=3.0, label="outer pole", **style))  # type: ignore[arg-type]
+        label = Message("outer pole")
+        handles.append(Line2D([], [], color=GREY, markerfacecolor="none", markersize=3.0, label=label, **style))
     if result.fault is not None:
-        handles.append(Line2D([], [], color=BLACK, linestyle="none", marker="x", markersize=6.0, label="not passed"))
+        cross: dict[str, Any] = style | {"marker": "x", "markersize": 6.0}
+        handles.append(Line2D([], [], color=BLACK, label=Message("not passed"), **cross))
     return handles
 
 
@@ -134,8 +142,8 @@ def run_course(run: Run) -> Figure:
             code="no_course",
         )
     level = isinstance(run.scenario.slope, Plane)
-    words = "distance down the fall line $x$" if level else "horizontal distance $x$"
-    label = "edge angle (°)"
+    words = Message("distance down the fall line $x$ (m)") if level else Message("horizontal distance $x$ (m)")
+    label = Message("edge angle (°)")
     return course_line(result, run.place, edge_angles(run) / DEGREE, label=label, diverging=True, axes_words=words)
 
 

@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.errors import ParameterError
-from ..._support.language import ENGLISH
-from ..._support.messages import Message
+from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import require_writable, write_file
 from .drawing import FORMS, UNDATED, render
-from .style import journal_style
-from .translated import translate_figure
+from .style import journal_style, local_axes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence, Set
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from pathlib import Path
 
     from matplotlib.figure import Figure
@@ -35,7 +33,6 @@ def write_pictures(
     *,
     every: Sequence[str],
     language: str = ENGLISH,
-    names: Set[str] = frozenset(),
     progress: Callable[[str], None] | None = None,
 ) -> list[Picture]:
     """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS.
@@ -48,7 +45,7 @@ def write_pictures(
         Folder of the files, created if necessary.
     every
         Names of all figures that such a report can have; files of those without a drawing are removed.
-    language, names, progress
+    language, progress
         See `render_pictures`.
 
     Returns
@@ -61,7 +58,7 @@ def write_pictures(
     OutputError
         A file cannot be written.
     """
-    pictures = render_pictures(drawings, language=language, names=names, progress=progress)
+    pictures = render_pictures(drawings, language=language, progress=progress)
     for picture in pictures:
         write_picture(picture, folder)
     for name in set(every) - {picture.name for picture in pictures}:
@@ -74,7 +71,6 @@ def render_pictures(
     drawings: Iterable[Drawing],
     *,
     language: str = ENGLISH,
-    names: Set[str] = frozenset(),
     progress: Callable[[str], None] | None = None,
 ) -> list[Picture]:
     """Render drawings in the house style.
@@ -83,17 +79,17 @@ def render_pictures(
     ----------
     drawings
         An iterator that draws each figure when it is requested: a figure takes its style when it is created.
-    language, names
-        Language of the figures, and names from users, which are not translated.
+    language
+        Language of the figures.
     progress
         Callback for the name of each figure.
     """
     pictures = []
-    with journal_style():
+    with journal_style(), in_language(language):
         for drawing in drawings:
             if progress is not None:
-                progress(f"figure {drawing.name}")
-            translate_figure(drawing.figure, language, names=names)
+                progress(Message("figure {name}", name=drawing.name))
+            local_axes(drawing.figure)
             pictures.append(render(drawing))
     return pictures
 
@@ -141,9 +137,7 @@ def require_drawable(path: Path) -> None:
     require_writable(path.parent)
 
 
-def write_figure(
-    path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH, names: Set[str] = frozenset()
-) -> None:
+def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH) -> None:
     """Draw in the house style and write a complete file; the same bytes for the same data.
 
     Parameters
@@ -152,16 +146,16 @@ def write_figure(
         Path with the suffix .png (1200 pixels wide), .svg or .pdf.
     draw
         Function that draws the figure; it is called inside the house style.
-    language, names
-        Language of the figure (en, de), and names from users, which are not translated.
+    language
+        Language of the figure (en, de).
     """
     require_drawable(path)
     kind = path.suffix.lower().removeprefix(".")
-    with journal_style(), warnings.catch_warnings():
+    with journal_style(), in_language(language), warnings.catch_warnings():
         # a name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         figure = draw()
-        translate_figure(figure, language, names=names)
+        local_axes(figure)
         content = io.BytesIO()
         options: dict[str, Any] = {"dpi": PNG_WIDTH / figure.get_figwidth()} if kind == "png" else {}
         figure.savefig(content, format=kind, metadata=UNDATED[kind], **options)

@@ -10,8 +10,9 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import Formatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 
+from ..._support.messages import Message, local_number
 from ..formatting import counted
 from ..symbols import figure_text
 
@@ -117,7 +118,7 @@ def site_styles(data: ReportData) -> tuple[SiteStyle, ...]:
     ]
     rest = tuple(sorted(set(order) - set(named)))
     if rest:
-        styles.insert(0, SiteStyle(counted(len(rest), "other site"), PALE, ".", rest))
+        styles.insert(0, SiteStyle(counted(len(rest), "{count} other site", "{count} other sites"), PALE, ".", rest))
     return tuple(styles)
 
 
@@ -164,7 +165,7 @@ def thinned(count: int) -> slice:
 def thinning_sentence(count: int) -> str:
     """Sentence of the caption about a thinned cloud; empty if all points are drawn."""
     step = thinned(count).step
-    return f" One point in {step} is drawn." if step > 1 else ""
+    return Message(" One point in {step} is drawn.", step=step) if step > 1 else ""
 
 
 def _marker(style: SiteStyle, size: float | None) -> dict[str, Any]:
@@ -204,7 +205,7 @@ def _width(widths: list[float], columns: int) -> float:
 def mark_synthetic(data: ReportData, axes: Axes) -> None:
     """Mark a picture of synthetic data."""
     if data.synthetic:
-        axes.set_title("synthetic data", loc="right", fontsize=7.0, color=GREY, fontstyle="italic", pad=3.0)
+        axes.set_title(Message("synthetic data"), loc="right", fontsize=7.0, color=GREY, fontstyle="italic", pad=3.0)
 
 
 def spans_a_decade(values: FloatArray) -> bool:
@@ -234,7 +235,20 @@ def plain_number(value: float, _place: float | None = None) -> str:
     """Label of a tick: 0.05 instead of 5 × 10⁻², with a minus sign."""
     if value != 0 and not 1e-4 <= abs(value) < 1e5:
         return f"$10^{{{np.log10(abs(value)):.0f}}}$"
-    return f"{value:g}".replace("-", "−")
+    return local_number(f"{value:g}".replace("-", "−"))
+
+
+def local_axes(figure: Figure) -> None:
+    """Write the numbers at the axes with the decimal sign of the current language."""
+
+    def local(text: str) -> str:
+        return local_number(Formatter.fix_minus(text))
+
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            for formatter in (axis.get_major_formatter(), axis.get_minor_formatter()):
+                if isinstance(formatter, ScalarFormatter | LogFormatter):
+                    vars(formatter)["fix_minus"] = local  # Matplotlib calls it for each number
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from ..._support.messages import Message, joined
 from ..figures.drawing import Drawing
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMILLION, legend_below, new_figure
 from ..symbols import figure_text, prose
@@ -36,15 +37,18 @@ def race_lines(result: QuickestLine) -> Figure:
 
 
 def _draw_lines(axes: Axes, result: QuickestLine) -> None:
-    for line, colour, label in ((result.start, GREY, "where the search began"), (result.line, BLUE, "quickest line")):
+    for line, colour, label in (
+        (result.start, GREY, Message("where the search began")),
+        (result.line, BLUE, Message("quickest line")),
+    ):
         x, y = _points_of_line(line)
         axes.plot(x, y, color=colour, linewidth=1.6, label=label)
         apex = np.array(line.apexes[1:])
         axes.plot(*apex.T, linestyle="none", marker="|", color=colour, markersize=7.0)
     poles = np.array([gate.turning for gate in result.line.course.gates])
-    axes.plot(*poles.T, linestyle="none", marker="o", color=VERMILLION, markersize=4.2, label="turning pole")
-    axes.set_xlabel("down the slope $x$ (m)")
-    axes.set_ylabel("to the left $y$ (m)")
+    axes.plot(*poles.T, linestyle="none", marker="o", color=VERMILLION, markersize=4.2, label=Message("turning pole"))
+    axes.set_xlabel(Message("down the slope $x$ (m)"))
+    axes.set_ylabel(Message("to the left $y$ (m)"))
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=3))
 
 
@@ -60,14 +64,14 @@ def _draw_history(axes: Axes, result: QuickestLine) -> None:
     axes.plot(number[through], value[through], ".", color=PALE, markersize=3.0, label="evaluation")
     if through.any():
         best = np.minimum.accumulate(np.where(through, value, np.inf))
-        axes.plot(number[np.isfinite(best)], best[np.isfinite(best)], color=BLUE, label="best so far")
+        axes.plot(number[np.isfinite(best)], best[np.isfinite(best)], color=BLUE, label=Message("best so far"))
         low = float(value[through].min())
         axes.set_ylim(low - 0.05, low + 0.03 + max(0.3, float(np.quantile(value[through], 0.9)) - low))
     lost = number[~through]
-    axes.plot(lost, np.full(len(lost), 0.97), "x", color=VERMILLION, markersize=2.6, label="not through all gates",
-              transform=axes.get_xaxis_transform())  # fmt: skip
+    transform, label = axes.get_xaxis_transform(), Message("not through all gates")
+    axes.plot(lost, np.full(len(lost), 0.97), "x", color=VERMILLION, markersize=2.6, label=label, transform=transform)
     axes.set_xlabel("evaluation")
-    axes.set_ylabel("time to the last gate (s)")
+    axes.set_ylabel(Message("time to the last gate (s)"))
 
 
 _ROW_MM, _FRAME_MM = 9.0, 28.0
@@ -81,15 +85,19 @@ def race_worth(variants: Sequence[Worth]) -> Figure:
         values = variant.differences
         axes.plot(values, np.full(len(values), row), "|", color=BLUE, markersize=9.0)
         if not len(values):
-            axes.text(0.0, row, "not through all gates ", ha="right", va="center", fontsize=7.0)
+            axes.text(0.0, row, f"{Message('not through all gates')} ", ha="right", va="center", fontsize=7.0)
         if variant.on_own_snow is not None:
             axes.plot(variant.on_own_snow, row, "D", color=BLACK, markersize=4.5)
     axes.axvline(0.0, color=GREY, linewidth=0.7)
     axes.set_yticks(range(len(variants)), [variant.name for variant in variants])
     axes.set_ylim(len(variants) - 0.4, -0.6)
-    axes.set_xlabel("time more than as it is (s)")
+    axes.set_xlabel(Message("time more than as it is (s)"))
     legend_below(
-        figure, [_handle(BLACK, "D", 4.5, "on the snow of the scenario"), _handle(BLUE, "|", 9.0, "on each snow")]
+        figure,
+        [
+            _handle(BLACK, "D", 4.5, Message("on the snow of the scenario")),
+            _handle(BLUE, "|", 9.0, Message("on each snow")),
+        ],
     )
     return figure
 
@@ -104,8 +112,11 @@ MOST_NAMES = 26
 
 def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawing:
     """Figure with its caption; ``names`` of the run and of the run that it is compared with."""
-    is_crossed = any(gap.gap is not None for gap in gaps)
-    last = f" {last_words(gaps, names)}" if is_crossed else ""
+    alt = Message(
+        "Gap in time at each gate and time lost between gates, {own} against {other}.", own=names[0], other=names[1]
+    )
+    if any(gap.gap is not None for gap in gaps):
+        alt = joined([alt, last_words(gaps, names)])
     return Drawing(
         "gate_gaps",
         prose(
@@ -113,20 +124,22 @@ def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawin
             "that both crossed. Above 0 {own} is behind or loses.",
             own=names[0], other=names[1],
         ),
-        f"Gap in time at each gate and time lost between gates, {names[0]} against {names[1]}.{last}",
+        alt,
         gate_gaps_figure(gaps, names),
         wide=True,
     )  # fmt: skip
 
 
-def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> str:
+def last_words(gaps: Sequence[GateGap], names: tuple[str, str]) -> Message:
     """Sentence about who is ahead at the last gate that both crossed."""
     last = [gap for gap in gaps if gap.gap is not None][-1]
     gap = last.gap or 0.0
-    own, other = names
+    fields = {"own": names[0], "other": names[1], "gate": last.gate, "gap": abs(gap)}
     if abs(gap) < 0.005:
-        return f"{own} and {other} cross gate {last.gate} level."
-    return f"{own} crosses gate {last.gate} {abs(gap):.2f} s {'behind' if gap > 0 else 'ahead of'} {other}."
+        return Message("{own} and {other} cross gate {gate} level.", **fields)
+    if gap > 0:
+        return Message("{own} crosses gate {gate} {gap:.2f} s behind {other}.", **fields)
+    return Message("{own} crosses gate {gate} {gap:.2f} s ahead of {other}.", **fields)
 
 
 def gate_gaps_figure(gaps: Sequence[GateGap], names: tuple[str, str]) -> Figure:
@@ -138,10 +151,10 @@ def gate_gaps_figure(gaps: Sequence[GateGap], names: tuple[str, str]) -> Figure:
     for axes in (above, below):
         axes.axhline(0.0, color=PALE, linewidth=0.8, zorder=0)
     above.plot(crossed, gap, marker="o", markersize=3.4, color=BLUE, linewidth=1.1)
-    above.set_ylabel(f"gap to {figure_text(names[1], longest=24)} (s)\nbehind +")
+    above.set_ylabel(Message("gap to {name} (s)\nbehind +", name=figure_text(names[1], longest=24)))
     below.bar(crossed, lost, width=0.7, color=np.where(lost > 0, VERMILLION, BLUE).tolist())
-    below.set_ylabel("lost since the\ngate before (s)")
-    below.set_xlabel("gate")
+    below.set_ylabel(Message("lost since the\ngate before (s)"))
+    below.set_xlabel(Message("gate"))
     _name_gates(below, gaps)
     figure.align_ylabels()
     return figure

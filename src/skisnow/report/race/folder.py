@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 from markupsafe import Markup
 
 from ..._support.errors import ParameterError
-from ..._support.language import ENGLISH
-from ..._support.messages import Message
+from ..._support.messages import ENGLISH, Message, in_language, local_number
+from ..._support.outcomes import outcome_words
 from ..._support.staging import write_file
 from ...racing import write_line
 from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv, read_gate_gaps
@@ -20,7 +20,7 @@ from ..figures.drawing import FORMS
 from ..figures.figure_files import render_pictures, write_figure, write_pictures
 from ..formatting import aligned_rows, json_text
 from ..sheet import Header, Section, sheet
-from ..symbols import prose
+from ..symbols import html, prose
 from ..table import Column, Table
 from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines, race_worth
 
@@ -108,10 +108,10 @@ _TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
 
 def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     """Table for a terminal with a line for each gate: both times, the gap, the time lost since the gate before."""
-    rows: list[tuple[str, ...]] = [("gate", "time (s)", "other (s)", "gap (s)", "lost (s)")]
+    rows: list[tuple[str, ...]] = [("gate", Message("time (s)"), "other (s)", "gap (s)", "lost (s)")]
     for row in gap_rows(gaps):
         rows.append((str(row["gate"]), *(_hundredths(row[name], signed=name in _TIMES[2:]) or "-" for name in _TIMES)))
-    heading = f"Gates of {names[0]} against {names[1]}, behind +"
+    heading = Message("Gates of {name} against {name_2}, behind +", name=names[0], name_2=names[1])
     return "\n".join([heading, *aligned_rows(rows), _result(gaps, names)])
 
 
@@ -124,7 +124,7 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, 
         A file cannot be written.
     """
     write_file(folder / GAPS_CSV, gaps_csv(gaps))
-    pictures = write_pictures(_drawings(gaps, names), folder, every=(), language=language, names=frozenset(names))
+    pictures = write_pictures(_drawings(gaps, names), folder, every=(), language=language)
     write_file(folder / PAGE, gaps_page(gaps, names, pictures, language=language))
 
 
@@ -146,7 +146,7 @@ def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
             ),
             code="different_courses",
         )
-    pictures = render_pictures(_drawings(gaps, names), language=language, names=frozenset(names))
+    pictures = render_pictures(_drawings(gaps, names), language=language)
     return gaps_page(gaps, names, pictures, language=language)
 
 
@@ -154,12 +154,14 @@ def gaps_page(
     gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture], *, language: str = ENGLISH
 ) -> str:
     """HTML of the page that compares two runs gate by gate."""
-    key, table = prose("{text}", text=_result(gaps, names)), gaps_table(gaps, names)
-    header = Header(
-        "Two runs through the same gates", f"Gates of {names[0]} against {names[1]}", [], headline=_headline(gaps)
-    )
-    section = Section("gates", "Gates", key=[key], pictures=pictures, tables=[table])
-    return sheet(header, [section], language=language, names=frozenset(names))
+    with in_language(language):
+        header = Header(
+            Message("Two runs through the same gates"),
+            Message("Gates of {run} against {other}", run=names[0], other=names[1]), [], headline=_headline(gaps),
+        )  # fmt: skip
+        key = [html(_result(gaps, names))]
+        section = Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[gaps_table(gaps, names)])
+        return sheet(header, [section])
 
 
 def _drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:
@@ -169,18 +171,28 @@ def _drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Dra
 
 def gaps_table(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Table:
     """Table with a row for each gate, times to a hundredth of a second."""
-    headings = ("Gate", "Outcome", "Time", "Outcome of the other", "Its time", "Gap", "Lost")
+    headings = (Message("Gate"), Message("Outcome"), Message("Time"), Message("Outcome of the other"),
+                Message("Its time"), Message("Gap"), Message("Lost"))  # fmt: skip
     columns = [
         Column(name, words, "text", unit="s" if name in _TIMES else "")
         for name, words in zip(GAP_COLUMNS, headings, strict=True)
     ]
     rows = [
-        tuple(_hundredths(row[name], signed=name in _TIMES[2:]) if name in _TIMES else _words(row[name])
-              for name in GAP_COLUMNS)
+        tuple(_gap_cell(name, row[name]) for name in GAP_COLUMNS)
         for row in gap_rows(gaps)
     ]  # fmt: skip
-    note = "Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses."
-    return Table("gate_gaps", f"Gates of {names[0]} against {names[1]}.", tuple(columns), rows, note=note)
+    note = Message("Times count from the start of each run. Gap and lost: above 0 the first run is behind or loses.")
+    caption = Message("Gates of {run} against {other}.", run=names[0], other=names[1])
+    return Table("gate_gaps", caption, tuple(columns), rows, note=note)
+
+
+def _gap_cell(name: str, value: Any) -> str | None:
+    if name == "gate":
+        return str(value)
+    if name not in _TIMES:
+        return outcome_words(value)
+    text = _hundredths(value, signed=name in _TIMES[2:])
+    return None if text is None else local_number(text)
 
 
 def _headline(gaps: tuple[GateGap, ...]) -> Markup:
@@ -188,15 +200,15 @@ def _headline(gaps: tuple[GateGap, ...]) -> Markup:
     if not crossed:
         return Markup("")
     gap = crossed[-1].gap or 0.0
-    return prose(
-        "{value} at gate {gate}; {number} of {all} gates were crossed by both.",
-        value=Markup("<strong>{:.2f} s {}</strong>").format(abs(gap), "behind" if gap > 0.0 else "ahead"),
-        gate=crossed[-1].gate, number=str(len(crossed)), all=str(len(gaps)),
-    )  # fmt: skip
+    value = Markup("<strong>{} s</strong>").format(local_number(f"{abs(gap):.2f}"))
+    fields = {"value": value, "gate": crossed[-1].gate, "number": len(crossed), "all": len(gaps)}
+    if gap > 0.0:
+        return prose("{value} behind at gate {gate}; {number} of {all} gates were crossed by both.", **fields)
+    return prose("{value} ahead at gate {gate}; {number} of {all} gates were crossed by both.", **fields)
 
 
-def _result(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
-    return last_words(gaps, names) if _crossed_by_both(gaps) else "No gate was crossed by both."
+def _result(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Message:
+    return last_words(gaps, names) if _crossed_by_both(gaps) else Message("No gate was crossed by both.")
 
 
 def _crossed_by_both(gaps: tuple[GateGap, ...]) -> list[GateGap]:
@@ -207,10 +219,6 @@ def _hundredths(value: float | None, *, signed: bool = False) -> str | None:
     if value is None:
         return None
     return f"{value:+.2f}" if signed else f"{value:.2f}"
-
-
-def _words(cell: str) -> str:
-    return cell.replace("_", " ")
 
 
 def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> str:

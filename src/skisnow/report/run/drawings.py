@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from markupsafe import Markup
+
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
@@ -28,7 +30,6 @@ from .track_figure import CUTOUT, STEADY, run_track
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from markupsafe import Markup
     from matplotlib.figure import Figure
 
     from ...simulation.run import Run
@@ -61,7 +62,10 @@ def _track(run: Run) -> Drawing:
             length=significant(CUTOUT, 2),
             lines=STEADY,
         ),
-        f"Tracks of both skis from above, {significant(run.run_length)} m long, and their grooves.",
+        Message(
+            "Tracks of both skis from above, {run_length} m long, and their grooves.",
+            run_length=significant(run.run_length),
+        ),
         run_track(run),
         wide=True,
     )
@@ -71,11 +75,11 @@ def _course(run: Run) -> Drawing:
     return Drawing(
         "course",
         prose(
-            "The line of the middle between the boots over the course, from above; colour: edge angle at the "
-            "boots, positive with the left edges down. A cross: the gate was not passed. Gates to "
-            "which no outer pole is known are drawn with a piece of their line."
+            "The line of the middle between the boots over the course, from above; colour: edge angle at the boots, "
+            "positive with the left edges down. A cross: the gate was not passed. Gates to which no outer pole is "
+            "known are drawn with a piece of their line."
         ),
-        "Line over the gates of the course, coloured by edge angle.",
+        Message("Line over the gates of the course, coloured by edge angle."),
         run_course(run),
         wide=True,
     )
@@ -89,7 +93,7 @@ def _motion(run: Run) -> Drawing:
             "is left out where it is more than three times its median."
         )
         + _carved_radius(run),
-        "Speed, heading and turn radius over time.",
+        Message("Speed, heading and turn radius over time."),
         run_motion(run),
         wide=True,
     )
@@ -99,11 +103,11 @@ def _boots(run: Run) -> Drawing:
     return Drawing(
         "boots",
         prose(
-            "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: "
-            "(b) off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, "
-            "positive where it turns the left edge up. Each axis leaves one peak in a hundred out."
+            "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: (b) "
+            "off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, positive where "
+            "it turns the left edge up. Each axis leaves one peak in a hundred out."
         ),
-        "Edge angles of both boots, and forces and edging moment of the skis on them, over time.",
+        Message("Edge angles of both boots, and forces and edging moment of the skis on them, over time."),
         run_boots(run),
         wide=True,
     )
@@ -113,11 +117,11 @@ def _balance(run: Run) -> Drawing:
     return Drawing(
         "balance",
         prose(
-            "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean "
-            "that would be in balance with speed and path radius of the centre of mass. Force of the snow on each "
-            "ski: (b) total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
+            "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean that "
+            "would be in balance with speed and path radius of the centre of mass. Force of the snow on each ski: (b) "
+            "total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
         ),
-        "Lean, edge angle and forces of a skier over time.",
+        Message("Lean, edge angle and forces of a skier over time."),
         run_balance(run),
         wide=True,
     )
@@ -131,7 +135,7 @@ def _along_ski(run: Run) -> Drawing:
             "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
             "load the afterbody runs in the groove that the forebody cut."
         ),
-        "Maps of edge depth and normal force per length over position along the ski and time, for both skis.",
+        Message("Maps of edge depth and normal force per length over position along the ski and time, for both skis."),
         run_along_ski(run),
         wide=True,
     )
@@ -148,7 +152,7 @@ def _grip(run: Run) -> Drawing:
             slip=significant(json_number(slip_of_a_place(run) / MM), 2),
         )
         + _other_strength(run),
-        "Grip utilisation of each ski over time.",
+        Message("Grip utilisation of each ski over time."),
         run_grip(run),
         wide=True,
     )
@@ -158,10 +162,10 @@ def _energies(run: Run) -> Drawing:
     return Drawing(
         "energies",
         prose(
-            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) "
-            "Only the losses."
+            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) Only "
+            "the losses."
         ),
-        "Stored energies and losses over time, stacked.",
+        Message("Stored energies and losses over time, stacked."),
         run_energies(run),
         wide=True,
     )
@@ -170,10 +174,10 @@ def _energies(run: Run) -> Drawing:
 def _carved_radius(run: Run) -> Markup:
     """Sentence about the dotted line of the carved radius; empty for moving boots, which have none."""
     if run.boots_by is not None:
-        return prose("")
+        return Markup("")
     return prose(
-        " Dotted: the radius of a ski that is bent onto a hard plane at {angle}° without twist.",
-        angle=f"{run.scenario.sledge.edge_angle / DEGREE:.3g}",
+        " Dotted: the radius of a ski that is bent onto a hard plane at {angle:.3g}° without twist.",
+        angle=run.scenario.sledge.edge_angle / DEGREE,
     )
 
 
@@ -181,10 +185,10 @@ def _other_strength(run: Run) -> Markup:
     """Sentence about a law in Python that replaces the scenario's S_f; empty without one."""
     laws = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
     if not laws:
-        return prose("")
+        return Markup("")
     return prose(
-        " S_f here is the scenario's; the run had another strength ({given}, given in Python), whose limit is "
-        "not at 1.",
+        " S_f here is the scenario's; the run had another strength ({given}, given in Python), whose limit is not at "
+        "1.",
         given=", ".join(laws),
     )
 

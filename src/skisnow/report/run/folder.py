@@ -6,19 +6,18 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ..._support.errors import OutputError
-from ..._support.language import ENGLISH, codes, require_language
-from ..._support.messages import Message
+from ..._support.errors import OutputError, require_language
+from ..._support.messages import ENGLISH, Message, in_language, languages
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import GivenError, plain_text
 from ...scenario.plausibility import implausible_values
-from ...simulation.run_summary import run_gates, summary_dict
+from ...simulation.run_gates import run_gates
+from ...simulation.run_summary import summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv
 from ..figures.figure_files import picture_files, silent
 from ..formatting import json_text
-from ..translated import translated_html
-from .page import FIGURES, FURTHER, REPLAY, REPLAY_FACT, write_run_report
+from .page import FIGURES, FURTHER, REPLAY, replay_fact, write_run_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -149,8 +148,9 @@ def with_link(page: str) -> str:
     <h2 id="scenario">1</h2>
     """
     declared = _LANGUAGE.search(page)
-    language = declared[1] if declared and declared[1] in codes() else ENGLISH
+    language = declared[1] if declared and declared[1] in languages() else ENGLISH
     if f'href="{REPLAY}"' in page or "skisnow" not in page or 'id="scenario"' not in page:
         return page
-    fact = translated_html(REPLAY_FACT, language)
+    with in_language(language):
+        fact = replay_fact()
     return _FACTS.sub(lambda match: f"{match[1]}{fact}\n{match[2]}", page, count=1)

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..._support.language import ENGLISH
+from ..._support.messages import ENGLISH, Message, in_language, local_number, template
+from ..._support.outcomes import outcome_words
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
-from ...scenario.keys import SCENARIO_KEYS
 from ...scenario.plausibility import model_limits
-from ...simulation.run_summary import run_gates, run_warnings
+from ...simulation.run_gates import run_gates
+from ...simulation.run_summary import run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
 from ..figures.figure_files import silent, write_pictures
@@ -38,14 +39,17 @@ FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")
 """Names of a run's figures, in figures/ as .png and .svg."""
 FURTHER: Final = ("course", "balance", "boots")
 """Names of the further figures of a run with a course, a skier, or moving boots."""
-CHOICES: Final = frozenset(word for key in SCENARIO_KEYS.values() for word in key.choices)
-"""Words of scenario files, which are not translated."""
 REPLAY: Final = "replay.html"
 """Name of the file with the replay."""
 
-_LINK: Final = Markup('<a href="{}">the run in three dimensions</a>').format(REPLAY)
-REPLAY_FACT: Final = Markup("<dt>Replay</dt><dd>{}</dd>").format(_LINK)
-"""Link to the replay among the facts of the page."""
+
+def replay_fact() -> Markup:
+    """Link to the replay among the facts of the page."""
+    return Markup("<dt>{}</dt><dd>{}</dd>").format(str(Message("Replay")), _replay_link())
+
+
+def _replay_link() -> Markup:
+    return Markup('<a href="{}">{}</a>').format(REPLAY, str(Message("the run in three dimensions")))
 
 
 def write_run_report(
@@ -103,28 +107,39 @@ def run_page(
     language: str = ENGLISH,
 ) -> str:
     """HTML of a run's report, with a link to the replay if there is one."""
+    with in_language(language):
+        return _page(run, summary, pictures, has_replay=has_replay)
+
+
+def _page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, has_replay: bool) -> str:
     by_name = {picture.name: [picture] for picture in pictures}
     sections = [
-        Section("outcome", "Outcome", key=outcome_sentences(run), pictures=by_name.get("track", ())),
+        Section("outcome", Message("Outcome"), key=outcome_sentences(run), pictures=by_name.get("track", ())),
         *_course_section(run, by_name),
-        Section("motion", "Speed, heading, turn radius", pictures=by_name.get("motion", ())),
+        Section("motion", Message("Speed, heading, turn radius"), pictures=by_name.get("motion", ())),
         *_boots_sections(by_name),
         Section(
             "along-skis",
-            "Along the skis",
+            Message("Along the skis"),
             pictures=[*by_name.get("along_ski", ()), *by_name.get("grip", ())],
             tables=[skis_table(run)],
         ),
-        Section("energies", "Energies", pictures=by_name.get("energies", ()), tables=[energies_table(dict(summary))]),
+        Section(
+            "energies",
+            Message("Energies"),
+            pictures=by_name.get("energies", ()),
+            tables=[energies_table(dict(summary))],
+        ),
     ]
     if not pictures:
-        sections = [Section("outcome", "Outcome", key=outcome_sentences(run), words=[_no_step()])]
+        sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[_no_step()])]
     if summary.get("verification"):
-        sections.append(Section("verification", "Computed again", tables=[verification_table(summary["verification"])]))
-    sections.append(Section("scenario", "Scenario", tables=[scenario_table(summary["scenario"])]))
-    sections.append(Section("provenance", "Provenance", words=provenance_sentences(run, summary)))
-    header = _header(run, has_replay=has_replay)
-    return sheet(header, sections, language=language, names=CHOICES | {run.scenario.ski.name})
+        sections.append(
+            Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
+        )
+    sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
+    sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
+    return sheet(_header(run, has_replay=has_replay), sections)
 
 
 def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
@@ -132,36 +147,47 @@ def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[
     if result is None:
         return []
     words = [prose("{text}.", text=text) for text in time_warnings(result)]
-    return [Section("gates", "Gates", words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)])]
+    return [
+        Section(
+            "gates", Message("Gates"), words=words, pictures=by_name.get("course", ()), tables=[gates_table(result)]
+        )
+    ]
 
 
 def _boots_sections(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
-    titles = {"balance": "Balance of the skier", "boots": "Boots"}
+    titles = {"balance": Message("Balance of the skier"), "boots": Message("Boots")}
     return [Section(name, title, pictures=by_name[name]) for name, title in titles.items() if name in by_name]
 
 
 def _header(run: Run, *, has_replay: bool) -> Header:
     scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
     facts = [
-        ("Snow", html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}")),
-        ("Source of the snow", scenario.contact.snow.source),
+        (
+            Message("Snow"),
+            html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}"),
+        ),
+        (Message("Source of the snow"), scenario.contact.snow.source),
         *_replaced_laws(run),
-        ("Skis", f"{scenario.ski.name}, {_edge_in_words(run)}"),
-        ("Computed", f"skisnow {version('skisnow')}"),
-        *([("Replay", _LINK)] if has_replay else []),
+        (Message("Skis"), f"{scenario.ski.name}, {_edge_in_words(run)}"),
+        (Message("Computed"), f"skisnow {version('skisnow')}"),
+        *([(Message("Replay"), _replay_link())] if has_replay else []),
     ]  # fmt: skip
-    who = "sledge" if scenario.skier is None else "skier"
-    return Header(f"A simulated run of a {who} on two flexible skis", _title(run), facts, headline=_headline(run))
+    kind = (
+        Message("A simulated run of a sledge on two flexible skis")
+        if scenario.skier is None
+        else Message("A simulated run of a skier on two flexible skis")
+    )
+    return Header(kind, _title(run), facts, headline=_headline(run))
 
 
 def _edge_in_words(run: Run) -> str:
     if run.scenario.skier is not None:
-        return "edged by the skier"
+        return Message("edged by the skier")
     if run.boots_by is not None:
         angles = edge_angles_of_skis(run) / DEGREE
         low, high = (significant(float(angle), 2) for angle in (np.nanmin(angles), np.nanmax(angles)))
-        return f"edge angles from {low}° to {high}°"
-    return f"edge angle {significant(run.scenario.sledge.edge_angle / DEGREE)}°"
+        return Message("edge angles from {low}° to {high}°", low=low, high=high)
+    return Message("edge angle {angle}°", angle=significant(run.scenario.sledge.edge_angle / DEGREE))
 
 
 def _headline(run: Run) -> Markup:
@@ -171,23 +197,30 @@ def _headline(run: Run) -> Markup:
     if result is not None and len(times) > 1:
         return prose(
             "{value} between the first and the last gate that was reached; {passed} of {all} gates passed.",
-            value=Markup("<strong>{:.2f} s</strong>").format(times[-1] - times[0]),
-            passed=str(result.passed), all=str(len(result.times)),
+            value=Markup("<strong>{} s</strong>").format(local_number(f"{times[-1] - times[0]:.2f}")),
+            passed=result.passed, all=len(result.times),
         )  # fmt: skip
     radii = [run.turn_radius_quantile(share) for share in (0.05, 0.5, 0.95)]
     if all(radius is not None and np.isfinite(radius) for radius in radii):
-        return _median_and_range("Turn radius", "m", [float(radius) for radius in radii if radius is not None])
+        return _median_and_range(
+            template("Turn radius {value} (median; nine tenths of the time from {low} to {high})."),
+            "m",
+            [float(radius) for radius in radii if radius is not None],
+        )
     speed = run.speed[np.isfinite(run.speed)]
     if not speed.size:
         return Markup("")
-    return _median_and_range("Speed", "m/s", np.quantile(speed, [0.05, 0.5, 0.95]).tolist())
+    return _median_and_range(
+        template("Speed {value} (median; nine tenths of the time from {low} to {high})."),
+        "m/s",
+        np.quantile(speed, [0.05, 0.5, 0.95]).tolist(),
+    )
 
 
-def _median_and_range(name: str, unit: str, quantiles: Sequence[float]) -> Markup:
+def _median_and_range(sentence: str, unit: str, quantiles: Sequence[float]) -> Markup:
     low, middle, high = map(significant, quantiles)
     return prose(
-        "{name} {value} (median; nine tenths of the time from {low} to {high}).",
-        name=name, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
+        sentence, value=Markup("<strong>{} {}</strong>").format(middle, unit), low=low, high=f"{high}\u00a0{unit}",
     )  # fmt: skip
 
 
@@ -195,11 +228,16 @@ def _replaced_laws(run: Run) -> Iterator[tuple[str, str]]:
     """Names and descriptions of the laws that replaced those of the scenario."""
     for name, law in run.given_laws.items():
         if law:
-            yield f"{name.replace('_', ' ').capitalize()}, given in Python", law
+            yield Message("{law}, given in Python", law=name.replace("_", " ").capitalize()), law
 
 
 def _title(run: Run) -> str:
-    return f"{_number(run.run_length)} m in {_number(run.simulated_s)} s: {run.outcome.replace('_', ' ')}"
+    return Message(
+        "{length} m in {time} s: {outcome}",
+        length=_number(run.run_length),
+        time=_number(run.simulated_s),
+        outcome=outcome_words(run.outcome),
+    )
 
 
 def _hardness(run: Run) -> str:
@@ -219,12 +257,14 @@ def _value(value: float | None, over_place: Grid | None, size: float, unit: str)
     if over_place is None:
         return f"{_number(None if value is None else value / size)} {unit}"
     low, high = float(over_place.values.min()), float(over_place.values.max())
-    return f"{_number(low / size)} to {_number(high / size)} {unit} over the place"
+    return Message(
+        "{low} to {high} {unit} over the place", low=_number(low / size), high=_number(high / size), unit=unit
+    )
 
 
 def outcome_sentences(run: Run) -> list[Markup]:
     """Sentences with the outcome, its remedy, and the main numbers of the run."""
-    sentences = [prose("Outcome: {outcome}. {remedy}", outcome=run.outcome.replace("_", " "), remedy=run.remedy)]
+    sentences = [prose("Outcome: {outcome}. {remedy}", outcome=outcome_words(run.outcome), remedy=run.remedy)]
     sentences.append(
         prose(
             "{length} m in {time} s, from {first} to {last} m/s, maximum {most} m/s.",
@@ -235,8 +275,8 @@ def outcome_sentences(run: Run) -> list[Markup]:
     )  # fmt: skip
     sentences.append(
         prose(
-            "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, "
-            "5 % of the time below {lower} m, without the first half second.",
+            "Heading from {first}° to {last}° (positive: left of the fall line); median turn radius {radius} m, 5 % of "
+            "the time below {lower} m, without the first half second.",
             first=_angle(float(run.heading[0])), last=_angle(float(run.heading[-1])),
             radius=_number(run.turn_radius_quantile(0.5)), lower=_number(run.turn_radius_quantile(0.05)),
         )
@@ -258,7 +298,7 @@ def _balance(run: Run) -> list[Markup]:
 
 
 def _no_step() -> Markup:
-    return html("The run ended before its first step; there is nothing to draw.")
+    return prose("The run ended before its first step; there is nothing to draw.")
 
 
 def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
@@ -271,7 +311,8 @@ def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:
         prose("Programs: {versions}.", versions=versions or f"skisnow {version('skisnow')}"),
         prose(
             "{steps} ({rejected} rejected) in {wall} s: {rate} times real time. {numbers}.",
-            steps=counted(run.steps, "step"), rejected=whole(run.rejected_steps), wall=_number(run.wall_s),
+            steps=counted(run.steps, "{count} step", "{count} steps"), rejected=whole(run.rejected_steps),
+            wall=_number(run.wall_s),
             rate=_number(rate), numbers=numbers,
         ),
         prose(

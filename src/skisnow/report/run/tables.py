@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.messages import Message
+from ..._support.outcomes import outcome_words
 from ...scenario.keys import SCENARIO_KEYS
 from ...simulation.run import OPEN_SHARE
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
 from ..table import Column, Table
 from .time_figures import grip_utilisation, gross_grip_utilisation
+from .track_figure import SKIS
 
 if TYPE_CHECKING:
     from ...simulation.run import Run
@@ -24,27 +27,23 @@ FloatArray: TypeAlias = npt.NDArray[np.float64]
 Json = Mapping[str, Any]
 
 _STORED: Final = (
-    ("kinetic_J", "kinetic"),
-    ("potential_J", "potential"),
-    ("elastic_ski_J", "elastic, in the skis"),
-    ("elastic_snow_J", "elastic, in the snow"),
-    ("delayed_snow_J", "stored in the delayed depth of the snow"),
-)
-_OVER: Final = (
-    "which is the kinetic energy at the start, all losses and the largest fall in potential energy. Losses contain no "
-    "stored energy."
+    ("kinetic_J", Message("kinetic")),
+    ("potential_J", Message("potential")),
+    ("elastic_ski_J", Message("elastic, in the skis")),
+    ("elastic_snow_J", Message("elastic, in the snow")),
+    ("delayed_snow_J", Message("stored in the delayed depth of the snow")),
 )
 _LOST: Final = (
-    ("lost_penetration_J", "lost to the grooves"),
-    ("lost_shear_J", "lost to side-slip"),
-    ("lost_friction_J", "lost to friction"),
-    ("lost_drag_J", "lost to air drag"),
-    ("lost_damping_J", "lost to damping of the skis"),
-    ("lost_snow_damping_J", "lost to damping and delayed depth of the snow"),
+    ("lost_penetration_J", Message("lost to the grooves")),
+    ("lost_shear_J", Message("lost to side-slip")),
+    ("lost_friction_J", Message("lost to friction")),
+    ("lost_drag_J", Message("lost to air drag")),
+    ("lost_damping_J", Message("lost to damping of the skis")),
+    ("lost_snow_damping_J", Message("lost to damping and delayed depth of the snow")),
 )
 _GIVEN: Final = (
-    ("given_boots_J", "given by what moves the boots"),
-    ("given_push_J", "given by a push"),
+    ("given_boots_J", Message("given by what moves the boots")),
+    ("given_push_J", Message("given by a push")),
 )
 
 
@@ -58,12 +57,12 @@ def scenario_table(values: Json) -> Table:
     """
     return Table(
         "scenario",
-        "The scenario: every key with the value in force; a dash: not given.",
+        Message("The scenario: every key with the value in force; a dash: not given."),
         (
-            Column("key", "Key", "text"),
-            Column("value", "Value", "text"),
-            Column("unit", "Unit", "text"),
-            Column("meaning", "Meaning", "text"),
+            Column("key", Message("Key"), "text"),
+            Column("value", Message("Value"), "text"),
+            Column("unit", Message("Unit"), "text"),
+            Column("meaning", Message("Meaning"), "text"),
         ),
         [(name, _text(value), *_unit_and_meaning(name)) for name, value in by_full_name(values)],
     )
@@ -84,7 +83,7 @@ def by_full_name(values: Json) -> Iterator[tuple[str, Any]]:
 
 def _unit_and_meaning(name: str) -> tuple[str, str]:
     key = SCENARIO_KEYS.get(name)
-    return ("", "") if key is None else (key.unit, key.meaning)
+    return ("", "") if key is None else (key.unit, Message(key.meaning))
 
 
 def _text(value: Any) -> str | None:
@@ -94,8 +93,12 @@ def _text(value: Any) -> str | None:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(str(_text(item)) for item in value)}]"
-    return f"{value:.10g}" if isinstance(value, int | float) else str(value)
+        return Message("{values:.10g}", values=tuple(value)) if _are_numbers(value) else str(list(value))
+    return Message("{value:.10g}", value=value) if isinstance(value, int | float) else str(value)
+
+
+def _are_numbers(values: Sequence[Any]) -> bool:
+    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
 
 
 def skis_table(run: Run) -> Table:
@@ -103,25 +106,27 @@ def skis_table(run: Run) -> Table:
     histories = run.skis.total_force, run.skis.normal_force, grip_utilisation(run), gross_grip_utilisation(run)
     rows = [
         (name, *(value for each in histories for value in _middle_and_high(each[:, ski])))
-        for ski, name in enumerate(("left ski", "right ski"))
+        for ski, name in enumerate(SKIS)
     ]
     return Table(
         "skis",
-        "Force of the snow on each ski, and its grip utilisation: median and 95 % quantile over time.",
+        Message("Force of the snow on each ski, and its grip utilisation: median and 95 % quantile over time."),
         (
-            Column("ski", "Ski", "words"),
-            Column("total_force_N", "Total force", unit="N"),
+            Column("ski", Message("Ski"), "words"),
+            Column("total_force_N", Message("Total force"), unit="N"),
             Column("total_force_p95_N", "95 %", unit="N"),
-            Column("normal_force_N", "Normal force", unit="N"),
+            Column("normal_force_N", Message("Normal force"), unit="N"),
             Column("normal_force_p95_N", "95 %", unit="N"),
-            Column("grip_utilisation", "Grip utilisation"),
+            Column("grip_utilisation", Message("Grip utilisation")),
             Column("grip_utilisation_p95", "95 %"),
-            Column("gross_grip_utilisation", "Gross"),
+            Column("gross_grip_utilisation", Message("Gross")),
             Column("gross_grip_utilisation_p95", "95 %"),
         ),
         rows,
-        note="Total force: normal force, shear and friction as one vector. Grip utilisation: side force over shear "
-        "capacity; at 1 the ski side-slips. Gross: sum of the sizes of the shear along the edge over the capacity.",
+        note=Message(
+            "Total force: normal force, shear and friction as one vector. Grip utilisation: side force over shear "
+            "capacity; at 1 the ski side-slips. Gross: sum of the sizes of the shear along the edge over the capacity."
+        ),
     )
 
 
@@ -139,21 +144,29 @@ def energies_table(summary: Json) -> Table:
     rows += [(label, None, energies[key], energies[key]) for key, label in _LOST]
     rows += [(label, None, energies[key], -energies[key]) for key, label in _GIVEN if energies.get(key)]
     error = summary["energy_balance_error"]
-    note = (
-        "No energy was exchanged."
-        if error is None
-        else f"The energy residual is {significant(100.0 * error, 2)} % of the energy exchanged, {_OVER}"
-        if error > OPEN_SHARE
-        else f"The changes add up to 0 within {significant(100.0 * error, 2)} % of the energy exchanged, {_OVER}"
-    )
+    share = significant(None if error is None else 100.0 * error, 2)
+    if error is None:
+        note = Message("No energy was exchanged.")
+    elif error > OPEN_SHARE:
+        note = Message(
+            "The energy residual is {share} % of the energy exchanged, which is the kinetic energy at the start, all "
+            "losses and the largest fall in potential energy. Losses contain no stored energy.",
+            share=share,
+        )
+    else:
+        note = Message(
+            "The changes add up to 0 within {share} % of the energy exchanged, which is the kinetic energy at the "
+            "start, all losses and the largest fall in potential energy. Losses contain no stored energy.",
+            share=share,
+        )
     return Table(
         "energies",
-        "Energies and losses.",
+        Message("Energies and losses."),
         (
-            Column("energy", "Energy", "words"),
-            Column("start_J", "Start", unit="J", digits=4),
-            Column("end_J", "End", unit="J", digits=4),
-            Column("change_J", "Change", unit="J", digits=4),
+            Column("energy", Message("Energy"), "words"),
+            Column("start_J", Message("Start"), unit="J", digits=4),
+            Column("end_J", Message("End"), unit="J", digits=4),
+            Column("change_J", Message("Change"), unit="J", digits=4),
         ),
         rows,
         note=note,
@@ -175,16 +188,19 @@ def verification_table(verification: Json) -> Table:
     """
     return Table(
         "verification",
-        "The same run with one choice of the solver finer, or one input another, at a time, and how far its end moves.",
+        Message(
+            "The same run with one choice of the solver finer, or one input another, at a time, and how far its end "
+            "moves."
+        ),
         (
-            Column("key", "Key", "text"),
-            Column("was", "Was"),
-            Column("now", "Again with"),
-            Column("end_moves_cm", "End moves by", unit="cm"),
-            Column("outcome", "Outcome", "text"),
+            Column("key", Message("Key"), "text"),
+            Column("was", Message("Was")),
+            Column("now", Message("Again with")),
+            Column("end_moves_cm", Message("End moves by"), unit="cm"),
+            Column("outcome", Message("Outcome"), "text"),
         ),
         [
-            (name, row["was"], row["now"], row["end_moves_cm"], row["outcome"].replace("_", " "))
+            (name, row["was"], row["now"], row["end_moves_cm"], outcome_words(row["outcome"]))
             for name, row in verification.items()
         ],
     )
@@ -192,26 +208,25 @@ def verification_table(verification: Json) -> Table:
 
 def gates_table(result: CourseResult) -> Table:
     """Table with a row for each gate, times and poles with two decimals."""
-    rows = [tuple(_words(row[name]) for name in COLUMNS) for row in gate_rows(result)]
+    rows = [
+        tuple(outcome_words(row[name]) if name in ("side", "outcome") else row[name] for name in COLUMNS)
+        for row in gate_rows(result)
+    ]
     fault = result.fault
     return Table(
         "gates",
-        f"{result.passed} of {len(result.passages)} gates passed.",
+        Message("{passed} of {n_passages} gates passed.", passed=result.passed, n_passages=len(result.passages)),
         (
-            Column("gate", "Gate", "text"),
-            Column("side", "Side", "text"),
-            Column("outcome", "Outcome", "text"),
-            Column("time_s", "Time", "hundredths", unit="s"),
-            Column("split_s", "From the gate before", "hundredths", unit="s"),
-            Column("speed_m_per_s", "Speed", unit="m/s"),
-            Column("clearance_m", "From the pole", unit="m"),
-            Column("x_m", "Turning pole x", "hundredths", unit="m"),
+            Column("gate", Message("Gate"), "text"),
+            Column("side", Message("Side"), "text"),
+            Column("outcome", Message("Outcome"), "text"),
+            Column("time_s", Message("Time"), "hundredths", unit="s"),
+            Column("split_s", Message("From the gate before"), "hundredths", unit="s"),
+            Column("speed_m_per_s", Message("Speed"), unit="m/s"),
+            Column("clearance_m", Message("From the pole"), unit="m"),
+            Column("x_m", Message("Turning pole x"), "hundredths", unit="m"),
             Column("y_m", "y", "hundredths", unit="m"),
         ),
         rows,
-        note="" if fault is None else f"{fault.words[0].upper()}{fault.words[1:]}.",
+        note="" if fault is None else Message("First fault: {fault}.", fault=fault.words),
     )
-
-
-def _words(cell: object) -> object:
-    return cell.replace("_", " ") if isinstance(cell, str) else cell

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
 from ...simulation.run import LOST, STORED
 from ..figures.course import edge_angles_of_skis
@@ -29,7 +30,7 @@ from ..figures.style import (
     new_figure,
 )
 from ..formatting import significant
-from .track_figure import SKI_COLOURS
+from .track_figure import SKI_COLOURS, SKIS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -49,13 +50,13 @@ def run_motion(run: Run) -> Figure:
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=118.0)
     speed, heading, radius = figure.subplots(3, 1, sharex=True)
     speed.plot(run.time, run.speed, color=BLUE)
-    speed.set_ylabel("speed (m/s)")
+    speed.set_ylabel(Message("speed (m/s)"))
     speed.set_ylim(0.0, 1.12 * max(float(np.nanmax(run.speed)), 0.1))
     heading.plot(run.time, run.heading / DEGREE, color=BLUE)
     heading.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
-    heading.set_ylabel("heading (°)\nleft of the fall line +")
+    heading.set_ylabel(Message("heading (°)\nleft of the fall line +"))
     _draw_radius(radius, run)
-    radius.set_xlabel("time (s)")
+    radius.set_xlabel(Message("time (s)"))
     radius.set_xlim(float(run.time[0]), float(run.time[-1]))
     figure.align_ylabels()
     return figure
@@ -70,10 +71,10 @@ def _draw_radius(axes: Axes, run: Run) -> None:
         carved = math.copysign(run.scenario.ski.sidecut_radius_of_three_widths * math.cos(angle), angle)
         axes.axhline(carved, color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9)
         axes.annotate(
-            "sidecut radius × cos ϑ", (1.0, carved), (0, 2), xycoords=("axes fraction", "data"),
+            Message("sidecut radius × cos ϑ"), (1.0, carved), (0, 2), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="right", va="bottom", fontsize=6.5, color=GREY,
         )  # fmt: skip
-    axes.set_ylabel("turn radius (m)\nto the left +")
+    axes.set_ylabel(Message("turn radius (m)\nto the left +"))
 
 
 def drawn_radius(radius: FloatArray) -> FloatArray:
@@ -85,17 +86,17 @@ def drawn_radius(radius: FloatArray) -> FloatArray:
 
 
 _STYLES: Final = {
-    "kinetic": (BLUE, "kinetic"),
-    "potential": (SKY, "potential, above its minimum"),
-    "elastic_ski": (GREY, "in the bent skis"),
-    "elastic_snow": (PALE, "in the pressed snow"),
-    "delayed_snow": (SAND, "in the delayed depth"),
-    "penetration": (GREEN, "lost: groove"),
-    "shear": (VERMILLION, "lost: side-slip"),
-    "friction": (ORANGE, "lost: friction"),
-    "drag": (PURPLE, "lost: air"),
-    "damping": (BLACK, "lost: damping"),
-    "snow_damping": (BROWN, "lost: damping of the snow"),
+    "kinetic": (BLUE, Message("kinetic")),
+    "potential": (SKY, Message("potential, above its minimum")),
+    "elastic_ski": (GREY, Message("in the bent skis")),
+    "elastic_snow": (PALE, Message("in the pressed snow")),
+    "delayed_snow": (SAND, Message("in the delayed depth")),
+    "penetration": (GREEN, Message("lost: groove")),
+    "shear": (VERMILLION, Message("lost: side-slip")),
+    "friction": (ORANGE, Message("lost: friction")),
+    "drag": (PURPLE, Message("lost: air")),
+    "damping": (BLACK, Message("lost: damping")),
+    "snow_damping": (BROWN, Message("lost: damping of the snow")),
 }
 _RATE: Final = ("delayed_snow", "snow_damping")
 
@@ -110,7 +111,7 @@ def run_energies(run: Run) -> Figure:
     total_axes.axhline(float(total), color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
     total_axes.set_title(_residual_in_words(run), loc="left", fontsize=7.5)
     _stack(losses, run, shares, LOST)
-    losses.set_title("losses alone", loc="left", fontsize=7.5)
+    losses.set_title(Message("losses alone"), loc="left", fontsize=7.5)
     drawn = [style for name, style in _STYLES.items() if name not in _RATE or shares[name].any()]
     legend_below(figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in drawn])
     return figure
@@ -128,16 +129,18 @@ def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str
         run.time, [shares[name] for name in names], colors=[_STYLES[name][0] for name in names], linewidth=0.0
     )
     axes.set_xlim(float(run.time[0]), float(run.time[-1]))
-    axes.set_xlabel("time (s)")
-    axes.set_ylabel("energy (J)")
+    axes.set_xlabel(Message("time (s)"))
+    axes.set_ylabel(Message("energy (J)"))
 
 
 def _residual_in_words(run: Run) -> str:
     error = run.energy_balance_error
     if error is None or not np.isfinite(error):
-        return "no energy was exchanged" if error is None else "not finite at the end"
+        return Message("no energy was exchanged") if error is None else Message("not finite at the end")
     over = significant(run.energy_exchanged)
-    return f"residual {significant(100.0 * error, 2)} % of {over} J exchanged; dashed: the start"
+    return Message(
+        "residual {value} % of {over} J exchanged; dashed: the start", value=significant(100.0 * error, 2), over=over
+    )
 
 
 def run_balance(run: Run) -> Figure:
@@ -147,25 +150,25 @@ def run_balance(run: Run) -> Figure:
     balance, boots = run.balance, run.boots
     assert boots is not None
     edge = balance.lean + balance.angulation
-    leans.plot(run.time, edge / DEGREE, color=ORANGE, label="edge angle")
-    leans.plot(run.time, balance.lean / DEGREE, color=BLUE, label="lean")
+    leans.plot(run.time, edge / DEGREE, color=ORANGE, label=Message("edge angle"))
+    leans.plot(run.time, balance.lean / DEGREE, color=BLUE, label=Message("lean"))
     leans.plot(run.time, balance.balanced_lean / DEGREE, color=GREY, linewidth=0.8, linestyle=(0, (2, 1)),
-               label="lean in balance")  # fmt: skip
+               label=Message("lean in balance"))  # fmt: skip
     most = 1.15 * float(np.nanmax(np.abs(np.concatenate([edge, balance.lean])))) / DEGREE
     leans.set_ylim(-max(most, 1.0), max(most, 1.0))
-    leans.set_ylabel("lean, edge angle (°)\nto the left +")
+    leans.set_ylabel(Message("lean, edge angle (°)\nto the left +"))
     left = np.cross(np.array([0.0, 0.0, 1.0]), boots.axes[:, :, 0])
     draw_both(totals, run, run.skis.total_force)
-    totals.set_ylabel("total\nforce (N)")
+    totals.set_ylabel(Message("total\nforce (N)"))
     draw_both(normals, run, run.skis.normal_force)
-    normals.set_ylabel("normal\nforce (N)")
+    normals.set_ylabel(Message("normal\nforce (N)"))
     draw_both(sides, run, np.einsum("nka,nka->nk", run.skis.force, left))
-    sides.set_ylabel("side force (N)\nto the left +")
+    sides.set_ylabel(Message("side force (N)\nto the left +"))
     for axes in (leans, totals, normals, sides):
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     for axes in (leans, totals):
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2, frameon=False)
-    sides.set_xlabel("time (s)")
+    sides.set_xlabel(Message("time (s)"))
     sides.set_xlim(float(run.time[0]), float(run.time[-1]))
     figure.align_ylabels()
     return figure
@@ -173,7 +176,7 @@ def run_balance(run: Run) -> Figure:
 
 def draw_both(axes: Axes, run: Run, values: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> None:
     """Draw a quantity of both skis; the axis omits 1 % of peaks."""
-    for ski, (name, colour) in enumerate((("left ski", BLUE), ("right ski", ORANGE))):
+    for ski, (name, colour) in enumerate(zip(SKIS, (BLUE, ORANGE), strict=True)):
         hidden = ski == 0 and np.allclose(values[:, 0], values[:, 1])
         axes.plot(run.time, values[:, ski], color=colour, linewidth=2.4 if hidden else 0.8, label=name)
     low, high = np.quantile(values, [0.005, 0.995])
@@ -189,17 +192,17 @@ def run_boots(run: Run) -> Figure:
     assert boots is not None
     ahead, left, up = range(3)
     drawn = (
-        (edge_angles_of_skis(run) / DEGREE, "edge angle (°)\nto the left +"),
-        (boots.own_force[:, :, up], "force off\nthe base (N)"),
-        (boots.own_force[:, :, left], "force across (N)\nto the left +"),
-        (boots.own_moment[:, :, ahead], "edging moment\n(N m)"),
+        (edge_angles_of_skis(run) / DEGREE, Message("edge angle (°)\nto the left +")),
+        (boots.own_force[:, :, up], Message("force off\nthe base (N)")),
+        (boots.own_force[:, :, left], Message("force across (N)\nto the left +")),
+        (boots.own_moment[:, :, ahead], Message("edging moment\n(N m)")),
     )
     for axes, (values, label) in zip(panels, drawn, strict=True):
         draw_both(axes, run, values)
         axes.set_ylabel(label)
         axes.axhline(0.0, color=PALE, linewidth=0.6, zorder=0)
     panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2, frameon=False)
-    panels[-1].set_xlabel("time (s)")
+    panels[-1].set_xlabel(Message("time (s)"))
     panels[-1].set_xlim(float(run.time[0]), float(run.time[-1]))
     figure.align_ylabels()
     return figure
@@ -216,8 +219,8 @@ def run_grip(run: Run) -> Figure:
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
     axes.set_xlim(float(run.time[0]), float(run.time[-1]))
     axes.set_ylim(-0.02, 1.12)
-    axes.set_ylabel("grip utilisation of\nthe ski (1: side-slip)")
-    axes.set_xlabel("time (s)")
+    axes.set_ylabel(Message("grip utilisation of\nthe ski (1: side-slip)"))
+    axes.set_xlabel(Message("time (s)"))
     legend_below(
         figure, [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
     )
@@ -259,7 +262,6 @@ def _shear_capacity(run: Run) -> FloatArray:
     return np.asarray(strength * np.maximum(run.skis.edge_depth, 0.0))
 
 
-SKIS: Final = ("left ski", "right ski")
 _SHARE_SHOWN: Final = 99.5
 """Percentile of the forces at the end of the colour scale: single peaks would leave the rest dark."""
 
@@ -270,7 +272,7 @@ def run_along_ski(run: Run) -> Figure:
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=112.0)
     grid = figure.subplots(2, 2, sharex=True, sharey=True)
     for row, (values, label) in zip(
-        grid, ((depth, "edge depth (mm)"), (force, "normal force per length (N/m)")), strict=True
+        grid, ((depth, Message("edge depth (mm)")), (force, Message("normal force per length (N/m)"))), strict=True
     ):
         top = highest(values)
         for ski, axes in enumerate(row):
@@ -304,6 +306,6 @@ def label_maps(grid: npt.NDArray[np.object_]) -> None:
     for ski, axes in enumerate(grid[0]):
         axes.set_title(SKIS[ski], loc="left", fontsize=8.0)
     for axes in grid[-1]:
-        axes.set_xlabel("time (s)")
+        axes.set_xlabel(Message("time (s)"))
     for axes in grid[:, 0]:
-        axes.set_ylabel("position along the ski (m);\nboot = 0, tip up")
+        axes.set_ylabel(Message("position along the ski (m);\nboot = 0, tip up"))

@@ -13,6 +13,8 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import median_filter
 
+from ..._support.messages import Message
+from ..._support.outcomes import outcome_words
 from ..._support.units import MM
 from ...scenario import Plane
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
@@ -29,6 +31,11 @@ FloatArray = npt.NDArray[np.float64]
 
 SKI_COLOURS: Final = (BLUE, VERMILLION)
 """Colours of the left and the right ski."""
+SKIS: Final = (Message("left ski"), Message("right ski"))
+_GROOVES: Final = (
+    Message("groove of the left ski, stretched across"),
+    Message("groove of the right ski, stretched across"),
+)
 CUTOUT: Final = 2.0
 """Length (m) of the enlarged part of the track."""
 _MARGIN: Final = 0.6
@@ -53,9 +60,11 @@ def run_track(run: Run) -> Figure:
     grid = figure.add_gridspec(2, 2, height_ratios=(height + 12.0, _DETAIL_MM))
     draw_plan(figure.add_subplot(grid[0, :]), run, limits)
     _draw_groove_details(figure, [figure.add_subplot(grid[1, ski]) for ski in (0, 1)], run)
-    handles = [Line2D([], [], color=c, label=f"{s} ski") for c, s in zip(SKI_COLOURS, ("left", "right"), strict=True)]
+    handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
     handles.append(
-        Line2D([], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label="each second; square: end")
+        Line2D(
+            [], [], linestyle="none", marker="o", markersize=3.0, color=BLACK, label=Message("each second; square: end")
+        )
     )
     legend_below(figure, handles)
     return figure
@@ -85,14 +94,16 @@ def plan_axes(axes: Axes, limits: tuple[float, float, float, float], *, profile:
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlim(limits[0], limits[1])
     axes.set_ylim(limits[2], limits[3])
-    axes.set_xlabel("horizontal distance $x$ (m)" if profile else "distance down the fall line $x$ (m)")
-    axes.set_ylabel("to the left $y$ (m)")
+    axes.set_xlabel(
+        Message("horizontal distance $x$ (m)") if profile else Message("distance down the fall line $x$ (m)")
+    )
+    axes.set_ylabel(Message("to the left $y$ (m)"))
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
     axes.annotate(
         "", (0.21, 1.035), (0.08, 1.035), xycoords="axes fraction",  # right of the panel's letter
         arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0},
     )  # fmt: skip
-    axes.annotate("fall line", (0.22, 1.035), xycoords="axes fraction", va="center", fontsize=7.0, color=GREY)
+    axes.annotate(Message("fall line"), (0.22, 1.035), xycoords="axes fraction", va="center", fontsize=7.0, color=GREY)
 
 
 def draw_plan(axes: Axes, run: Run, limits: tuple[float, float, float, float]) -> None:
@@ -112,7 +123,7 @@ def _draw_time_marks(axes: Axes, run: Run) -> None:
     aside = np.interp(marks, run.time, np.unwrap(run.heading))
     for mark, at_x, at_y, angle in zip(marks, x, y, aside, strict=True):
         aside_points, above_points = -_LABEL_POINTS * math.sin(angle), _LABEL_POINTS * math.cos(angle)
-        words, is_first = ("start", True) if mark == 0.0 else (f"{mark:g} s", False)
+        words, is_first = (Message("start"), True) if mark == 0.0 else (Message("{time:g} s", time=mark), False)
         offset = (
             max(aside_points, 0.0) if is_first else aside_points,
             above_points,
@@ -122,7 +133,7 @@ def _draw_time_marks(axes: Axes, run: Run) -> None:
             ha="left" if is_first else "center", va="center", fontsize=6.5, gid=MARK,
         )  # fmt: skip
     axes.plot(*run.place[-1, :2], linestyle="none", marker="s", markersize=3.4, color=BLACK, zorder=4)
-    ended = f"{run.outcome.replace('_', ' ')} at {run.simulated_s:.2f} s"
+    ended = Message("{outcome} at {time:.2f} s", outcome=outcome_words(run.outcome), time=run.simulated_s)
     axes.annotate(ended, (1.0, 1.035), xycoords="axes fraction", ha="right", va="center", fontsize=7.0)
 
 
@@ -149,10 +160,10 @@ def _draw_groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
         axes.set_xlim(-CUTOUT / 2.0, CUTOUT / 2.0)
         axes.set_xticks(np.linspace(-CUTOUT / 2.0, CUTOUT / 2.0, 5))
         axes.set_ylim(-reach, reach)
-        axes.set_xlabel(f"distance from the place at {run.time[len(run.time) // 2]:.2f} s (m)")
-        axes.set_title(f"groove of the {('left', 'right')[ski]} ski, stretched across", loc="left", fontsize=7.5)
-    row[0].set_ylabel("to the left of\nthe track (mm)")
-    figure.colorbar(drawn, ax=list(row), label="depth that\nstays (mm)", pad=0.01, aspect=12)
+        axes.set_xlabel(Message("distance from the place at {time:.2f} s (m)", time=run.time[len(run.time) // 2]))
+        axes.set_title(_GROOVES[ski], loc="left", fontsize=7.5)
+    row[0].set_ylabel(Message("to the left of\nthe track (mm)"))
+    figure.colorbar(drawn, ax=list(row), label=Message("depth that\nstays (mm)"), pad=0.01, aspect=12)
 
 
 def beside_track(points: FloatArray, track: FloatArray, origin: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from ..._support.messages import Message
 from ...track.curvature import INTERVAL_FACTOR
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
 from ..formatting import counted
@@ -26,8 +27,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _LABELS: Final = {
     "file": ("$x$ (m)", "$y$ (m)"),
-    "east_north_up": ("east (m)", "north (m)"),
-    "slope": ("distance down the fall line $x$ (m)", "to the left $y$ (m)"),
+    "east_north_up": (Message("east (m)"), Message("north (m)")),
+    "slope": (Message("distance down the fall line $x$ (m)"), Message("to the left $y$ (m)")),
 }
 _MARGIN: Final = 0.04
 _LARGEST_MM, _SMALLEST_MM = 150.0, 16.0
@@ -75,14 +76,16 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
     _draw_ends(axes, summary)
     _set_axes(axes, limits, summary.track.axes)
     if what == "speed":
-        figure.colorbar(line, ax=axes, label="speed (m/s)", pad=0.01, aspect=22)
+        figure.colorbar(line, ax=axes, label=Message("speed (m/s)"), pad=0.01, aspect=22)
         return figure
     reach = curvature_reach(summary)
     line.set_clim(-reach, reach)
-    bar = figure.colorbar(line, ax=axes, label="turn radius (m),\nleft above, right below", pad=0.01, aspect=22)
+    bar = figure.colorbar(
+        line, ax=axes, label=Message("turn radius (m),\nleft above, right below"), pad=0.01, aspect=22
+    )
     radii = named_radii(reach)
     bar.set_ticks([*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))])
-    bar.set_ticklabels([*map(str, radii), "straight", *map(str, reversed(radii))])
+    bar.set_ticklabels([*map(str, radii), Message("straight"), *map(str, reversed(radii))])
     return figure
 
 
@@ -134,7 +137,7 @@ def switch_times(summary: TrackSummary) -> FloatArray:
 
 def _draw_ends(axes: Axes, summary: TrackSummary) -> None:
     chosen = np.flatnonzero(summary.track.usable)
-    for number, word in ((chosen[0], "start"), (chosen[-1], "end")):
+    for number, word in ((chosen[0], Message("start")), (chosen[-1], Message("end"))):
         x, y = summary.track.place[number, :2]
         axes.plot(x, y, marker="s", markersize=3.2, linestyle="none", color=BLACK, zorder=6)
         axes.annotate(word, (x, y), (5, 5), textcoords="offset points", fontsize=7.0, zorder=6)
@@ -153,15 +156,24 @@ def _set_axes(axes: Axes, limits: tuple[float, float, float, float], kind: str) 
 def _handles(summary: TrackSummary) -> list[Line2D]:
     handles = []
     if turns_are_distinct(summary):
-        handles += [
-            Line2D([], [], color=c, label=f"turn to the {s}") for c, s in ((BLUE, "left"), (VERMILLION, "right"))
-        ]
-        handles.append(Line2D([], [], color=BLACK, linestyle="none", marker="o", markersize=3.0, label="switch point"))
+        turns = ((BLUE, Message("turn to the left")), (VERMILLION, Message("turn to the right")))
+        handles += [Line2D([], [], color=colour, label=label) for colour, label in turns]
+        handles.append(
+            Line2D([], [], color=BLACK, linestyle="none", marker="o", markersize=3.0, label=Message("switch point"))
+        )
     elif summary.day.runs:
-        handles.append(Line2D([], [], color=BLUE, label=counted(len(summary.day.runs), "run")))
+        handles.append(Line2D([], [], color=BLUE, label=counted(len(summary.day.runs), "{count} run", "{count} runs")))
     if summary.day.lifts:
-        handles.append(Line2D([], [], color=GREY, linestyle=(0, (4, 2)), label=counted(len(summary.day.lifts), "lift")))
-    return [*handles, Line2D([], [], color=PALE, label="neither" if handles else "track")]
+        handles.append(
+            Line2D(
+                [],
+                [],
+                color=GREY,
+                linestyle=(0, (4, 2)),
+                label=counted(len(summary.day.lifts), "{count} lift", "{count} lifts"),
+            )
+        )
+    return [*handles, Line2D([], [], color=PALE, label=Message("neither") if handles else Message("track"))]
 
 
 WALKING: Final = 2.0
@@ -195,7 +207,9 @@ def track_along(summary: TrackSummary) -> Figure:
     _draw_radius(grid[-1], summary, arc_length / unit)
     for axes in grid:
         _tint_runs(axes, summary, arc_length / unit)
-    grid[-1].set_xlabel(f"distance along the track ({'km' if unit == KILOMETRE else 'm'})")
+    grid[-1].set_xlabel(
+        Message("distance along the track (km)") if unit == KILOMETRE else Message("distance along the track (m)")
+    )
     grid[-1].set_xlim(0.0, float(arc_length[-1]) / unit)
     figure.align_ylabels()
     figure.legend(handles=_legend_handles(summary), loc="outside lower center", ncols=4)
@@ -229,13 +243,19 @@ def _draw_speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64
     highest = summary.max_speed_interval[1] if summary.max_speed_interval else summary.max_speed or 0.0
     axes.set_ylim(0.0, 1.1 * max(highest, 0.1))
     axes.set_ylabel(
-        f"speed (m/s),\n{'as recorded' if summary.motion.speed_source == 'recorded' else 'from the places'}"
+        Message("speed (m/s),\nas recorded")
+        if summary.motion.speed_source == "recorded"
+        else Message("speed (m/s),\nfrom the places")
     )
 
 
 def _draw_height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
     axes.plot(arc_length[numbers], _with_gaps(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
-    words = {"east_north_up": "height above\nthe origin (m)", "slope": "out of the slope\n$z$ (m)", "file": "$z$ (m)"}
+    words = {
+        "east_north_up": Message("height above\nthe origin (m)"),
+        "slope": Message("out of the slope\n$z$ (m)"),
+        "file": "$z$ (m)",
+    }
     axes.set_ylabel(words[summary.track.axes])
 
 
@@ -252,8 +272,8 @@ def _draw_radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> N
     axes.set_ylim(-reach, reach)
     radii = named_radii(reach)
     axes.set_yticks([*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))])
-    axes.set_yticklabels([*map(str, radii), "straight", *map(str, reversed(radii))])
-    axes.set_ylabel("turn radius (m),\nleft above, right below")
+    axes.set_yticklabels([*map(str, radii), Message("straight"), *map(str, reversed(radii))])
+    axes.set_ylabel(Message("turn radius (m),\nleft above, right below"))
 
 
 def _ridden_curvature(summary: TrackSummary) -> FloatArray:
@@ -292,8 +312,8 @@ def named_radii(reach: float) -> list[int]:
 
 
 def _legend_handles(summary: TrackSummary) -> list[Line2D | Patch]:
-    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label="track")]
-    handles.append(Patch(facecolor=PALE, alpha=0.7, label="95 % interval of the radius, noise alone"))
+    handles: list[Line2D | Patch] = [Line2D([], [], color=BLUE, label=Message("track"))]
+    handles.append(Patch(facecolor=PALE, alpha=0.7, label=Message("95 % interval of the radius, noise alone")))
     if len(summary.day.runs) > 1 or summary.day.lifts:
-        handles.append(Patch(facecolor=SKY, alpha=0.3, label="runs"))
+        handles.append(Patch(facecolor=SKY, alpha=0.3, label=Message("runs")))
     return handles

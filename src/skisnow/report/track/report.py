@@ -10,7 +10,7 @@ import numpy.typing as npt
 from markupsafe import Markup
 from matplotlib.lines import Line2D
 
-from ..._support.language import ENGLISH
+from ..._support.messages import ENGLISH, Message
 from ..._support.staging import require_writable, staged, write_file
 from ...track.course.gates_table import gates_csv
 from ...track.summary import summary_dict
@@ -99,9 +99,8 @@ def write_track_report(
                 write_file(stage.path / name, content)
         if gates is not None:
             write_file(stage.path / "gates.csv", gates_csv(gates))
-        names = frozenset({figure_text(summary.track.name)})
         drawings, every = track_drawings(summary, gates), (*FIGURES, OF_COURSE)
-        write_pictures(drawings, stage.path / "figures", every=every, language=language, names=names, progress=progress)
+        write_pictures(drawings, stage.path / "figures", every=every, language=language, progress=progress)
         write_file(stage.path / "track.json", f"{text}\n")
     return folder / "track.json"
 
@@ -111,13 +110,14 @@ def _estimates(summary: TrackSummary) -> Markup:
     if summary.max_speed_interval is None or summary.distance_interval is None:
         return Markup()
     return prose(
-        " Highest speed: {speed} m/s (95 % interval {slow} to {fast} m/s); length: {length} m ({short} to {long} m).",
-        speed=f"{summary.max_speed:.4g}",
-        slow=f"{summary.max_speed_interval[0]:.4g}",
-        fast=f"{summary.max_speed_interval[1]:.4g}",
-        length=f"{summary.distances['places']:.5g}",
-        short=f"{summary.distance_interval[0]:.5g}",
-        long=f"{summary.distance_interval[1]:.5g}",
+        " Highest speed: {speed:.4g} m/s (95 % interval {slow:.4g} to {fast:.4g} m/s); length: {length:.5g} m "
+        "({short:.5g} to {long:.5g} m).",
+        speed=summary.max_speed,
+        slow=summary.max_speed_interval[0],
+        fast=summary.max_speed_interval[1],
+        length=summary.distances["places"],
+        short=summary.distance_interval[0],
+        long=summary.distance_interval[1],
     )
 
 
@@ -127,21 +127,21 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
     yield Drawing(
         "map",
         prose("{name} from above, the same scale along both axes.", name=name),
-        f"{name} from above.",
+        Message("{name} from above.", name=name),
         track_map(summary),
         wide=True,
     )
     yield Drawing(
         "speed",
         prose("{name} from above; colour: speed.", name=name),
-        f"{name} from above, coloured by speed.",
+        Message("{name} from above, coloured by speed.", name=name),
         coloured_map(summary, "speed"),
         wide=True,
     )
     yield Drawing(
         "radius",
         prose("{name} from above; colour: turn radius, even in 1/radius, positive to the left.", name=name),
-        f"{name} from above, coloured by turn radius.",
+        Message("{name} from above, coloured by turn radius.", name=name),
         coloured_map(summary, "radius"),
         wide=True,
     )
@@ -149,12 +149,12 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
         "along",
         prose(
             "Speed, height and turn radius along {name}. The axis of the radius is even in 1/radius: straight lies in "
-            "the middle. The smoothing leaves half of a swing of the curvature that takes {half} s.",
+            "the middle. The smoothing leaves half of a swing of the curvature that takes {half:.2g} s.",
             name=name,
-            half=f"{summary.motion.smoothed.resolution.half_period:.2g}",
+            half=summary.motion.smoothed.resolution.half_period,
         )
         + _estimates(summary),
-        f"Speed, height and turn radius along {name}.",
+        Message("Speed, height and turn radius along {name}.", name=name),
         track_along(summary),
         wide=True,
     )
@@ -163,9 +163,13 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
         yield Drawing(
             "course",
             prose("The line of {name} over the course, from above; colour: speed.", name=name),
-            f"Line of {name} over the gates, coloured by speed.",
+            Message("Line of {name} over the gates, coloured by speed.", name=name),
             course_line(
-                gates, summary.track.place[usable], summary.motion.speed[usable], label="speed (m/s)", diverging=False
+                gates,
+                summary.track.place[usable],
+                summary.motion.speed[usable],
+                label=Message("speed (m/s)"),
+                diverging=False,
             ),
             wide=True,
         )
@@ -189,7 +193,7 @@ _MARGIN: Final = 0.02
 _DISTANCES_MM: Final = 58.0
 _FRAME_MM: Final = 34.0
 _AXIS_WORDS: Final = {
-    "east_north_up": ("to the east $x$ (m)", "to the north $y$ (m)"),
+    "east_north_up": (Message("to the east $x$ (m)"), Message("to the north $y$ (m)")),
     "file": ("$x$ (m)", "$y$ (m)"),
 }
 
@@ -216,9 +220,9 @@ def track_comparison(comparison: Comparison) -> Figure:
 def comparison_drawing(comparison: Comparison) -> Drawing:
     """Figure of `track_comparison` with its caption."""
     simulated, measured = comparison.names
-    words = "{simulated} and {measured} from above, and the distance between them along the latter."
-    alt = f"{simulated} and {measured} from above, and the distance between them."
-    caption = prose(words, simulated=simulated, measured=measured)
+    names = {"simulated": simulated, "measured": measured}
+    caption = prose("{simulated} and {measured} from above, and the distance between them along the latter.", **names)
+    alt = Message("{simulated} and {measured} from above, and the distance between them.", **names)
     return Drawing("track_comparison", caption, alt, track_comparison(comparison))
 
 
@@ -270,8 +274,8 @@ def _draw_distances(axes: Axes, comparison: Comparison) -> None:
         )
     axes.set_xlim(0.0, comparison.measured.length)
     _set_scale(axes, comparison)
-    axes.set_xlabel("distance along the measured track (m)")
-    axes.set_ylabel("distance of the\nsimulated track (m)")
+    axes.set_xlabel(Message("distance along the measured track (m)"))
+    axes.set_ylabel(Message("distance of the\nsimulated track (m)"))
 
 
 def _set_scale(axes: Axes, comparison: Comparison) -> None:
@@ -299,17 +303,25 @@ def _thinned(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
     return x[chosen], y[chosen]
 
 
+FITTED: Final = {"start": Message("start"), "heading": Message("heading"), "time": Message("time")}
+
+
 def _handles(comparison: Comparison) -> list[Line2D]:
     simulated, measured = (figure_text(name, longest=40) for name in comparison.names)
-    moved = "" if comparison.fitted is None else f", {' and '.join(comparison.fitted.what)} fitted"
+    label = Message("simulated: {simulated}", simulated=simulated)
+    if comparison.fitted is not None:
+        what = [FITTED.get(name, name) for name in comparison.fitted.what]
+        label = Message("simulated: {simulated}, {fitted} fitted", simulated=simulated, fitted=what)
     handles = [
-        Line2D([], [], label=f"measured: {measured}", **MEASURED),
-        Line2D([], [], label=f"simulated: {simulated}{moved}", **SIMULATED),
+        Line2D([], [], label=Message("measured: {measured}", measured=measured), **MEASURED),
+        Line2D([], [], label=label, **SIMULATED),
     ]
     if comparison.fitted is not None:
-        handles.append(Line2D([], [], label="simulated, before the fit", **BEFORE))
+        handles.append(Line2D([], [], label=Message("simulated, before the fit"), **BEFORE))
     for kind, line_style in LINE_STYLES.items():
         numbers = getattr(comparison, kind).numbers
-        text = "none" if numbers is None else f"maximum {significant(numbers.max)} m"
+        text = (
+            Message("none") if numbers is None else Message("maximum {distance} m", distance=significant(numbers.max))
+        )
         handles.append(Line2D([], [], label=f"{TITLES[kind]}: {text}", **line_style))
     return handles

@@ -8,7 +8,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.messages import Message
-from ..formatting import aligned_rows, counted, date_words, plain
+from ..formatting import aligned_rows, date_words, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -25,10 +25,10 @@ _RUNS_WORDS: Final = {
     "motion": "A run is a stretch in motion, faster than 1 m/s but for stops up to 30 s.",
 }
 _TURNS_WORDS: Final = (
-    "A turn is a stretch of one sense of curvature in a run, 10 degrees at least; two that follow each other meet "
-    "in the switch point. The minimum radius is 1 / the largest curvature of the smoothed track, with its 95 % "
-    "interval from only the noise. `passed` is the share of the curvature that the smoothing leaves of half a "
-    "sine as long as the turn."
+    "A turn is a stretch of one sense of curvature in a run, 10 degrees at least; two that follow each other meet in "
+    "the switch point. The minimum radius is 1 / the largest curvature of the smoothed track, with its 95 % interval "
+    "from only the noise. `passed` is the share of the curvature that the smoothing leaves of half a sine as long as "
+    "the turn."
 )
 
 
@@ -87,7 +87,7 @@ def _moment(start: str, time_scale: str) -> str:
     """Start of a track to the second, in its own time scale."""
     time = datetime.fromisoformat(start)
     scale = "" if time_scale == "local" else f" {time_scale}"
-    return f"{date_words(time.date().isoformat())}, {time:%H:%M:%S}{scale}"
+    return f"{date_words(time)}, {time:%H:%M:%S}{scale}"
 
 
 _DISTANCE_WORDS: Final = {
@@ -133,7 +133,7 @@ def _table_lines(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, 
     cells = [[label for _, label, _ in columns]]
     cells += [[_cell(row[key], digits) for key, _, digits in columns] for row in rows[:MOST_ROWS]]
     more = [f"… and {len(rows) - MOST_ROWS} more; --json gives all"] if len(rows) > MOST_ROWS else []
-    heading = counted(len(rows), title.removesuffix("s"))
+    heading = f"{len(rows)} {title.removesuffix('s') if len(rows) == 1 else title}"
     return ["", heading, *fill(words, WIDTH).splitlines(), *aligned_rows(cells), *more]
 
 
@@ -145,7 +145,11 @@ def _cell(value: Any, digits: int) -> str:
     return f"{value:.{-digits}f}" if digits < 0 else plain(value, digits)
 
 
-TITLES: Final = {"nearest": "nearest place", "arc_length": "equal arc length", "time": "equal time"}
+TITLES: Final = {
+    "nearest": Message("nearest place"),
+    "arc_length": Message("equal arc length"),
+    "time": Message("equal time"),
+}
 _NO_FRAME: Final = (
     "No distance is printed: the tracks are not in one frame, so that it would say nothing. For a track in latitude",
     "and longitude give --fall-line-azimuth-deg, the direction in which the slope falls, and --slope-angle-deg,",

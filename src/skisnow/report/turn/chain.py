@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..._support.display import Facts, Shown, amount
-from ..._support.language import ENGLISH
+from ..._support.messages import ENGLISH
+from ..._support.outcomes import outcome_words
 
 if TYPE_CHECKING:
     from ...estimation import Analysis
@@ -43,7 +44,7 @@ class EnsembleRun(Shown):
     slips: float | None = None
 
     def _facts(self) -> Facts:
-        return Facts(f"{self.outcome.replace('_', ' ')} on {self.snow.in_words}")
+        return Facts(f"{outcome_words(self.outcome)} on {self.snow.in_words}")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)

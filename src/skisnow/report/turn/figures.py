@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from ..._support.messages import Message
 from ..._support.units import MM
 from ...comparison.distances import arc_lengths
 from ...comparison.nearest_place import distance_from_path
@@ -64,10 +65,13 @@ def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     _draw_plan(plan, nominal, tracks, outline)
     plan_axes(plan, limits)
     _draw_over_time(
-        figure.add_subplot(grid[1, 0]), nominal.time, aside, "to the left of the nominal\nrun at the same time (m)"
+        figure.add_subplot(grid[1, 0]),
+        nominal.time,
+        aside,
+        Message("to the left of the nominal\nrun at the same time (m)"),
     )
     _draw_over_time(
-        figure.add_subplot(grid[1, 1]), nominal.time, ahead, "ahead of the nominal run\nat the same time (m)"
+        figure.add_subplot(grid[1, 1]), nominal.time, ahead, Message("ahead of the nominal run\nat the same time (m)")
     )
     legend_below(figure, _handles(len(tracks)))
     return figure
@@ -127,18 +131,18 @@ def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str
     axes.plot(time, band[2], color=BLUE, linewidth=0.9, linestyle=(0, (4, 1.5)), zorder=3)
     axes.axhline(0.0, color=VERMILLION, linewidth=0.8, zorder=3)
     axes.set_xlim(float(time[0]), float(time[-1]))
-    axes.set_xlabel("time (s)")
+    axes.set_xlabel(Message("time (s)"))
     axes.set_ylabel(label)
 
 
 def _handles(count: int) -> list[Line2D]:
     return [
-        Line2D([], [], color=VERMILLION, label="nominal run"),
-        Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label="median"),
-        Line2D([], [], color=SKY, alpha=0.6, linewidth=5.0, label="half of the runs"),
-        Line2D([], [], color=PALE, alpha=0.6, linewidth=5.0, label="90 % of the runs"),
-        Line2D([], [], color=GREY, linewidth=0.5, label=f"each of {count} runs"),
-        Line2D([], [], color=BLACK, linestyle="none", marker=".", markersize=2.0, label="end"),
+        Line2D([], [], color=VERMILLION, label=Message("nominal run")),
+        Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label=Message("median")),
+        Line2D([], [], color=SKY, alpha=0.6, linewidth=5.0, label=Message("half of the runs")),
+        Line2D([], [], color=PALE, alpha=0.6, linewidth=5.0, label=Message("90 % of the runs")),
+        Line2D([], [], color=GREY, linewidth=0.5, label=Message("each of {count} runs", count=count)),
+        Line2D([], [], color=BLACK, linestyle="none", marker=".", markersize=2.0, label=Message("end")),
     ]
 
 
@@ -181,7 +185,7 @@ def mathtext(name: str) -> str:
     >>> mathtext("hypoplastic, k_u / H_V = 10")
     'hypoplastic, $k_u$ / $H_V$ = 10'
     """
-    return _SYMBOL.sub(r"$\1_\2$", figure_text(name, longest=60))
+    return _SYMBOL.sub(r"$\1_\2$", figure_text(str(name), longest=60))
 
 
 def _line_style(place: int) -> dict[str, Any]:
@@ -194,8 +198,8 @@ def _draw_distances(axes: Axes, named: list[tuple[str, Run]]) -> None:
         axes.plot(arc_lengths(run.place), distance_from_path(run.place, reference.place), **_line_style(place))
     axes.set_xlim(left=0.0)
     axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("distance travelled (m)")
-    axes.set_ylabel(f"distance (m) from the track of\n{mathtext(first)}")
+    axes.set_xlabel(Message("distance travelled (m)"))
+    axes.set_ylabel(Message("distance (m) from the track of\n{mathtext}", mathtext=mathtext(first)))
 
 
 def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> None:
@@ -208,8 +212,10 @@ def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> Non
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
-    axes.set_xlabel("position along the ski (m); boot = 0, tail left, tip right")
-    axes.set_ylabel(f"edge depth (mm), {('left', 'right')[ski]} ski,\nat {moment:.2f} s")
+    axes.set_xlabel(Message("position along the ski (m); boot = 0, tail left, tip right"))
+    sides = (Message("edge depth (mm), left ski,\nat {moment:.2f} s", moment=moment),
+             Message("edge depth (mm), right ski,\nat {moment:.2f} s", moment=moment))  # fmt: skip
+    axes.set_ylabel(sides[ski])
 
 
 def _at(run: Run, moment: float) -> int:

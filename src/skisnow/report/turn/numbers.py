@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.messages import Message
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
 from ...comparison.nearest_place import distance_from_path
@@ -166,8 +167,8 @@ class BandInput:
     def in_words(self) -> str:
         """Spread, distribution and origin."""
         if self.measured:
-            return f"measured: log-normal with the 95 % interval of {self.origin}"
-        return f"prior: even in its logarithm; {self.origin}"
+            return Message("measured: log-normal with the 95 % interval of {origin}", origin=self.origin)
+        return Message("prior: even in its logarithm; {origin}", origin=self.origin)
 
 
 def band_inputs(chain: TurnChain) -> Iterator[BandInput]:

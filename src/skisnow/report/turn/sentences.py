@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from markupsafe import Markup
 
+from ..._support.messages import Message, template
+from ..._support.outcomes import outcome_words
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..formatting import counted, interval, significant
 from ..symbols import html, prose
@@ -33,21 +35,27 @@ ALIKE: Final = 0.002
 HELD: Final = 0.05
 """Share of the time with side-slip up to which a ski holds its grip."""
 _INPUTS: Final = {
-    "snow.H_V_N_per_mm3": ("the snow hardness H_V", "further penetration tests at this site"),
-    "snow.S_f_N_per_mm2": ("the failure shear stress S_f", "further shear tests at this site"),
-    "snow.unloading_ratio": ("k_u / H_V", "depths read while the discs are taken off one by one, for k_u"),
+    "snow.H_V_N_per_mm3": (Message("the snow hardness H_V"), Message("further penetration tests at this site")),
+    "snow.S_f_N_per_mm2": (Message("the failure shear stress S_f"), Message("further shear tests at this site")),
+    "snow.unloading_ratio": ("k_u / H_V", Message("depths read while the discs are taken off one by one, for k_u")),
     "snow.shear_displacement_mm": (
-        "the shear displacement u_y",
-        "the turning angle read beside the moment of the shear device, for u_y",
+        Message("the shear displacement u_y"),
+        Message("the turning angle read beside the moment of the shear device, for u_y"),
     ),
-    "friction.mu_0": ("the friction μ_0", "a straight glide past photo cells, for μ_0"),
-    "ski.stiffness_factor": ("the stiffness of the ski", "the bending and torsion of the ski, measured"),
-    "ski.camber_rounding_mm": ("the rounding of the camber", "the height of the unloaded base along the ski, measured"),
+    "friction.mu_0": (Message("the friction μ_0"), Message("a straight glide past photo cells, for μ_0")),
+    "ski.stiffness_factor": (
+        Message("the stiffness of the ski"),
+        Message("the bending and torsion of the ski, measured"),
+    ),
+    "ski.camber_rounding_mm": (
+        Message("the rounding of the camber"),
+        Message("the height of the unloaded base along the ski, measured"),
+    ),
 }
 """Names of the band's inputs, and the measurement that would determine them better."""
 _FURTHER: Final = {
-    "snow.unloading_ratio": "further series with discs taken off one by one at this site, for k_u",
-    "snow.shear_displacement_mm": "further shear tests with turning angles at this site, for u_y",
+    "snow.unloading_ratio": Message("further series with discs taken off one by one at this site, for k_u"),
+    "snow.shear_displacement_mm": Message("further shear tests with turning angles at this site, for u_y"),
 }
 """Measurement that would determine an already measured input better."""
 
@@ -63,16 +71,23 @@ def headline(chain: TurnChain) -> Markup:
     """Sentence with the turn radius and the precision of the end of the run."""
     radius = median_radius(chain.nominal)
     aside, ahead = _widths(chain)
-    precision = prose(
-        "its end is known within {aside} m across and {ahead} m along the track (90 % of {runs})",
-        aside=significant(aside, 2),
-        ahead=significant(ahead, 2),
-        runs=counted(len(chain.ensemble), "run"),
-    )
+    fields = {
+        "aside": significant(aside, 2),
+        "ahead": significant(ahead, 2),
+        "runs": counted(len(chain.ensemble), "{count} run", "{count} runs"),
+    }
     if radius is None:
-        return prose("The run is straight; {known}.", known=precision)
-    value = Markup("<strong>{} m</strong>").format(significant(radius))
-    return prose("Turn radius {value} (median); {known}.", value=value, known=precision)
+        return prose(
+            "The run is straight; its end is known within {aside} m across and {ahead} m along the track (90 % of "
+            "{runs}).",
+            **fields,
+        )
+    return prose(
+        "Turn radius {value} (median); its end is known within {aside} m across and {ahead} m along the track (90 % of "
+        "{runs}).",
+        value=Markup("<strong>{} m</strong>").format(significant(radius)),
+        **fields,
+    )
 
 
 def plain_sentences(chain: TurnChain) -> list[Markup]:
@@ -97,8 +112,8 @@ def _spreads(chain: TurnChain) -> list[Markup]:
 
 
 def _key_list(keys: Sequence[str]) -> Markup:
-    *before, last = [_in_words(key) for key in keys] or [html("nothing")]
-    return html(", ").join(before) + html(" and ") + last if before else last
+    *before, last = [_in_words(key) for key in keys] or [prose("nothing")]
+    return prose("{before} and {last}", before=Markup(", ").join(before), last=last) if before else last
 
 
 def _warnings(chain: TurnChain) -> list[Markup]:
@@ -111,13 +126,20 @@ def _largest_share(chain: TurnChain) -> list[Markup]:
     if shares is None:
         return []
     first, *others = np.argsort(-shares.aside.share, kind="stable").tolist()
+    fields = {
+        "key": _in_words(shares.keys[first]),
+        "percent": significant(100.0 * float(shares.aside.share[first]), 2),
+        "interval": interval((100.0 * shares.aside.interval[first]).tolist(), 2),
+    }
+    if not others:
+        return [
+            prose("Most of that across the track comes from {key}: {percent} % of the variance {interval}.", **fields)
+        ]
     return [
         prose(
-            "Most of that across the track comes from {key}: {percent} % of the variance {interval}{then}.",
-            key=_in_words(shares.keys[first]),
-            percent=significant(100.0 * float(shares.aside.share[first]), 2),
-            interval=interval((100.0 * shares.aside.interval[first]).tolist(), 2),
-            then=html("; next is ") + _in_words(shares.keys[others[0]]) if others else "",
+            "Most of that across the track comes from {key}: {percent} % of the variance {interval}; next is {second}.",
+            second=_in_words(shares.keys[others[0]]),
+            **fields,
         )
     ]
 
@@ -167,8 +189,8 @@ def _contact_sentence(name: str, run: Run) -> Markup:
     return prose(
         "{name}: {outcome} after {length} m and {time} s. The afterbody/forebody edge-depth ratio is {ratio}; the more "
         "heavily loaded (outer) ski has a grip utilisation of {grip} and side-slips in {slides} % of the time.",
-        name=html(name[:1].upper() + name[1:]),
-        outcome=run.outcome.replace("_", " "),
+        name=html(str(name)[:1].upper() + str(name)[1:]),
+        outcome=outcome_words(run.outcome),
         length=significant(run.run_length),
         time=significant(run.simulated_s),
         ratio=significant(afterbody_depth_ratio(run), 2),
@@ -184,32 +206,51 @@ def contrast(chain: TurnChain) -> list[Markup]:
 
 
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
+    grips, ratios = _grips(run, reference), _ratios(run, reference)
+    grip = prose(_GRIPS[_compared(*grips)], values=_both(*grips))
     return [
-        prose("The turn with the contact “{name}” ", name=name) + _compare_radii(median_radius(run), first, reference),
-        prose("Its grip utilisation is {more}: {shares}. ",
-              more=_more(*_grips(run, reference), words=("higher", "lower", "the same")),
-              shares=_both(*_grips(run, reference))) + _compare_slip(name, run, first, reference),
-        prose("Its afterbody/forebody edge-depth ratio is {larger}: {ratios}.",
-              larger=_more(*_ratios(run, reference), words=("larger", "smaller", "the same")),
-              ratios=_both(*_ratios(run, reference))),
+        _compare_radii(name, median_radius(run), first, reference),
+        Markup(" ").join([grip, _compare_slip(name, run, first, reference)]),
+        prose(_DEPTH_RATIOS[_compared(*ratios)], values=_both(*ratios)),
         prose("The tracks lie up to {distance} m apart.", distance=significant(maximum_distance(run, reference))),
-    ]  # fmt: skip
+    ]
 
 
-def _compare_radii(radius: float | None, first: Markup, reference: Run) -> Markup:
+_GRIPS: Final = (
+    template("Its grip utilisation is lower: {values}."),
+    template("Its grip utilisation is the same: {values}."),
+    template("Its grip utilisation is higher: {values}."),
+)
+_DEPTH_RATIOS: Final = (
+    template("Its afterbody/forebody edge-depth ratio is smaller: {values}."),
+    template("Its afterbody/forebody edge-depth ratio is the same: {values}."),
+    template("Its afterbody/forebody edge-depth ratio is larger: {values}."),
+)
+"""Sentences for a value that is smaller than, equal to and larger than the other."""
+
+
+def _compare_radii(name: Markup, radius: float | None, first: Markup, reference: Run) -> Markup:
     other = median_radius(reference)
     if radius is None or other is None:
-        return prose("or that with “{first}” never turns.", first=first)
-    wider = radius / other - 1.0
-    radii = _both(radius, other, " m")
-    if abs(wider) < ALIKE:
-        return prose("is as wide as that with “{first}”: median radius {radii}.", first=first, radii=radii)
+        return prose("The turn with the contact “{name}” or that with “{first}” never turns.", name=name, first=first)
+    fields = {"name": name, "first": first, "percent": significant(100.0 * abs(radius / other - 1.0), 2),
+              "radius": significant(radius), "other": significant(other)}  # fmt: skip
+    if abs(radius / other - 1.0) < ALIKE:
+        return prose(
+            "The turn with the contact “{name}” is as wide as that with “{first}”: median radius {radius} against "
+            "{other} m.",
+            **fields,
+        )
+    if radius > other:
+        return prose(
+            "The turn with the contact “{name}” is wider than that with “{first}”, by {percent} %: median radius "
+            "{radius} against {other} m.",
+            **fields,
+        )
     return prose(
-        "is {wider} than that with “{first}”, by {percent} %: median radius {radii}.",
-        wider="wider" if wider > 0.0 else "narrower",
-        first=first,
-        percent=significant(100.0 * abs(wider), 2),
-        radii=radii,
+        "The turn with the contact “{name}” is narrower than that with “{first}”, by {percent} %: median radius "
+        "{radius} against {other} m.",
+        **fields,
     )
 
 
@@ -217,8 +258,8 @@ def _compare_slip(name: Markup, run: Run, first: Markup, reference: Run) -> Mark
     """Sentence about which of two runs side-slip."""
     sliding = [label for label, of in ((name, run), (first, reference)) if (used_grip(of)[1] or 0.0) > HELD]
     if not sliding:
-        return html("Grip holds in both.")
-    return html("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
+        return prose("Grip holds in both.")
+    return prose("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
 
 
 def _grips(run: Run, reference: Run) -> tuple[float | None, float | None]:
@@ -229,21 +270,22 @@ def _ratios(run: Run, reference: Run) -> tuple[float | None, float | None]:
     return afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
 
 
-def _more(value: float | None, other: float | None, *, words: tuple[str, str, str]) -> str:
+def _compared(value: float | None, other: float | None) -> int:
+    """0 if the value is smaller than the other, 1 if they are alike or unknown, 2 if it is larger."""
     if value is None or other is None or abs(value - other) < ALIKE * abs(other):
-        return words[2]
-    return words[0] if value > other else words[1]
+        return 1
+    return 2 if value > other else 0
 
 
-def _both(value: float | None, other: float | None, unit: str = "") -> str:
-    return f"{significant(value)} against {significant(other)}{unit}"
+def _both(value: float | None, other: float | None) -> str:
+    return str(Message("{value} against {other}", value=significant(value), other=significant(other)))
 
 
 def _band(chain: TurnChain) -> Markup:
     aside, ahead = _widths(chain)
     return prose(
         "Over all that is not known, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
-        runs=counted(len(chain.ensemble), "run"),
+        runs=counted(len(chain.ensemble), "{count} run", "{count} runs"),
         aside=significant(aside, 2),
         ahead=significant(ahead, 2),
     )
@@ -266,7 +308,7 @@ def ensemble_sentence(chain: TurnChain) -> Markup:
         held=significant(100.0 * HELD, 1),
         alike=alike,
         all=len(chain.ensemble),
-        outcome=nominal.outcome.replace("_", " "),
+        outcome=outcome_words(nominal.outcome),
     )
 
 
@@ -290,25 +332,25 @@ def meaning(chain: TurnChain) -> list[Markup]:
     far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
     contacts = prose(
         "The choice of the contact moves the track by up to {far} m, all that is not known of the turn by {aside} m "
-        "(width of the band that holds 90 % at the end). ",
+        "(width of the band that holds 90 % at the end).",
         far=significant(far, 2),
         aside=significant(aside, 2),
     )
-    grip = "The grip holds while the side force stays below the shear capacity: S_f times depth times length. "
+    grip = prose("The grip holds while the side force stays below the shear capacity: S_f times depth times length.")
     if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
-        grip += (
-            "Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
+        grip += prose(
+            " Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
             "slower start, a gentler slope or softer snow brings them back on their edges."
         )
-    return [contacts + _best_measurement(chain), html(grip)]
+    return [Markup(" ").join([contacts, *_best_measurement(chain)]), grip]
 
 
-def _best_measurement(chain: TurnChain) -> Markup:
+def _best_measurement(chain: TurnChain) -> list[Markup]:
     """Sentence with the measurement that would narrow the band most; empty without shares."""
     shares = _shares(chain)
     if shares is None:
-        return html("")
+        return []
     key = shares.keys[int(np.argmax(shares.aside.share))]
     tests = _FURTHER if key in {measured.key for measured in chain.measured} else {}
-    test = tests.get(key) or (_INPUTS[key][1] if key in _INPUTS else f"a better value of {key}")
-    return prose("The band would narrow most by {test}.", test=html(test))
+    test = tests.get(key) or (_INPUTS[key][1] if key in _INPUTS else Message("a better value of {key}", key=key))
+    return [prose("The band would narrow most by {test}.", test=html(test))]

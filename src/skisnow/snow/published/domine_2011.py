@@ -14,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
+from ..._support.messages import Message
 
-SOURCE: Final = "Domine and others 2011"
+SOURCE: Final = Message("Domine and others 2011")
 LEAST_DENSITY: Final = 11.5323 / 0.1027
 """Density (kg/m³) at which the square is 0, 112.3: below it the relation rises again, which no snow does."""
 SNOW_DENSITY_RANGE: Final = (LEAST_DENSITY, 500.0)

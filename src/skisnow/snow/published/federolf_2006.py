@@ -14,24 +14,25 @@ from __future__ import annotations
 import math
 from typing import Final
 
+from ..._support.messages import Message
 from ..._support.units import N_PER_MM2, N_PER_MM3
 from ..properties import SnowProperties
 
-SOURCE: Final = "Federolf and others 2006, converted as in Mössner and others 2013 at 55°"
+SOURCE: Final = Message("Federolf and others 2006, converted as in Mössner and others 2013 at 55°")
 CONVERSION_ANGLE: Final = math.radians(55.0)
 """Edge angle ϑ of the conversion (rad): inferred, see Notes."""
 
 PRESSURE_LAWS: Final = {
-    "well-prepared race piste": (0.034, 0.35),
-    "compact recreational piste": (0.026, 0.058),
-    "spring snow": (0.0036, 0.063),
+    Message("well-prepared race piste"): (0.034, 0.35),
+    Message("compact recreational piste"): (0.026, 0.058),
+    Message("spring snow"): (0.0036, 0.063),
 }
 """A (N/mm³) and B (N/mm²) of p = A e + B by snow."""
 
 NAMES: Final = {
-    "race-piste": "well-prepared race piste",
-    "recreational-piste": "compact recreational piste",
-    "spring-snow": "spring snow",
+    "race-piste": Message("well-prepared race piste"),
+    "recreational-piste": Message("compact recreational piste"),
+    "spring-snow": Message("spring snow"),
 }
 """The paper's snow by the name that `skisnow.snow.from_results` takes."""
 
@@ -48,10 +49,12 @@ def converted(pressure_slope: float, pressure_offset: float, edge_angle: float) 
 
 def snows() -> dict[str, SnowProperties]:
     """The three snows by name, converted at 55°."""
-    by_name = {}
+    by_name: dict[str, SnowProperties] = {}
     for name, (slope, offset) in PRESSURE_LAWS.items():
         H_V, S_f = converted(slope, offset, CONVERSION_ANGLE)
-        by_name[name] = SnowProperties(H_V * N_PER_MM3, S_f * N_PER_MM2, f"{SOURCE}: {name}")
+        by_name[name] = SnowProperties(
+            H_V * N_PER_MM3, S_f * N_PER_MM2, Message("{source}: {snow}", source=SOURCE, snow=name)
+        )
     return by_name
 
 

@@ -13,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
+from ..._support.messages import Message
 from ..._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..properties import SnowProperties
 
-SOURCE: Final = "Mössner and others 2013"
+SOURCE: Final = Message("Mössner and others 2013")
 
 SNOW_HARDNESS_RANGE_N_PER_MM3: Final = (0.04, 90.0)
 """H_V, from fresh snow on ski slopes to late-summer glacier slopes."""

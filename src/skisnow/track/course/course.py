@@ -14,7 +14,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError, require_choice
-from ..._support.messages import template
+from ..._support.messages import Message, template
 from ...parameters import Quantity, Word, require_declared
 
 Discipline: TypeAlias = Literal["slalom", "giant-slalom"]
@@ -94,11 +94,13 @@ class Course(Shown):
             word_of=file_of_course,
             names_file=True,
         ),
-    ] = "given as numbers"
+    ] = Message("given as numbers")
     discipline: Annotated[
         Discipline | None,
         Quantity(
-            "course.discipline", "whose rules the course is checked against; default: no rules", label="discipline"
+            "course.discipline",
+            "whose rules the course is checked against; default: no rules",
+            label=Message("discipline"),
         ),
     ] = None
     latitude_deg: Annotated[
@@ -106,7 +108,7 @@ class Course(Shown):
         Quantity(
             "course.latitude_deg",
             "latitude (WGS84) of x = y = 0, for a course in degrees; default: the first gate",
-            label="latitude of the origin",
+            label=Message("latitude of the origin"),
             lowest=-90.0,
             highest=90.0,
         ),
@@ -116,7 +118,7 @@ class Course(Shown):
         Quantity(
             "course.longitude_deg",
             "longitude (WGS84) of x = y = 0, for a course in degrees",
-            label="longitude of the origin",
+            label=Message("longitude of the origin"),
             lowest=-180.0,
             highest=180.0,
         ),
@@ -126,7 +128,7 @@ class Course(Shown):
         Quantity(
             "course.fall_line_azimuth_deg",
             "compass direction of x, for a course in degrees; such a course needs it in a scenario",
-            label="direction of the fall line",
+            label=Message("direction of the fall line"),
             lowest=-360.0,
             highest=360.0,
         ),

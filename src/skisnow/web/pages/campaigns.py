@@ -96,7 +96,11 @@ def _list_drafts(lab: Lab) -> None:
         tests = [test for test in session.campaign.tests.values() if test.rows]
         with ui.element("section").classes("card"):
             heading(session.described.name or "(no name)", 3)
-            words = [session.described.place, counted(len(tests), "test"), f"last entry {minute_words(head.last_at)}"]
+            words = [
+                session.described.place,
+                counted(len(tests), "{count} test", "{count} tests"),
+                f"last entry {minute_words(head.last_at)}",
+            ]
             sentence(" · ".join(filter(None, words)), "quiet")
             with ui.element("div").classes("acts"):
                 link("Enter tests", entering(head.id), "main")
@@ -141,7 +145,8 @@ def _undo(lab: Lab, id_: str) -> None:
 def _check_result(campaign: StoredCampaign) -> str:
     if campaign.n_errors is None or campaign.n_warnings is None:
         return "not checked"
-    return f"{counted(campaign.n_errors, 'error')}, {counted(campaign.n_warnings, 'warning')}"
+    errors = counted(campaign.n_errors, "{count} error", "{count} errors")
+    return f"{errors}, {counted(campaign.n_warnings, '{count} warning', '{count} warnings')}"
 
 
 async def _add_sample(lab: Lab) -> None:
@@ -162,8 +167,8 @@ def _import_form(lab: Lab) -> None:
     heading("Import")
     sentence(
         Message(
-            "A campaign's folder, its files, a zip, or a workbook (.xlsx) or CSV file in any layout. It is stored "
-            "byte for byte; corrections are separate. At most {most} files.",
+            "A campaign's folder, its files, a zip, or a workbook (.xlsx) or CSV file in any layout. It is stored byte "
+            "for byte; corrections are separate. At most {most} files.",
             most=lab.limits.files,
         ),
         "quiet",

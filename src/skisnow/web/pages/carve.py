@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
+from ..._support.outcomes import outcome_words
 from ...report.campaign.page import RESULTS
 from ...report.formatting import significant
 from ..elements import Words, button, choice, link, named
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import GenericEventArguments
 
-    from ...ski.ski_file import Sources
+    from ...ski.sources import Sources
     from ..settings import Lab
     from ..snow_choice import ChosenSnow
 
@@ -106,9 +107,10 @@ class _Solver:
 
         ``snow``: snow of a campaign if the questions name its results.
         """
-        from ...carving.answer import answer_dict, answered
+        from ...carving.answer import answered
+        from ...carving.answer_dict import answer_dict
         from ...carving.question import carve_question
-        from ...ski.ski_file import Sources
+        from ...ski.sources import Sources
 
         with self._lock:
             self._sources = self._sources or Sources()
@@ -285,7 +287,7 @@ def _radius(answer: dict[str, Any]) -> str:
 
 
 def _in_words(answer: dict[str, Any]) -> str:
-    words = f"{answer['ski']['name']}: {str(answer['outcome']).replace('_', ' ')}"
+    words = f"{answer['ski']['name']}: {outcome_words(str(answer['outcome']))}"
     remedy = f", {answer['remedy']}" if answer["remedy"] else ""
     warned = "".join(f" Warning: {text}." for text in answer["warnings"])
     return f"{words}{remedy}.{warned}"

@@ -47,7 +47,7 @@ def add_page(lab: Lab) -> None:
             names = runs.names()
             if track in tracks.names():
                 sentence(f"The track {track} is kept. Choose the run to compare it with.", "good").props("role=status")
-            sentence(f"{counted(len(names), 'run')} kept, the newest first.", "quiet")
+            sentence(f"{counted(len(names), '{count} run', '{count} runs')} kept, the newest first.", "quiet")
             if not names:
                 sentence("Simulate one, then it can be watched here.")
             if names:

@@ -14,6 +14,7 @@ from starlette.responses import FileResponse, Response
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
 from ..._support.messages import Message
+from ..._support.outcomes import outcome_words
 from ...report.formatting import significant
 from ..elements import Words, choice, link, named
 from ..language import language_of, said, said_list
@@ -180,7 +181,7 @@ def _short(value: Any) -> str:
 
 
 def _add_row(row: dict[str, Any], columns: list[str]) -> None:
-    outcome = str(row["outcome"]).replace("_", " ") + (f": {row['reason']}" if row["outcome"] == "error" else "")
+    outcome = outcome_words(str(row["outcome"])) + (f": {row['reason']}" if row["outcome"] == "error" else "")
     with ui.element("tr"):
         for name in columns:
             with ui.element("td").classes("n"):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow.web.elements import FIRST, TypedField, Words, button, choice, field, html_words, link, named, option_texts
+from skisnow.web.elements import FIRST, TypedField, Words, button, choice, field, link, named, option_texts
 from skisnow.web.layout import SAID_BY_SCRIPT, heading, sentence
 from skisnow.web.line_chart import STYLES, ChartLine, LineChart
 
@@ -152,14 +152,6 @@ def test_words_stay_as_they_were_said_and_are_shown_in_german(desk: Desk) -> Non
     assert (words.text, words._text) == ("Depth (mm)", "Tiefe (mm)")
     called = made(desk, lambda: named(ui.element("nav"), "Pages"), "de")
     assert called.props["aria-label"] == "Seiten"
-
-
-def test_html_of_reports_is_translated_but_for_names(desk: Desk) -> None:
-    html = "<p>Depth (mm)</p><p>Skis</p>"
-    assert made(desk, lambda: html_words(html, {"Skis"}), "de").content == "<p>Tiefe (mm)</p><p>Skis</p>"
-    assert made(desk, lambda: html_words(html), "de").content == "<p>Tiefe (mm)</p><p>Ski</p>"
-    assert made(desk, lambda: html_words(html)).content == html
-    assert made(desk, lambda: html_words(html)).props["sanitize"] is False  # charts of reports stay whole
 
 
 def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
