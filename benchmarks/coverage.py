@@ -1,7 +1,7 @@
 """Bias and coverage of the coefficients b of the paper's rows over simulated campaigns: ``python -m
 benchmarks.coverage``.
 
-The intervals are the bootstrap intervals of the model table. Prints the Markdown table of docs/validation/coverage.md.
+The intervals are the bootstrap intervals of the model table. Prints the Markdown table of docs/validation/intervals.md.
 Intervals of each series are in ``benchmarks.campaign_intervals``.
 """
 

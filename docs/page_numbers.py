@@ -80,7 +80,7 @@ def how_to_carve(_folder: Path) -> dict[str, str]:
     return {**numbers, "tool depth": f"{max(at_rest['edge_depth_mm']):.1f}"}
 
 
-def reference_campaign(_folder: Path) -> dict[str, str]:
+def validation_reference_campaign(_folder: Path) -> dict[str, str]:
     """The rmse of the nine candidate models for seed 1, and the least and greatest of seeds 0 to 39 (N)."""
     rmse = [{fit.model.id: fit.rmse for fit in _nine_rows(seed)} for seed in range(40)]
     numbers = {}
@@ -157,7 +157,7 @@ def _percent(value: float) -> str:
     return significant(value, 3)
 
 
-def gallery_turn_contrast(_folder: Path) -> dict[str, str]:
+def validation_turn_contrast(_folder: Path) -> dict[str, str]:
     """What the pairs in docs/gallery/contrast say; no run is computed."""
     sys.path.append(str(DOCS.parent))
     from benchmarks.contrast.found import found, numbers, read_rows

@@ -155,10 +155,8 @@ def displacements() -> Iterator[str]:
 
 
 PAGES = {
-    "methods/shear-in-turns.md": {"shear laws": shear_laws},
-    "methods/skid-law.md": {"skid angles": skid_angles},
-    "methods/glide-friction.md": {"friction loads": friction_loads},
-    "methods/shear-displacement.md": {"displacements": displacements},
+    "methods/side-force.md": {"shear laws": shear_laws, "skid angles": skid_angles, "displacements": displacements},
+    "methods/snow-options.md": {"friction loads": friction_loads},
 }
 
 

@@ -162,7 +162,7 @@ def point(row: Row) -> tuple[Any, ...]:
 
 
 def numbers(pairs: dict[str, Found]) -> dict[str, str]:
-    """For the sentences and tables of docs/gallery/turn-contrast.md."""
+    """For the sentences and tables of docs/validation/turn-contrast.md."""
     count, of = both_published(pairs)
     told = {
         "pairs": str(sum(each.asked for each in pairs.values())),

@@ -146,7 +146,7 @@ def test_strength_by_hand() -> None:
 
 def test_the_page_says_what_the_kept_pairs_say() -> None:
     write_numbers: Any = importlib.import_module("write_numbers")
-    page = "gallery/turn-contrast.md"
+    page = "validation/turn-contrast.md"
     assert write_numbers.anew(page) == (DOCS / page).read_text(encoding="utf-8")
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from benchmarks.regressions import found, significant, table
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference-campaign.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation" / "reference-campaign.md"
 EQN_14 = ("S_f_N_per_mm2", "snow_density_kg_per_m3", "all")
 
 

@@ -249,7 +249,7 @@ def test_numbers_that_no_turn_has(asked: dict[str, float], told: str | Coded) ->
 
 
 ROOT = Path(__file__).resolve().parents[2]
-NAMES = ("carved-turn", "carve-laws", "carve-derivatives")
+NAMES = ("carved-turn", "carve-derivatives")
 PAGES = [(ROOT / "docs" / "methods" / f"{name}.md").read_text("utf-8") for name in NAMES]
 CORE = ROOT / "src" / "core"
 SOURCES = [*sorted((CORE / "carve").glob("*.?pp")), CORE / "snow" / "hypoplastic.hpp"]

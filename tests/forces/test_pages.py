@@ -17,7 +17,7 @@ from skisnow.snow import published_names, published_snow
 from ..versions import SAME_PIXELS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE = (DOCS / "forces.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "methods" / "forces.md").read_text(encoding="utf-8")
 REFERENCE = (DOCS / "api.md").read_text(encoding="utf-8")
 LAWS = (*penetration.LAWS, *penetration.POINT_LAWS, *shear.LAWS, *friction.LAWS)
 LIMIT = 60_000
@@ -62,7 +62,7 @@ FIGURES = sorted(path.stem for path in (DOCS / "_static" / "forces").iterdir())
 def test_every_figure_is_drawn_and_shown() -> None:
     assert sorted(drawing_script().FIGURES) == FIGURES
     for name in FIGURES:
-        assert f"](_static/forces/{name}.png)" in PAGE
+        assert f"](../_static/forces/{name}.png)" in PAGE
         assert (DOCS / "_static" / "forces" / f"{name}.png").stat().st_size < LIMIT
 
 

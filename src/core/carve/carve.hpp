@@ -1,6 +1,6 @@
 // A ski that carves steadily, or stands: its shape over a groove that its own stations cut from tip to tail.
 //
-// Equations: docs/methods/carved-turn.md and docs/methods/flexible-ski.md.
+// Equations: docs/methods/carved-turn.md and docs/methods/ski.md.
 #pragma once
 
 #include <array>

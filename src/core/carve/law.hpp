@@ -1,6 +1,6 @@
 // Laws of snow from outside in a steady carve: the pressure across its sections, and the strength along its edge.
 //
-// Equations: docs/methods/carved-turn.md and docs/methods/carve-laws.md.
+// Equations: docs/methods/carved-turn.md.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Snow that takes time: p = p_e + c ε', where p_e is what the core's own law answers to ε - ε₂, and ε₂ the depth of a
 // Kelvin element in series with it, p_e = H₂ ε₂ + c₂ ε₂'. Neither pulls.
 //
-// Equations: docs/methods/rate.md.
+// Equations: docs/methods/snow-options.md.
 #pragma once
 
 #include <vector>

@@ -138,7 +138,6 @@ def carve(
     * Federolf, Roos, Lüthi and Dual (2010), "Finite element simulation of the ski-snow interaction of an alpine ski in
       a carved turn", Sports Eng. 12, 123-133, doi 10.1007/s12283-010-0038-z.
     * The page docs/methods/carved-turn.md.
-    * The page docs/methods/carve-laws.md.
     """
     require_kinds(ski, snow)
     ratio = _unloading_ratio(snow, unloading_ratio, penetration)

@@ -111,7 +111,7 @@ def ski_names() -> tuple[str, ...]:
 
     References
     ----------
-    The page docs/ski/index.md.
+    The page docs/methods/ski.md.
 
     Examples
     --------

@@ -94,7 +94,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     References
     ----------
     * The function ``regress`` of MATLAB's Statistics and Machine Learning Toolbox and of Octave's package statistics.
-    * The page docs/methods/regressions.md.
+    * The page docs/methods/statistics.md.
 
     Examples
     --------

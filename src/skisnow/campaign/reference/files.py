@@ -68,7 +68,7 @@ def write_reference(
     ----------
     * Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
       snow for simulation of skiing", J. Glaciol.
-    * The page docs/reference-campaign.md.
+    * The page docs/validation/reference-campaign.md.
     """
     drawn = reference_campaign(seed, noise=noise, turning_angles=turning_angles, creep=creep)
     folder = Path(folder)
