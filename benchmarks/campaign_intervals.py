@@ -24,12 +24,12 @@ from skisnow.campaign import ReferenceCampaign, ReferenceNoise, reference_campai
 from skisnow.campaign.records import PenetrationTests
 from skisnow.campaign.reference import design
 from skisnow.estimation.campaign_model import CampaignModel, fit_campaign
+from skisnow.estimation.errors_in_depth import volume_factor
 from skisnow.estimation.hardness import DEFINITIONS, hardness, hardness_at_largest_load
 from skisnow.estimation.readings import Readings, readings_of
-from skisnow.estimation.series_estimates import reading_uncertainty
+from skisnow.estimation.screening import reading_uncertainty
 from skisnow.estimation.spread_groups import fit_in_groups
 from skisnow.estimation.unloading import unloading
-from skisnow.estimation.volume_factor import volume_factor
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]

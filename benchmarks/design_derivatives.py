@@ -11,7 +11,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from skisnow.design.evaluation import Evaluator, FloatArray
+from skisnow._support.arrays import FloatArray
+from skisnow.design.evaluation import Evaluator
 from skisnow.design.problem import Search
 from skisnow.design.task import Goal, design_task
 

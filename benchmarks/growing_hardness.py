@@ -72,7 +72,7 @@ def row(hardness: float, growth: float, count: int) -> str:
     held_by_sites = np.mean([each.low <= growth <= each.high for each in means])
     return (
         f"| {hardness / 1e9:g} | {growth:.0%} | {np.nanmean(found.growth):.1%} | {np.nanstd(found.growth):.0%} | "
-        f"{held:.1%} | {np.mean([each.growth for each in means]):.1%} | {held_by_sites:.1%} |"
+        f"{held:.1%} | {np.mean([each.value for each in means]):.1%} | {held_by_sites:.1%} |"
     )
 
 

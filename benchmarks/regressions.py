@@ -11,9 +11,14 @@ from dataclasses import dataclass
 
 from skisnow.campaign import reference_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimation.observations import penetration_observations, shear_observations, spot_observations
 from skisnow.estimation.readings import readings_of
-from skisnow.estimation.regressions import Regression, regressions
+from skisnow.estimation.regressions import (
+    Regression,
+    penetration_observations,
+    regressions,
+    shear_observations,
+    spot_observations,
+)
 from skisnow.estimation.screening import screened_penetration, screened_shear
 from skisnow.estimation.shear import shear_stress
 

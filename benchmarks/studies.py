@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from skisnow._support.processes.batch import compute_missing
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.parameters import Quantity
 from skisnow.studies import Study, read_study, run_study
 from skisnow.studies.points import Point, Points

@@ -16,7 +16,7 @@ from skisnow._support.units import MM
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.campaign.reference import design
 from skisnow.estimation.readings import readings_of
-from skisnow.estimation.series_estimates import series_estimates
+from skisnow.estimation.screening import series_estimates
 from skisnow.estimation.unloading import site_unloading
 
 CASES = {

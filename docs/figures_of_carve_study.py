@@ -11,8 +11,7 @@ from pathlib import Path
 
 from fewer_colours import write_fewer_colours
 
-from skisnow.carving.answer import answered
-from skisnow.carving.answer_dict import answers_dict
+from skisnow.carving.answer import answered, answers_dict
 from skisnow.carving.question import carve_question
 from skisnow.report.carving_figure import carved_skis
 from skisnow.report.figures.figure_files import write_figure

@@ -8,7 +8,7 @@ from skisnow.campaign.reading.campaign_file import CAMPAIGN_KEYS
 from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
 from skisnow.campaign.smet import WeatherSettings
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.parameters import own_quantities
 from skisnow.parameters.json_schema import page_table
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS

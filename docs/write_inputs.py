@@ -11,7 +11,7 @@ from pathlib import Path
 
 import skisnow
 from skisnow.campaign.reading import campaign_schema
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.parameters.json_schema import Schema, output_schema, schema_text
 from skisnow.scenario import schema as scenario
 

@@ -22,8 +22,8 @@ from skisnow.scenario import Boots, Solver, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.reading import build_input, load_input
 from skisnow.scenario.resolution import CONDITIONS, ContradictionError
-from skisnow.scenario.shear import Shear
 from skisnow.scenario.skier import Skier
+from skisnow.scenario.sledge import Shear
 from skisnow.ski.editing import SkiEdit, edit_stations
 from tests.fuzzing.reader import Reader
 from tests.fuzzing.registry import BY_NAME

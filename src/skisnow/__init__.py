@@ -98,7 +98,7 @@ if TYPE_CHECKING:
     )
     from .simulation import Run
     from .simulation.moving_boots import BootMoment
-    from .simulation.run_gates import time_gates
+    from .simulation.run_summary import time_gates
     from .simulation.simulated_run import simulate
     from .simulation.verification import Refinement, verify
     from .ski import Ski, read_ski, ski_names
@@ -234,7 +234,7 @@ _PACKAGES = {
     ),
     "simulation": ("Run",),
     "simulation.moving_boots": ("BootMoment",),
-    "simulation.run_gates": ("time_gates",),
+    "simulation.run_summary": ("time_gates",),
     "simulation.simulated_run": ("simulate",),
     "simulation.verification": ("Refinement", "verify"),
     "ski": ("Ski", "read_ski", "ski_names"),

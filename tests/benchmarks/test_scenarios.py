@@ -10,7 +10,7 @@ from benchmarks.turns import allowed_keys, scenarios
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.scenario.reading import load_input
 from skisnow.scenario.resolution import resolve
-from skisnow.ski.sources import Sources
+from skisnow.ski.ski_file import Sources
 
 QUICK = 10
 """A seed whose sledge tips over soon."""

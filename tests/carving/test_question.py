@@ -14,12 +14,9 @@ import pytest
 
 from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import ParameterError
-from skisnow.carving.answer import answered
-from skisnow.carving.answer_dict import answer_dict, answers_dict, equilibrium_dict
+from skisnow.carving.answer import answer_dict, answered, answers_dict, equilibrium_dict
 from skisnow.carving.equilibrium import rest
-from skisnow.carving.keys import CarveQuestion
-from skisnow.carving.limits import implausible_values, require_clamp
-from skisnow.carving.question import carve_question
+from skisnow.carving.question import CarveQuestion, carve_question, implausible_values, require_clamp
 from skisnow.carving.result import Equilibrium
 from skisnow.snow import SnowProperties
 from skisnow.snow.properties import GREATEST_LIKELY_HARDNESS

@@ -17,8 +17,8 @@ from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives, CarveReque
 from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import clamped
+from skisnow.ski.editing import shape_parameters, varied_ski
 from skisnow.ski.ski_file import ski_of_keys
-from skisnow.ski.variation import shape_parameters, varied_ski
 from skisnow.snow import SnowProperties
 from tests.coded import raises
 

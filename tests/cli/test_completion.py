@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from skisnow.cli import build_parser
-from skisnow.cli.completion import candidates
+from skisnow.cli.shell import candidates
 
 
 def after(*words: str) -> list[str]:

@@ -216,7 +216,7 @@ class TestLastResort:
         def run(_: object) -> int:
             raise ZeroDivisionError("an unforeseen error\nsecond line")
 
-        monkeypatch.setattr("skisnow.cli.check.run", run)
+        monkeypatch.setattr("skisnow.cli.campaign.check", run)
 
     def test_one_sentence_a_reference_and_the_trace_in_a_file(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -250,7 +250,7 @@ def test_memory_that_does_not_suffice_is_a_sentence(
     def run(_: object) -> int:
         raise MemoryError
 
-    monkeypatch.setattr("skisnow.cli.check.run", run)
+    monkeypatch.setattr("skisnow.cli.campaign.check", run)
     assert main(["check", "x"]) == 1
     assert "memory" in capsys.readouterr().err
 

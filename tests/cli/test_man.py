@@ -9,7 +9,7 @@ import subprocess
 import pytest
 
 from skisnow.cli import build_parser
-from skisnow.cli.man import manual_page
+from skisnow.cli.shell import manual_page
 
 PAGE = manual_page(build_parser(), "0.1.0")
 

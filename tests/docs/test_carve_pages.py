@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import skisnow
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
 from skisnow.studies import read_study
 from skisnow.studies.subjects import CARVE_RESULTS

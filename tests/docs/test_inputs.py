@@ -4,7 +4,7 @@ import importlib
 from pathlib import Path
 from typing import Any
 
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.scenario.keys import SCENARIO_KEYS
 
 from .page_text import INCLUDED

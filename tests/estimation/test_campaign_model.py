@@ -13,11 +13,11 @@ import skisnow
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.estimation.campaign_fit import Priors
 from skisnow.estimation.campaign_model import CampaignModel, fit_campaign
+from skisnow.estimation.errors_in_depth import volume_factor
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.parts import seating
 from skisnow.estimation.readings import Readings, ReadingUncertainty
-from skisnow.estimation.seating import seating
 from skisnow.estimation.spread_groups import fit_in_groups, scatter_warning
-from skisnow.estimation.volume_factor import volume_factor
 from skisnow.geometry import Disc, SkiPiece, Tool
 
 from .conftest import MakeCampaign

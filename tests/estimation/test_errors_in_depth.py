@@ -47,7 +47,7 @@ def test_exact_series_with_an_offset_give_back_the_hardness_and_b_one() -> None:
     # the weak priors of the model take a little: a hundredth of H_V, and of a typical offset
     np.testing.assert_allclose(found.value["H_V"][touching], H[touching], rtol=0.01)
     np.testing.assert_allclose(found.offset[touching], offset[touching], atol=2e-6)
-    rows, _ = fit_models_with_depth_errors(found.of(touching), ReadingUncertainty(1e-6))
+    rows = fit_models_with_depth_errors(found.of(touching), ReadingUncertainty(1e-6))
     constant = next(row for row in rows if row.model.id == "H_V:a=none,b=constant")
     assert constant.b0 == pytest.approx(1.0, abs=1e-3)
     assert constant.rmse < 1e-2 * LOADS.max()
@@ -77,7 +77,7 @@ def test_effective_variance_agrees_with_orthogonal_distance_regression() -> None
     known = FittedHardness(
         readings, np.zeros(30), dict.fromkeys(DEFINITIONS, np.full(30, H)), np.zeros((30, 2)), np.zeros(30)
     )
-    rows, _ = fit_models_with_depth_errors(known, ReadingUncertainty(u_e, u_F))
+    rows = fit_models_with_depth_errors(known, ReadingUncertainty(u_e, u_F))
     ours = next(row for row in rows if row.model.id == "H_V:a=constant,b=constant")
 
     def law(x: np.ndarray, beta: np.ndarray) -> np.ndarray:

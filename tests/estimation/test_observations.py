@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import skisnow
-from skisnow.estimation.observations import (
+from skisnow.estimation.regressions import (
     DENSITY_KEY,
     DROP_CONE_KEY,
     HARDNESS_KEY,

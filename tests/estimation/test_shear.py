@@ -13,7 +13,8 @@ import pytest
 import skisnow
 from skisnow.campaign import Campaign
 from skisnow.estimation import results_dict
-from skisnow.estimation.shear import shear_displacement, shear_stress, site_displacement
+from skisnow.estimation.comparisons import site_values
+from skisnow.estimation.shear import shear_displacement, shear_stress
 
 from .conftest import MakeCampaign
 
@@ -175,6 +176,6 @@ def test_truth_is_covered_without_bias(make_campaign: MakeCampaign) -> None:
     low, high = found.interval.T
     assert np.mean((low <= WAY * 1e-3) & (high >= WAY * 1e-3)) == pytest.approx(0.95, abs=0.021)
     sites = [f"{index % 50}" for index in range(1000)]
-    means = [each for each in site_displacement(found, np.ones(1000, dtype=bool), sites) if each.site is not None]
+    means = [each for each in site_values(found.value, np.ones(1000, dtype=bool), sites) if each.site is not None]
     covered = np.mean([each.low <= WAY * 1e-3 <= each.high for each in means])
     assert covered >= 0.88  # 50 sites of 20 tests: 95 % ± 2.3 standard errors

@@ -20,7 +20,7 @@ from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
 from skisnow.report.campaign.summary import summary
-from skisnow.snow.penetrometer_relations import PENETROMETER_RELATIONS
+from skisnow.snow.measured_range import PENETROMETER_RELATIONS
 
 from ..campaign.recordings import AIR_N, LONG, SHORT, built, plain_snow, recording
 from .conftest import MakeCampaign

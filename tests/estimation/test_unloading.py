@@ -19,8 +19,7 @@ from skisnow.estimation.campaign_model import DEFAULT_PRIORS, fit_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness, hardness_at_largest_load
 from skisnow.estimation.readings import ReadingUncertainty, readings_of
 from skisnow.estimation.result_rows import experiment_results
-from skisnow.estimation.screening import quality_flags
-from skisnow.estimation.series_estimates import series_estimates
+from skisnow.estimation.screening import quality_flags, series_estimates
 from skisnow.estimation.unloading import Unloading, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
 

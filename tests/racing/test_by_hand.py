@@ -19,8 +19,8 @@ from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate_search
 from skisnow.racing.line import first_gates, ways
+from skisnow.racing.point import Racer, run_score, ski_line
 from skisnow.racing.quickest import _begun, _require, _search, _window
-from skisnow.racing.racers import Racer, run_score, ski_line
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.surrogate_search import BATCH, Daring, SurrogateSearch, _best_within

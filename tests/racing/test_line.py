@@ -21,7 +21,7 @@ from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, PointRacer, RacingLine, follower_line, read_line, write_line
 from skisnow.racing.line import first_gates, with_numbers
-from skisnow.racing.racers import LinePoint, turns_in
+from skisnow.racing.point import LinePoint, turns_in
 from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
 from skisnow.racing.windows import How, Search, Windows

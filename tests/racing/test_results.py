@@ -27,8 +27,8 @@ from skisnow.racing import (
     write_line,
 )
 from skisnow.racing.line import first_gates
+from skisnow.racing.point import Racer
 from skisnow.racing.quickest import _fingerprint
-from skisnow.racing.racers import Racer
 from skisnow.racing.worth import AS_IT_IS, wider
 from skisnow.track.course.gates_table import GateGap
 

@@ -19,7 +19,7 @@ from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line
 from skisnow.racing.line import first_gates
-from skisnow.racing.racers import Racer, run_score, ski_line
+from skisnow.racing.point import Racer, run_score, ski_line
 from skisnow.racing.search import Batches, Evaluated, Evaluations, least_of
 from skisnow.racing.surrogate import Surrogate, times_of
 

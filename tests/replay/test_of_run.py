@@ -24,8 +24,7 @@ from skisnow.report.run.file import write_run_file
 from skisnow.scenario import Profile, scenario_values
 from skisnow.scenario.keys import in_sections
 from skisnow.simulation.run import Run
-from skisnow.simulation.run_gates import run_gates
-from skisnow.simulation.run_summary import summary_dict
+from skisnow.simulation.run_summary import run_gates, summary_dict
 from skisnow.ski import ski_named, write_ski
 from skisnow.track.course import Course, Gate, read_course
 from skisnow.track.track import Track

@@ -12,8 +12,8 @@ import skisnow
 from skisnow import Analysis, scenario_names
 from skisnow._support.errors import ParameterError
 from skisnow.campaign.reference import reference_campaign
+from skisnow.estimation.comparisons import SiteValue
 from skisnow.estimation.results import results_json
-from skisnow.estimation.shear import SiteDisplacement
 from skisnow.scenario import Plane, Profile, load_scenario, scenario_file, scenario_text, scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS, parse_change
 from skisnow.scenario.reading import build_input, load_input
@@ -226,7 +226,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> tuple[Analysis, Path]:
     assert pressed is not None
     assert sheared is not None
     unloading = (replace(pressed.site_unloading[0], site="site C"), *pressed.site_unloading[1:])
-    ways = (SiteDisplacement("site C", 3, 2.5e-4, 2.0e-4, 3.2e-4), SiteDisplacement(None, 3, 2.5e-4, 2.0e-4, 3.2e-4))
+    ways = (SiteValue("site C", 3, 2.5e-4, 2.0e-4, 3.2e-4), SiteValue(None, 3, 2.5e-4, 2.0e-4, 3.2e-4))
     analysis = replace(
         analysis, penetration=replace(pressed, site_unloading=unloading), shear=replace(sheared, site_displacement=ways)
     )

@@ -17,7 +17,7 @@ from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
 from skisnow.scenario.run_settings import Start
-from skisnow.scenario.shear import Shear
+from skisnow.scenario.sledge import Shear
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises

@@ -16,10 +16,9 @@ from skisnow.geometry.boot_axes import axes_of
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
-from skisnow.simulation.run_gates import GatesAhead, racer_parts, run_gates
 from skisnow.simulation.run_record import Record, _arc, _heading, at_nodes, turn_radius
 from skisnow.simulation.run_setup import Setup
-from skisnow.simulation.run_summary import energies_dict, summary_dict
+from skisnow.simulation.run_summary import GatesAhead, energies_dict, racer_parts, run_gates, summary_dict
 from skisnow.simulation.verification import Refinement, limit_sentences, verify
 from skisnow.track.course import Course, Gate
 

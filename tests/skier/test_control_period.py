@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow import Run, load_scenario, simulate
-from skisnow.simulation.run_gates import run_gates
+from skisnow.simulation.run_summary import run_gates
 
 STATED_ERROR = {"fast": 15e-3, "default": 7e-3}
 """Of an end by each method (m)."""

@@ -10,7 +10,7 @@ import pytest
 from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.studies import StudyState, StudyTable, read_study, read_table, run_study, study_state
 from tests.coded import Coded, coded, raises
 

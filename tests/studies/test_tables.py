@@ -14,7 +14,7 @@ import pytest
 
 from skisnow._support.errors import OutputError, ParameterError, SkisnowError
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow.carving.keys import CARVE_KEYS
+from skisnow.carving.question import CARVE_KEYS
 from skisnow.parameters import Quantity
 from skisnow.studies import Study, StudyState, StudyTable, read_study, read_table, run_study, study_state
 from skisnow.studies.rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, StoredRows

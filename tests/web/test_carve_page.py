@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow.carving.answer import answered
-from skisnow.carving.answer_dict import answer_dict
-from skisnow.carving.keys import CARVE_KEYS
-from skisnow.carving.question import carve_question
+from skisnow.carving.answer import answer_dict, answered
+from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.report.formatting import significant
 from skisnow.web.pages.carve import RATIOS, SLIDERS
 

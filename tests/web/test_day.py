@@ -15,8 +15,7 @@ from PIL import Image
 
 from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
-from skisnow.carving.answer import answered
-from skisnow.carving.answer_dict import answer_dict
+from skisnow.carving.answer import answer_dict, answered
 from skisnow.carving.question import carve_question
 from skisnow.cli import main
 from skisnow.report.formatting import significant

@@ -177,6 +177,17 @@ _FORMULA: Final = "=+-@\t\r＝＋－＠"
 _AS_FORMULA: Final = re.compile(f"'*[{re.escape(_FORMULA)}]")
 
 
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    r"""CSV text of rows of cells, with commas and line feeds.
+
+    >>> csv_text([("old", "new"), ("1,5", 1.5)])
+    'old,new\n"1,5",1.5\n'
+    """
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows(rows)
+    return stream.getvalue()
+
+
 def guarded(text: str) -> str:
     """The cell of a text in a table that people open: no spreadsheet program takes it for a formula.
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount, ends
 from .._support.units import DEGREE, MM
@@ -21,14 +20,12 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
     from pathlib import Path
 
+    from .._support.arrays import FloatArray, IntArray
     from ..geometry import Tool
     from .problems import Problem
     from .smet import CampaignWeather
     from .snow_micro_pen_records import SnowMicroPenRecordings
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 Key = TypeVar("Key", bound="Hashable")
 
 

@@ -28,8 +28,9 @@ from .reading.table_forms import PENETRATION, SHEAR
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..geometry import GeometryForm
-    from .records import BoolArray, Campaign, FloatArray, IntArray, PenetrationTests, UnloadingReadings
+    from .records import Campaign, PenetrationTests, UnloadingReadings
 
 __all__ = [
     "QUALITY_FLAGS",

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, NoReturn
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import Facts, Shown
 from .._support.errors import FieldDataError
@@ -28,7 +27,8 @@ from .problems import error
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-FloatArray = npt.NDArray[np.float64]
+    from .._support.arrays import FloatArray
+
 
 MOST_BYTES: Final = 256 * 2**20
 _NEEDED: Final = ("station_id", "nodata", "fields")

@@ -15,15 +15,13 @@ from pathlib import Path
 from typing import Any, Final, NoReturn
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, MM
 from .._support.user_files import GivenError, plain_bytes
 from .problems import error
-
-FloatArray = npt.NDArray[np.float64]
 
 HEADER_BYTES: Final = 512
 MOST_BYTES: Final = 1 << 26

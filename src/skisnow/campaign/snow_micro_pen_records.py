@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
 from .._support.units import MM
@@ -16,10 +15,9 @@ from .snow_micro_pen import SnowMicroPenProfile, parse_snow_micro_pen
 
 if TYPE_CHECKING:
     import numpy as np
-    import numpy.typing as npt
 
-    FloatArray: TypeAlias = npt.NDArray[np.float64]
-    IntArray: TypeAlias = npt.NDArray[np.int64]
+    from .._support.arrays import FloatArray, IntArray
+
 
 Relation: TypeAlias = Literal["proksch-2015", "calonne-2020", "king-2020a", "king-2020b"]
 

@@ -20,9 +20,9 @@ from .reading.tables import read_table
 from .reading.text import UnreadableTextError, inspect_csv
 
 if TYPE_CHECKING:
+    from .._support.arrays import FloatArray, IntArray
     from .problems import Problem
     from .reading.columns import Table
-    from .records import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)

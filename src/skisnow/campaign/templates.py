@@ -5,7 +5,6 @@ No estimate counts the example rows: their status cancels them.
 
 from __future__ import annotations
 
-import csv
 import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import OutputError
 from .._support.messages import Message
+from .._support.spreadsheet_text import csv_text
 from .._support.staging import prepare_folder, staged, write_file
 from ..snow.published import moessner_2013
 from .reading.campaign import CAMPAIGN_FILES
@@ -269,9 +269,5 @@ def _files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:
 
 
 def _csv(template: Template) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(template.example)
-    cells = template.example.values()
-    writer.writerow([f"{cell:g}" if isinstance(cell, float) else cell for cell in cells])
-    return stream.getvalue()
+    cells = [f"{cell:g}" if isinstance(cell, float) else cell for cell in template.example.values()]
+    return csv_text([template.example, cells])

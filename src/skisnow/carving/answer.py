@@ -1,21 +1,31 @@
-"""The answer to a question about a ski in snow: ski and snow are read, the equilibrium found, warnings collected."""
+"""The answer to a question about a ski in snow, and its JSON values."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from importlib.metadata import version
+from typing import Any, Final
 
+import numpy as np
+
+from .._support.arrays import FloatArray
 from .._support.messages import Message
+from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from .._support.user_files.json_text import json_number
 from ..forces.measured_ranges import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
 from ..ski import Ski
-from ..ski.sources import Sources
+from ..ski.ski_file import Sources
 from ..snow import SnowProperties
+from ..snow.from_results import snow_dict
 from ..snow.measured_range import with_range_warnings
 from ..snow.properties import require_stress, with_stress
 from .equilibrium import carve, rest
-from .keys import CARVE_KEYS, CarveQuestion
-from .limits import implausible_values, require_clamp
+from .outputs import OUTPUTS
+from .question import CARVE_KEYS, CarveQuestion, implausible_values, require_clamp
 from .result import Equilibrium
+from .solve import RIGID_PLASTIC
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,3 +115,122 @@ def _warn_outside_ranges(snow: SnowProperties, edge_angle: float, *, at_rest: bo
     PENETRATION_EDGE_ANGLE.warn_outside(edge_angle, "penetration")
     if snow.failure_shear_stress is not None and not at_rest:
         FAILURE_SHEAR_STRESS.warn_outside(snow.failure_shear_stress, "shear")
+
+
+SCHEMA_VERSION: Final = 1
+
+
+def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
+    """The JSON of `skisnow carve` for one ski; its JSON Schema is schemas/carve.schema.json."""
+    return {
+        "schema_version": SCHEMA_VERSION,
+        **equilibrium_dict(answer.equilibrium),
+        "inputs": inputs_dict(answer),
+        "snow": snow_dict(answer.snow),
+        "ski": {
+            "name": answer.ski.name,
+            "source": answer.ski.source,
+            "length_m": answer.ski.length,
+            "mass_kg": answer.ski.mass,
+            "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
+            "sidecut_radius_of_edge_line_m": json_number(answer.ski.sidecut_radius_of_edge_line),
+        },
+        **_half_intervals(answer),
+        "warnings": list(answer.warnings),
+        "provenance": {"skisnow": version("skisnow")},
+    }
+
+
+def _half_intervals(answer: CarveAnswer) -> dict[str, Any]:
+    """Half the 95 % interval of each output by the snow's intervals; nothing where there are none."""
+    if answer.equilibrium.request is None or answer.snow.snow_hardness_interval is None:
+        return {}
+    exact = answer.equilibrium.derivatives()
+    outputs = [name for name in OUTPUTS if exact.output(name) is not None]
+    return {"half_intervals": {name: exact.half_interval(name, answer.snow) for name in outputs}}
+
+
+def answers_dict(answers: Sequence[CarveAnswer]) -> dict[str, Any]:
+    """The JSON of `skisnow carve`: one answer as it is, several under `skis`."""
+    each = [answer_dict(answer) for answer in answers]
+    return each[0] if len(each) == 1 else {"skis": each}
+
+
+def sensitivities_dict(equilibrium: Equilibrium, parameters: Sequence[str] = ()) -> list[dict[str, Any]]:
+    """Derivatives of all outputs that exist by parameters (default: `everyday_parameters`), as JSON values."""
+    exact = equilibrium.derivatives()
+    names = parameters or exact.everyday_parameters
+    return [
+        {
+            "output": each.output,
+            "parameter": each.parameter,
+            "value": each.output_value,
+            "derivative": each.derivative,
+            "percent_per_percent": each.relative,
+            "relative_distance_to_kink": json_number(each.kink),
+        }
+        for output in OUTPUTS
+        if exact.output(output) is not None
+        for each in exact.sensitivity(output, names)
+    ]
+
+
+def equilibrium_dict(equilibrium: Equilibrium) -> dict[str, Any]:
+    """An equilibrium under the keys of the contract; None where a number does not exist."""
+    return {
+        **scalars_dict(equilibrium),
+        "station_m": _numbers(equilibrium.station, 1.0),
+        "edge_depth_mm": _numbers(equilibrium.edge_depth, MM),
+        "force_per_length_N_per_m": _numbers(equilibrium.force_per_length, 1.0),
+        "bending_mm": _numbers(equilibrium.bending, MM),
+        "twist_deg": _numbers(equilibrium.twist, DEGREE),
+        "edge_line_mm": _numbers(equilibrium.edge_line, MM),
+    }
+
+
+def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
+    """Outcome and single numbers under the keys of the contract."""
+    return {
+        "outcome": equilibrium.outcome,
+        "remedy": equilibrium.remedy,
+        "holds": None if equilibrium.holds is None else bool(equilibrium.holds),
+        "side_force_N": json_number(equilibrium.side_force),
+        "side_force_limit_N": json_number(equilibrium.side_force_limit),
+        "total_force_N": json_number(equilibrium.total_force),
+        "grip_utilisation": json_number(equilibrium.grip_utilisation),
+        "turn_radius_boot_m": json_number(equilibrium.turn_radius_boot),
+        "turn_radius_boot_other_spread_m": json_number(equilibrium.turn_radius_boot_other_spread),
+        "turn_radius_chord_m": json_number(equilibrium.turn_radius_chord),
+        "contact_length_m": json_number(equilibrium.contact_length),
+        "bearing_length_m": json_number(equilibrium.bearing_length),
+        "afterbody_depth_ratio": json_number(equilibrium.afterbody_depth_ratio),
+        "forebody_load_N": json_number(equilibrium.forebody_load),
+        "afterbody_load_N": json_number(equilibrium.afterbody_load),
+        "boot_pitch_moment_Nm": json_number(equilibrium.boot_pitch_moment),
+        "residual_force_N": json_number(equilibrium.residual_force),
+        "residual_moment_Nm": json_number(equilibrium.residual_moment),
+        "iterations": int(equilibrium.iterations),
+    }
+
+
+def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:
+    """Every input with the value in force, that of the snow's numbers too; an infinite unloading ratio as computed."""
+    given = answer.question.as_dict()
+    ratio, stress = given["unloading_ratio"], answer.snow.failure_shear_stress
+    return given | {
+        "H_V_N_per_mm3": _in_unit(given["H_V_N_per_mm3"], answer.snow.snow_hardness, N_PER_MM3),
+        "S_f_N_per_mm2": _in_unit(given["S_f_N_per_mm2"], stress, N_PER_MM2),
+        "unloading_ratio": RIGID_PLASTIC if ratio is not None and math.isinf(ratio) else ratio,
+    }
+
+
+def _in_unit(given: float | None, value: float | None, unit: float) -> float | None:
+    """The number as given: there and back over the unit could change its last digit."""
+    return given if given is not None or value is None else value / unit
+
+
+def _numbers(values: FloatArray | None, unit: float) -> list[float | None] | None:
+    if values is None:
+        return None
+    numbers: list[float | None] = (values / unit).tolist()
+    return numbers if np.isfinite(values).all() else [None if n is None else json_number(n) for n in numbers]

@@ -6,7 +6,7 @@ import math
 from typing import Final
 
 from .._support.errors import ParameterError, require_choice
-from ..ski.ski import Ski
+from ..ski import Ski
 from ..snow.properties import SnowProperties
 
 GREATEST_EDGE_ANGLE: Final = math.radians(85.0)

@@ -16,7 +16,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
-from ..ski.variation import LINEAR, shape_parameters, shape_value
+from ..ski.editing import LINEAR, shape_parameters, shape_value
 from .outputs import AT_BOOT, OUTPUTS, At, OutputGrowth, output_growth
 from .shape import Shape, beam_gradient, beam_moved, bent_by, shape_growth
 from .solve import Solution, refined

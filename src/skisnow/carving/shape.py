@@ -18,7 +18,7 @@ from ..ski.beam import (
     model_nodes,
     twist_shape,
 )
-from ..ski.variation import LINEAR, is_linear, require_own_tables, shape_value, stiffness_growth, varied_ski
+from ..ski.editing import LINEAR, is_linear, require_own_tables, shape_value, stiffness_growth, varied_ski
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski

@@ -22,23 +22,19 @@ def build_parser() -> argparse.ArgumentParser:
     from importlib.metadata import version
 
     from . import (
-        analyse,
+        beginning,
+        campaign,
         carve,
-        check,
         compare,
-        completion,
         convert,
         design,
         export,
         identify,
         import_file,
-        man,
-        new,
         race,
-        reference,
         replay,
-        samples,
         serve,
+        shell,
         simulate,
         store,
         study,
@@ -54,12 +50,13 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
-    every = (
-        new, import_file, check, analyse, store, reference, samples, carve, design, simulate, replay, turn, study, race,
-        track, compare, identify, export, convert, serve, completion, man,
-    )  # fmt: skip
-    for command in every:
-        command.add_parser(commands)
+    modules = (carve, design, simulate, replay, turn, study, race, track, compare, identify, export, convert, serve)
+    for add_command in (
+        beginning.add_new, import_file.add_parser, campaign.add_check, campaign.add_analyse, store.add_parser,
+        beginning.add_reference, beginning.add_samples, *(module.add_parser for module in modules),
+        shell.add_completion, shell.add_man,
+    ):  # fmt: skip
+        add_command(commands)
     return parser
 
 

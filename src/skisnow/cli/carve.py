@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import list_fonts
 from .options import add_language, number, whole_number
+from .output import list_fonts, print_json
 from .progress import announced
 
 if TYPE_CHECKING:
@@ -90,7 +89,7 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
-    from ..carving.answer_dict import answers_dict
+    from ..carving.answer import answers_dict
 
     if options.figure is not None:
         from ..report.figures.figure_files import require_drawable
@@ -110,7 +109,7 @@ def run(options: argparse.Namespace) -> int:
         write_figure(options.figure, lambda: carved_skis(result), language=options.language)
         print(f"Figure: {options.figure}", file=sys.stderr)
     if options.json:
-        print(json.dumps(result, ensure_ascii=False, allow_nan=False, indent=1))
+        print_json(result)
     else:
         from ..report.summaries import carve_summary
 
@@ -121,7 +120,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _sensitivities(answers: list[CarveAnswer], names: list[str]) -> list[list[dict[str, Any]]]:
-    from ..carving.answer_dict import sensitivities_dict
+    from ..carving.answer import sensitivities_dict
 
     return [sensitivities_dict(answer.equilibrium, [name for name in names if name]) for answer in answers]
 
@@ -148,8 +147,7 @@ def _status(answers: list[CarveAnswer]) -> int:
 def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
     with announced("loading"):
         from ..carving.answer import answered
-        from ..carving.keys import CARVE_KEYS
-        from ..carving.question import carve_question
+        from ..carving.question import CARVE_KEYS, carve_question
 
         question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
         return [answered(carve_question(question | {"ski": ski})) for ski in options.ski]

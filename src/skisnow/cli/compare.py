@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.units import DEGREE
-from .ending import prepare_output
 from .options import add_fall_line_azimuth, add_language, number
+from .output import prepare_output, print_warnings
 from .progress import announced
 
 if TYPE_CHECKING:
@@ -86,8 +86,7 @@ def run(options: argparse.Namespace) -> int:
 
     gaps = read_gate_gaps(options.simulated, options.measured)
     answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": gap_rows(gaps)})
-    for text in comparison.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings(comparison.warnings)
     text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
     if options.json:
         print(text, flush=True)

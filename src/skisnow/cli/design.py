@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .output import print_json
 from .progress import Progress, announced
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
         found = design_ski(task, progress=lambda done, count: progress(f"{done} of {count} starts"))
     paths = found.write(options.out or options.design.parent)
     if options.json:
-        print(json.dumps(found.as_dict(), ensure_ascii=False, allow_nan=False, indent=1))
+        print_json(found.as_dict())
     else:
         print(_summary(found))
         print("\n".join(f"written: {path}" for path in paths))

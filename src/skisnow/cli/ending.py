@@ -1,4 +1,4 @@
-"""Output folder and end of a command: SIGTERM stops workers and keeps finished results, as Ctrl-C does."""
+"""End of a command: SIGTERM stops workers and keeps finished results, as Ctrl-C does; a report of unforeseen errors."""
 
 from __future__ import annotations
 
@@ -16,8 +16,6 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
-
-from .progress import announced
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -93,6 +91,14 @@ def ending_is_an_interrupt() -> Iterator[Ending]:
         signal.signal(signal.SIGTERM, before)
 
 
+def report_interrupt(stopped: KeyboardInterrupt, place: Path) -> int:
+    """Print where the finished part of the work is kept; returns the exit status."""
+    ended = isinstance(stopped, Ended)
+    print(f"\nskisnow: {'ended' if ended else 'interrupted'}; what is finished is kept in {place}.\n"
+          "The same command goes on with it.", file=sys.stderr)  # fmt: skip
+    return 143 if ended else 130
+
+
 STATUS: Final = 70
 """Exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h."""
 
@@ -132,31 +138,3 @@ def _write_log(name: str, text: str) -> Path | None:
             continue
         return folder / name
     return None
-
-
-USUAL_S: Final = 10.0
-"""Seconds for a machine with a thousand fonts or more (milliseconds each); a hundred take less than a second."""
-
-
-def list_fonts() -> None:
-    """Let matplotlib list the fonts before the work begins, with a message, if it has no list yet."""
-    import matplotlib
-
-    if not list(Path(matplotlib.get_cachedir()).glob("fontlist-*.json")):
-        with announced("listing this machine's fonts for the figures, this once", usual_s=USUAL_S):
-            import matplotlib.font_manager
-
-
-def prepare_output(folder: Path) -> None:
-    """Require a writable folder, clean up after killed processes with a message, and list the fonts for figures.
-
-    Raises
-    ------
-    OutputError
-        The folder cannot be made or written.
-    """
-    from .._support.staging import prepare_folder
-
-    for sentence in prepare_folder(folder):
-        print(sentence, file=sys.stderr)
-    list_fonts()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from .options import Parser, add_changes, whole_number
+from .options import Parser, add_changes, scenario_of, whole_number
 from .progress import announced
 
 
@@ -61,12 +61,8 @@ def _fmu(options: argparse.Namespace) -> int:
         options.parser.error("--skis goes with --contact: a sledge has two")
     with announced("writing"):
         from ..interop import write_contact_fmu, write_sledge_fmu
-        from ..scenario import scenario_file
-        from ..scenario.keys import parse_change
 
-        scenario = scenario_file(
-            options.scenario, changes=dict(parse_change(word) for word in options.changes)
-        ).scenario
+        scenario = scenario_of(options).scenario
         if options.contact:
             written = write_contact_fmu(scenario, options.out, fmi=options.fmi, skis=options.skis or 2)
         else:

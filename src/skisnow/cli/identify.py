@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .ending import Ending, ending_is_an_interrupt, prepare_output
-from .options import MOST_RESAMPLES, MOST_WORKERS, add_language, add_scheduler, scheduler_of, seed_number, whole_number
+from .ending import Ending, ending_is_an_interrupt
+from .options import (
+    MOST_RESAMPLES,
+    add_changes,
+    add_language,
+    add_scheduler,
+    add_workers,
+    changes_of,
+    scenario_of,
+    scheduler_of,
+    seed_number,
+    whole_number,
+)
+from .output import prepare_output, print_json, print_warnings
 from .progress import Progress, announced
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
@@ -39,8 +50,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     free = 'parameters to fit, such as mu_0,drag_area,S_f; default: those with a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
-    changes = "another value for one key of the scenario, several times for several"
-    parser.add_argument("--set", action="append", default=[], dest="changes", metavar="section.key=value", help=changes)
+    add_changes(parser)
     _add_ways(parser)
     parser.add_argument("--json", action="store_true", help="print identification.json alone to standard output")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write identification.json, fits.csv and a report")
@@ -66,9 +76,7 @@ def _add_ways(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=seed_number, default=0, metavar="N", help="of every random number")
     clock = "whether photo-cell clocks show 0 at the start, or each run's has a separate offset"
     parser.add_argument("--clock", choices=("start", "free"), help=clock)
-    parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: all cores"
-    )
+    add_workers(parser)
     add_scheduler(parser)
 
 
@@ -88,23 +96,15 @@ def _prepared(options: argparse.Namespace) -> ScenarioFile:
     """Reject wrong options before the work."""
     with announced("loading"):
         from ..identification.intervals import require_bootstrap, require_emcee
-        from ..scenario import scenario_file
 
         require_bootstrap(options.bootstrap, options.bootstrap_by)
         if options.posterior:
             require_emcee()
-        scenario_input = scenario_file(options.scenario, changes=_changes(options))
+        scenario_input = scenario_of(options)
     if options.out is not None:
         prepare_output(options.out)
-    for text in scenario_input.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings(scenario_input.warnings)
     return scenario_input
-
-
-def _changes(options: argparse.Namespace) -> dict[str, object]:
-    from ..scenario.keys import parse_change
-
-    return dict(parse_change(word) for word in options.changes)
 
 
 def _identified(options: argparse.Namespace) -> Identification:
@@ -117,7 +117,7 @@ def _identified(options: argparse.Namespace) -> Identification:
             options.scenario,
             options.data,
             options.free,
-            changes=_changes(options),
+            changes=changes_of(options),
             starts=options.starts,
             profile=options.profile,
             bootstrap=options.bootstrap,
@@ -137,10 +137,9 @@ def _tell(options: argparse.Namespace, result: Identification, scenario_input: S
     from ..identification import identification_dict
 
     contents = identification_dict(result, files=(*scenario_input.files, *options.data))
-    for text in result.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings(result.warnings)
     if options.json:
-        print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print_json(contents)
     else:
         from ..report.summaries import identify_summary
 

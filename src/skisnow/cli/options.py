@@ -15,6 +15,8 @@ from .._support.messages import Message
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from ..scenario import ScenarioFile
+
 MOST_WORKERS: Final = 256
 MOST_RESAMPLES: Final = 100_000
 _BEGINS_AS_NUMBER: Final = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
@@ -70,16 +72,36 @@ def add_language(parser: argparse.ArgumentParser, what: str = "the page and the 
     )
 
 
-def add_changes(parser: argparse.ArgumentParser) -> None:
-    """Let a command take other values for keys of its scenario."""
+def add_changes(parser: argparse.ArgumentParser, more: str = "") -> None:
+    """Let a command take other values for keys of its scenario; `more` follows the help."""
     parser.add_argument(
         "--set",
         action="append",
         default=[],
         dest="changes",
         metavar="section.key=value",
-        help="another value for one key, several times for several; the section may be left out",
+        help=f"another value for one key, several times for several; the section may be left out{more}",
     )
+
+
+def changes_of(options: argparse.Namespace) -> dict[str, object]:
+    """Values by key from the option of `add_changes`."""
+    from ..scenario.keys import parse_change
+
+    return dict(parse_change(word) for word in options.changes)
+
+
+def scenario_of(options: argparse.Namespace) -> ScenarioFile:
+    """The scenario that a command names, with the changes of `add_changes`."""
+    from ..scenario import scenario_file
+
+    return scenario_file(options.scenario, changes=changes_of(options))
+
+
+def add_workers(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says how many processes compute."""
+    workers = "processes; default: one for each core"
+    parser.add_argument("--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help=workers)
 
 
 def _meant(name: str, options: Iterable[str]) -> str:

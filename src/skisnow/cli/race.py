@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import Ended, ending_is_an_interrupt, prepare_output
-from .options import MOST_WORKERS, add_changes, add_scheduler, number, scheduler_of, seed_number, whole_number
+from .ending import ending_is_an_interrupt, report_interrupt
+from .options import (
+    add_changes,
+    add_scheduler,
+    add_workers,
+    number,
+    scenario_of,
+    scheduler_of,
+    seed_number,
+    whole_number,
+)
+from .output import prepare_output, print_json, print_warnings
 from .progress import Progress, announced
 
 if TYPE_CHECKING:
@@ -40,9 +49,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--model", choices=("skier", "point"), default="skier", help=model)
     _add_search(parser)
     _add_worth(parser)
-    parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
-    )
+    add_workers(parser)
     add_scheduler(parser)
     parser.add_argument("--json", action="store_true", help="print race.json alone to standard output")
     parser.add_argument(
@@ -105,10 +112,7 @@ def run(options: argparse.Namespace) -> int:
         with ending_is_an_interrupt():
             raced = _raced(options)
     except KeyboardInterrupt as stopped:
-        ended = isinstance(stopped, Ended)
-        print(f"\nskisnow: {'ended' if ended else 'interrupted'}; finished races are kept in {options.out}.\n"
-              "The same command goes on with them.", file=sys.stderr)  # fmt: skip
-        return 143 if ended else 130
+        return report_interrupt(stopped, options.out)
     _tell(options, raced)
     return 1 if raced.found.score.time is None else 0
 
@@ -155,12 +159,9 @@ def _raced(options: argparse.Namespace) -> _Raced:
 def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
     """The scenario, and its variants by name."""
     from ..racing import worth_changes
-    from ..scenario import scenario_file
-    from ..scenario.keys import parse_change
 
-    scenario_input = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
-    for text in scenario_input.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+    scenario_input = scenario_of(options)
+    print_warnings(scenario_input.warnings)
     variants = {name: scenario_input.scenario.with_(ski=name) for name in options.against}
     if options.worth:
         variants |= worth_changes(scenario_input.scenario)
@@ -180,7 +181,7 @@ def _checked(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
     """Both lines raced as the scenario says it, where the search raced by a quicker method; the run on the quickest."""
-    from ..racing.racers import run_score, ski_line
+    from ..racing.point import run_score, ski_line
 
     if fastest.model == "point":
         return [], None
@@ -202,7 +203,7 @@ def _tell(options: argparse.Namespace, raced: _Raced) -> None:
     )
     if options.json:
         contents = race_dict(fastest, checked, worth)
-        print(json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print_json(contents)
     else:
         print(race_summary(fastest, checked), flush=True)
         if worth:

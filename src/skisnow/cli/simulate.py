@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 import warnings
@@ -12,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._support.errors import ModelLimitWarning
-from .ending import Ending, ending_is_an_interrupt, prepare_output
-from .options import add_changes, add_language
+from .ending import Ending, ending_is_an_interrupt
+from .options import add_changes, add_language, scenario_of
+from .output import prepare_output, print_json, print_warnings
 from .progress import Progress, announced
 
 if TYPE_CHECKING:
@@ -59,10 +59,7 @@ def run(options: argparse.Namespace) -> int:
     if options.replay and options.out is None:
         options.parser.error("--replay writes into the folder of --out: name one")
     with announced(LOADING):
-        from ..scenario import scenario_file
-        from ..scenario.keys import parse_change
-
-        scenario_input = scenario_file(options.scenario, changes=dict(parse_change(word) for word in options.changes))
+        scenario_input = scenario_of(options)
     _prepare(options, scenario_input)
     with ending_is_an_interrupt() as ending:
         result, refinements = _computed(scenario_input, verify=options.verify)
@@ -90,8 +87,7 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
         require_ending(options.boots_out)
     if options.out is not None:
         prepare_output(options.out)
-    for text in scenario_input.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings(scenario_input.warnings)
 
 
 def _computed(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
@@ -132,13 +128,12 @@ def _tell(
         result, scenario_input.values, files=scenario_input.files, warnings=warned, verification=verification
     )
     if options.json:
-        print(json.dumps(summary, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print_json(summary)
     else:
         from ..report.summaries import simulate_summary
 
         print(simulate_summary(summary, title=scenario_input.title), flush=True)
-    for text in (*near, *run_warnings(result)):
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings((*near, *run_warnings(result)))
     if options.boots_out is not None:
         from ..simulation.run_tables import write_boots
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .ending import Ended, ending_is_an_interrupt
-from .options import MOST_WORKERS, add_language, add_scheduler, scheduler_of, whole_number
+from .ending import ending_is_an_interrupt, report_interrupt
+from .options import add_language, add_scheduler, add_workers, scheduler_of
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -27,9 +27,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     about = "with the varied and fixed inputs and `out`; with --merge the parts"
     parser.add_argument("study", type=Path, nargs="+", metavar="STUDY.toml", help=about)
-    parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
-    )
+    add_workers(parser)
     add_scheduler(parser)
     parts = parser.add_mutually_exclusive_group()
     shard = "compute one of n parts, for the jobs of an array: every n-th point, into a file beside the table"
@@ -76,7 +74,7 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
         with ending_is_an_interrupt(), Progress() as progress:
             table = run_study(study, workers=options.workers, executor=executor, progress=_Pace(progress))
     except KeyboardInterrupt as stopped:
-        return _stopped(stopped, study.partial)
+        return report_interrupt(stopped, study.partial)
     _tell(study.out, table)
     if _none_was_asked(study.out, table):
         return 1
@@ -98,7 +96,7 @@ def _shard(options: argparse.Namespace, study: Study) -> int:
         with ending_is_an_interrupt(), Progress() as progress:
             place = run_shard(study, shard, workers=options.workers, executor=executor, progress=_Pace(progress))
     except KeyboardInterrupt as stopped:
-        return _stopped(stopped, shard.place(study))
+        return report_interrupt(stopped, shard.place(study))
     print(f"{place}: points {len(shard.points(len(study.points)))} of {len(study.points)}")
     return 0
 
@@ -111,13 +109,6 @@ def _merge(options: argparse.Namespace) -> int:
     table = merge_shards(options.merge, options.study)
     _tell(options.merge, table)
     return 1 if _none_was_asked(options.merge, table) else 0
-
-
-def _stopped(stopped: KeyboardInterrupt, place: Path) -> int:
-    ended = isinstance(stopped, Ended)
-    print(f"\nskisnow: {'ended' if ended else 'interrupted'}; finished points are kept in", end=" ", file=sys.stderr)
-    print(f"{place}.\nThe same command goes on with them.", file=sys.stderr)
-    return 143 if ended else 130
 
 
 def _none_was_asked(place: Path, table: StudyTable) -> bool:

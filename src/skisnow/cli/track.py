@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import prepare_output
 from .options import add_language, number
+from .output import prepare_output, print_json, print_warnings
 from .progress import Progress, announced
 
 if TYPE_CHECKING:
@@ -76,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
     if result is not None:
         values |= _told(result)
     if options.json:
-        print(json.dumps(values, ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print_json(values)
     else:
         from ..report.track.summary import track_text
         from ..track.flags import FLAGS
@@ -101,8 +100,7 @@ def _course(options: argparse.Namespace) -> Course:
     from ..track.course import course_warnings, read_course
 
     course = read_course(options.course, discipline=options.discipline)
-    for text in (*course.warnings, *course_warnings(course)):
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings((*course.warnings, *course_warnings(course)))
     return course
 
 
@@ -116,7 +114,7 @@ def _origin(course: Course) -> GeodeticPoint | None:
 
 
 def _timed(course: Course, track: Track) -> CourseResult:
-    from ..simulation.run_gates import time_gates
+    from ..simulation.run_summary import time_gates
 
     return time_gates(course, track)
 
@@ -124,6 +122,5 @@ def _timed(course: Course, track: Track) -> CourseResult:
 def _told(result: CourseResult) -> dict[str, Any]:
     from ..track.course.gates_table import gates_dict, time_warnings
 
-    for text in time_warnings(result):
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings(time_warnings(result))
     return gates_dict(result)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import prepare_output
-from .options import MOST_WORKERS, add_language, number, seed_number, whole_number
+from .options import add_changes, add_language, add_workers, changes_of, number, scenario_of, seed_number, whole_number
+from .output import prepare_output, print_json, print_warnings
 from .progress import Progress, announced
 
 if TYPE_CHECKING:
@@ -36,14 +35,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="NAME|FILE",
         help="the turn on that snow; default: carved-46m",
     )
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        dest="changes",
-        metavar="section.key=value",
-        help="another value for one key of the scenario, several times for several; the section is optional; "
-        "the campaign's H_V and S_f count, a given unloading_ratio or shear_displacement_mm comes before it",
+    add_changes(
+        parser, "; the campaign's H_V and S_f count, a given unloading_ratio or shear_displacement_mm comes before it"
     )
     parser.add_argument(
         "--unloading-ratio",
@@ -64,9 +57,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "addition to the defaults, several times for several; equal ends: it is known",
     )
     parser.add_argument("--seed", type=seed_number, help="seed of the ensemble, a whole number of 0 or more")
-    parser.add_argument(
-        "--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help="processes; default: one for each core"
-    )
+    add_workers(parser)
     parser.add_argument("--json", action="store_true", help="print turn.json alone to standard output")
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="write report.html, turn.json and figures of the whole chain here"
@@ -79,19 +70,15 @@ def run(options: argparse.Namespace) -> int:
     """Compute the chain, print what the contacts do otherwise or the JSON, write the report."""
     with announced("loading"):
         from ..pipeline.turn import turn
-        from ..scenario import scenario_file
         from ..scenario.identify_section import prior_of
-        from ..scenario.keys import parse_change
 
         priors = [prior_of(word) for word in options.priors]
-        changes = dict(parse_change(word) for word in options.changes)
-        scenario_input = scenario_file(options.scenario, changes=changes)
-    for text in scenario_input.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+        scenario_input = scenario_of(options)
+    print_warnings(scenario_input.warnings)
     if options.out is not None:
         prepare_output(options.out)
     names = ("unloading_ratio", "runs", "seed", "workers")
-    numbers = _given(changes, scenario_input.scenario.contact)
+    numbers = _given(changes_of(options), scenario_input.scenario.contact)
     chosen = numbers | {name: getattr(options, name) for name in names if getattr(options, name) is not None}
     with Progress() as progress:
         chain = turn(
@@ -101,11 +88,10 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         from ..report.turn.numbers import turn_dict
 
-        print(json.dumps(turn_dict(chain), ensure_ascii=False, allow_nan=False, indent=1), flush=True)
+        print_json(turn_dict(chain))
     else:
         print(f"snow: {chain.snow.in_words}", *chain.sentences, sep="\n")
-    for text in chain.warnings:
-        print(f"warning: {text}", file=sys.stderr)
+    print_warnings(chain.warnings)
     if page is not None:
         print(f"The whole chain: {page}", file=sys.stderr)
     return 0

@@ -14,13 +14,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.special import stdtrit
 
+from .._support.arrays import FloatArray
 from .._support.errors import FitError, ParameterError
 from .._support.messages import Message
 from .._support.units import CONFIDENCE, DEGREE
 from .distances import EXACTNESS, Polyline, polyline
 from .nearest_place import NearestPlaces, Path
-
-FloatArray = npt.NDArray[np.float64]
 
 Offset: TypeAlias = Literal["start", "heading", "time"]
 OFFSETS: Final[tuple[Offset, ...]] = get_args(Offset)

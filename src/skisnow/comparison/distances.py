@@ -8,13 +8,12 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..track.track import Track
 from .nearest_place import NearestPlaces, Path
-
-FloatArray = npt.NDArray[np.float64]
 
 _SMOOTH: Final = 0.05
 """Below this change of the offset, in parts of its length, three Gauss points are exact to rounding."""
@@ -107,8 +106,6 @@ def _area(x: FloatArray, h: FloatArray) -> FloatArray:
     safe = np.where(h > 0.0, h, 1.0)
     return 0.5 * (x * np.hypot(x, h) + np.where(h > 0.0, h**2 * np.arcsinh(x / safe), 0.0))
 
-
-BoolArray = npt.NDArray[np.bool_]
 
 FEWEST_PIECES: Final = 2048
 """Minimum number of equal pieces of the measured track for which nearest places are computed."""

@@ -9,12 +9,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 
-FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
-BoolArray = npt.NDArray[np.bool_]
 
 BESIDE_END: Final = 0.01
 """A point counts as beside an end if it is ahead of it by at most this share of its distance (0.6°).

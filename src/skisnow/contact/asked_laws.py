@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 
@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw
     from ..forces.penetration import PointLaw
     from ..forces.shear import ShearLaw
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 class AskedFriction:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..compiled import core
 
 
@@ -48,7 +47,7 @@ class ContactState(Shown):
         try:
             core.check_bytes(bytes(data))
         except ValueError as error:
-            raise ParameterError(Message("ContactState: {error}", error=error), code="invalid_state") from error
+            raise ParameterError("ContactState: {error}", code="invalid_state", error=error) from error
         return cls(None, bytes(data), None)
 
     def to_bytes(self) -> bytes:
@@ -64,7 +63,7 @@ class ContactState(Shown):
             try:
                 return self._to_bytes()
             except ValueError as error:
-                raise ParameterError(Message("ContactState: {error}", error=error), code="invalid_state") from error
+                raise ParameterError("ContactState: {error}", code="invalid_state", error=error) from error
         return self._kept
 
     def restore_in(self, contact: core.Contact) -> None:

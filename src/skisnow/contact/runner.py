@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import MM
 from ..compiled import core
 
 if TYPE_CHECKING:
     from ..ski import Ski
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -66,26 +64,20 @@ class Runner(Shown):
             object.__setattr__(self, name, array)
             if array.ndim != 1 or len(array) < 2 or array.shape != self.position.shape:
                 raise ParameterError(
-                    Message(
-                        "Runner: {name} has shape {shape}; it needs one number for each position",
-                        name=name,
-                        shape=str(array.shape),
-                    ),
+                    "Runner: {name} has shape {shape}; it needs one number for each position",
                     code="wrong_shape",
+                    name=name,
+                    shape=str(array.shape),
                 )
             if not np.all(np.isfinite(array)):
-                raise ParameterError(
-                    Message("Runner: {name} holds a number that is not finite", name=name), code="not_a_number"
-                )
+                raise ParameterError("Runner: {name} holds a number that is not finite", code="not_a_number", name=name)
         if np.any(np.diff(self.position) >= 0.0):
-            raise ParameterError(Message("Runner: positions must fall from tip to tail"), code="not_falling")
+            raise ParameterError("Runner: positions must fall from tip to tail", code="not_falling")
         if self.half_width.min() <= 0.0:
             raise ParameterError(
-                Message(
-                    "Runner: the half width is {half_width:g} m somewhere; it must be above 0",
-                    half_width=self.half_width.min(),
-                ),
+                "Runner: the half width is {half_width:g} m somewhere; it must be above 0",
                 code="out_of_range",
+                half_width=self.half_width.min(),
             )
         self._check_nodes()
 
@@ -97,16 +89,14 @@ class Runner(Shown):
         ends = (self.position[0], self.position[-1])
         if nodes.ndim != 1 or len(nodes) < 2 or np.any(np.diff(nodes) >= 0.0):
             raise ParameterError(
-                Message("Runner: nodes must be two positions or more that fall from tip to tail"), code="not_falling"
+                "Runner: nodes must be two positions or more that fall from tip to tail", code="not_falling"
             )
         if not np.allclose((nodes[0], nodes[-1]), ends, atol=1e-9):
             raise ParameterError(
-                Message(
-                    "Runner: nodes must begin at the tip and end at the tail, {tip:g} and {tail:g} m",
-                    tip=ends[0],
-                    tail=ends[1],
-                ),
+                "Runner: nodes must begin at the tip and end at the tail, {tip:g} and {tail:g} m",
                 code="out_of_range",
+                tip=ends[0],
+                tail=ends[1],
             )
 
     @classmethod

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..compiled import core
 from .asked_laws import AskedFriction, AskedPressure, AskedStrength
 from .contact_state import ContactState
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from .runner import Runner
     from .snow_field import SnowField
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 Beams: TypeAlias = Sequence[npt.ArrayLike] | None
 
 SPACING: Final = 0.02
@@ -145,21 +144,18 @@ class SnowContact(Shown):
         instruction_set: str | None = None,
     ) -> None:
         if not runners:
-            raise ParameterError(Message("SnowContact: it needs one runner or more"), code="missing")
+            raise ParameterError("SnowContact: it needs one runner or more", code="missing")
         if not (np.isfinite(spacing) and spacing > 0.0):
             raise ParameterError(
-                Message("SnowContact: spacing is {spacing!r} m; it must be above 0", spacing=spacing),
-                code="out_of_range",
+                "SnowContact: spacing is {spacing!r} m; it must be above 0", code="out_of_range", spacing=spacing
             )
         if instruction_set is not None and instruction_set not in core.instruction_sets():
             known = ", ".join(core.instruction_sets())
             raise ParameterError(
-                Message(
-                    "SnowContact: instruction_set is {instruction_set!r}; this machine has {known}",
-                    instruction_set=instruction_set,
-                    known=known,
-                ),
+                "SnowContact: instruction_set is {instruction_set!r}; this machine has {known}",
                 code="unknown_name",
+                instruction_set=instruction_set,
+                known=known,
             )
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
@@ -275,7 +271,7 @@ class SnowContact(Shown):
         try:
             state.restore_in(self.compiled)
         except ValueError as error:
-            raise ParameterError(Message("SnowContact: {error}", error=error), code="invalid") from error
+            raise ParameterError("SnowContact: {error}", code="invalid", error=error) from error
 
     def _asked(
         self,
@@ -291,13 +287,12 @@ class SnowContact(Shown):
         off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
         if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
             raise ParameterError(
-                Message("SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal", off=off),
+                "SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal",
                 code="not_a_rotation",
+                off=off,
             )
         if not (np.isfinite(dt) and dt >= 0.0):
-            raise ParameterError(
-                Message("SnowContact: dt is {dt!r} s; it must be 0 or more", dt=dt), code="out_of_range"
-            )
+            raise ParameterError("SnowContact: dt is {dt!r} s; it must be 0 or more", code="out_of_range", dt=dt)
         moves = np.zeros((k, 6)) if velocity is None else _array("velocity", velocity, (k, 6))
         return where, axes, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
 
@@ -306,13 +301,11 @@ class SnowContact(Shown):
             return None
         if len(beams) != len(self.runners):
             raise ParameterError(
-                Message(
-                    "SnowContact: {name} has {n_beams} entries for {n_runners} runners",
-                    name=name,
-                    n_beams=len(beams),
-                    n_runners=len(self.runners),
-                ),
+                "SnowContact: {name} has {n_beams} entries for {n_runners} runners",
                 code="wrong_shape",
+                name=name,
+                n_beams=len(beams),
+                n_runners=len(self.runners),
             )
         counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
         return [_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
@@ -322,18 +315,14 @@ def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
     array = np.ascontiguousarray(given, float)
     if array.shape != shape:
         raise ParameterError(
-            Message(
-                "SnowContact: {name} has shape {shape}; it must be {needed}",
-                name=name,
-                shape=str(array.shape),
-                needed=str(shape),
-            ),
+            "SnowContact: {name} has shape {shape}; it must be {needed}",
             code="wrong_shape",
+            name=name,
+            shape=str(array.shape),
+            needed=str(shape),
         )
     if not np.all(np.isfinite(array)):
-        raise ParameterError(
-            Message("SnowContact: {name} holds a number that is not finite", name=name), code="not_a_number"
-        )
+        raise ParameterError("SnowContact: {name} holds a number that is not finite", code="not_a_number", name=name)
     return array
 
 

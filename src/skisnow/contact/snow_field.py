@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, TypeAlias, get_args
+from typing import Final, get_args
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
@@ -22,8 +21,6 @@ from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShe
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
 from ..geometry.surfaces import Grid, Plane
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STICK_DISPLACEMENT: Final = 0.02e-3
 """Way of the base (m) to full friction, until which it sticks (modelling assumption): Coulomb's law, regularised."""
@@ -141,22 +138,18 @@ class SnowField(Shown):
         _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
             raise ParameterError(
-                Message(
-                    "SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1",
-                    residual_ratio=self.residual_ratio,
-                ),
+                "SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1",
                 code="out_of_range",
+                residual_ratio=self.residual_ratio,
             )
         for name, choices in (("friction_acts_on", get_args(ActsOn)), ("friction_direction", get_args(Direction))):
             if getattr(self, name) not in choices:
                 raise ParameterError(
-                    Message(
-                        "SnowField: {name} is {value!r}; it must be one of {choices}",
-                        name=name,
-                        value=getattr(self, name),
-                        choices=list(choices),
-                    ),
+                    "SnowField: {name} is {value!r}; it must be one of {choices}",
                     code="unknown_name",
+                    name=name,
+                    value=getattr(self, name),
+                    choices=list(choices),
                 )
         for name in (
             "slip_weakening",
@@ -179,12 +172,10 @@ class SnowField(Shown):
             return
         if self.shear is not None or _maximum(self.failure_shear_stress) > 0.0:
             raise ParameterError(
-                Message(
-                    "SnowField: {kind} acts along the base's normal and so carries the side force by itself; "
-                    "give it failure_shear_stress 0 and no shear law",
-                    kind=type(law).__name__,
-                ),
+                "SnowField: {kind} acts along the base's normal and so carries the side force by itself; give it "
+                "failure_shear_stress 0 and no shear law",
                 code="contradiction",
+                kind=type(law).__name__,
             )
 
     def _require_one_place(self) -> None:
@@ -193,36 +184,30 @@ class SnowField(Shown):
         shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
         if shared and isinstance(self.failure_shear_stress, Grid) and self.shear is None:
             raise ParameterError(
-                Message("SnowField: failure_shear_stress varies over the place itself; leave strength_share 1"),
+                "SnowField: failure_shear_stress varies over the place itself; leave strength_share 1",
                 code="contradiction",
             )
         if shared and self.shear_in_python is not None:
             raise ParameterError(
-                Message(
-                    "SnowField: strength_share does not act on {kind}, which the core does not know; leave it 1",
-                    kind=type(self.shear).__name__,
-                ),
+                "SnowField: strength_share does not act on {kind}, which the core does not know; leave it 1",
                 code="contradiction",
+                kind=type(self.shear).__name__,
             )
 
     def _require_own_law_for_rate(self) -> None:
         if self.penetration is not None and self.shear_bearing != "whole-edge":
             raise ParameterError(
-                Message(
-                    "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; leave it out, or give no "
-                    "penetration law",
-                    kind=type(self.penetration).__name__,
-                ),
+                "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; leave it out, or give no "
+                "penetration law",
                 code="contradiction",
+                kind=type(self.penetration).__name__,
             )
         if self.penetration is not None and (self.damping > 0.0 or self.delayed_share > 0.0):
             raise ParameterError(
-                Message(
-                    "SnowField: damping and delayed_share act beside H_V and k_u, not beside {kind}; leave "
-                    "them 0, or give no penetration law",
-                    kind=type(self.penetration).__name__,
-                ),
+                "SnowField: damping and delayed_share act beside H_V and k_u, not beside {kind}; leave them 0, or "
+                "give no penetration law",
                 code="contradiction",
+                kind=type(self.penetration).__name__,
             )
 
     def _compiled(self) -> core.Snow:

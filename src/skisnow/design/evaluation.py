@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
-from .._support.messages import Message
 from ..carving.answer import asked_snow
 from ..carving.equilibrium import differentiable_carve
 from ..ski.ski_file import ski_of_keys
 from .variables import COMBINED, combined_names, designed_keys, start_value
 
 if TYPE_CHECKING:
-    from ..carving.keys import CarveQuestion
+    from ..carving.question import CarveQuestion
     from ..carving.sensitivity import CarveDerivatives
     from ..carving.solve import Solution
     from ..ski import Ski
     from ..snow import SnowProperties
     from .task import DesignTask, Goal
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 @dataclass(slots=True, eq=False)
@@ -70,7 +67,7 @@ class Evaluator:
             try:
                 ski = ski_of_keys(self.keys(z))
             except ParameterError as error:
-                raise SolverError(Message("there is no such ski: {reason}", reason=error), code="no_ski") from error
+                raise SolverError("there is no such ski: {reason}", code="no_ski", reason=error) from error
             self._points[place] = tuple(self._point(n, ski, each) for n, each in enumerate(self.task.conditions))
         return self._points[place]
 
@@ -79,7 +76,7 @@ class Evaluator:
         found = carve_at(ski, asked, self.snows[number], near=self._near.get(number))
         if found is None:
             raise SolverError(
-                Message("there is no equilibrium at condition {number}.", number=number + 1), code="no_equilibrium"
+                "there is no equilibrium at condition {number}.", code="no_equilibrium", number=number + 1
             )
         self._near[number] = found.at.solution
         return found
@@ -124,7 +121,7 @@ class Evaluator:
 def _output(point: CarveDerivatives, name: str) -> float:
     value = point.output(name)
     if value is None or not math.isfinite(value):
-        raise SolverError(Message("the carve has no {output}.", output=name), code="no_value")
+        raise SolverError("the carve has no {output}.", code="no_value", output=name)
     return value
 
 

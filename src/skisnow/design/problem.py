@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import SolverError
 from .evaluation import Evaluator
 from .variables import designed_keys, start_value
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from .task import Goal
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached."""

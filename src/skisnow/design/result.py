@@ -7,11 +7,11 @@ import io
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown
 from .._support.messages import Message
 from .._support.staging import write_file
@@ -24,7 +24,6 @@ from .problem import Search, linear_constraints
 if TYPE_CHECKING:
     from .task import Goal
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _AT_BOUND: Final = 1e-6  # of the distance of the bounds
 _SAME_RESULT: Final = 1e-3  # relative, of two starts that reached the same optimum

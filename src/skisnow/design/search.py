@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .._support.errors import SolverError
-from .._support.messages import Message
 from .evaluation import Evaluator
 from .problem import Search
 from .result import Design, Start, design_of
@@ -76,10 +75,8 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     best = min(starts, key=lambda start: start.result)
     if best.end is None:
         raise SolverError(
-            Message(
-                "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds.",
-                count=task.starts,
-            ),
+            "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds.",
             code="no_equilibrium",
+            count=task.starts,
         )
     return design_of(search, best.end, tuple(starts))

@@ -12,14 +12,13 @@ from typing import Annotated, Any, Final, Literal
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.user_files import read_toml
-from ..carving.keys import CARVE_KEYS, CarveQuestion
 from ..carving.outputs import OUTPUTS
-from ..carving.question import carve_question
+from ..carving.question import CARVE_KEYS, CarveQuestion, carve_question
 from ..parameters import Quantity, checked_table, made, nearest
 from ..ski import Ski
+from ..ski.editing import shape_parameters
 from ..ski.file_keys import LISTS
-from ..ski.sources import Sources
-from ..ski.variation import shape_parameters
+from ..ski.ski_file import Sources
 from .variables import COMBINED, Variable, combined_names
 
 FEWEST_STARTS: Final = 8
@@ -161,8 +160,11 @@ def _refuse(problem: Message, code: str) -> None:
 def _whole(name: str, value: object, lowest: int) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < lowest:
         raise ParameterError(
-            Message("{name} is {value}. Allowed: a whole number from {lowest}.", name=name, value=value, lowest=lowest),
+            "{name} is {value}. Allowed: a whole number from {lowest}.",
             code="out_of_range",
+            name=name,
+            value=value,
+            lowest=lowest,
         )
     return value
 
@@ -180,12 +182,10 @@ def _variable(ski: Ski, name: str, bounds: object) -> Variable:
         or bounds[0] >= bounds[1]
     ):
         raise ParameterError(
-            Message(
-                "variables: {name} is {value}. Allowed: a lower and a higher bound, such as [64, 72].",
-                name=name,
-                value=bounds,
-            ),
+            "variables: {name} is {value}. Allowed: a lower and a higher bound, such as [64, 72].",
             code="out_of_range",
+            name=name,
+            value=bounds,
         )
     return Variable(name, float(bounds[0]), float(bounds[1]))
 
@@ -214,28 +214,22 @@ def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     goal: Goal = made(Goal, checked_table(Goal, table, place))
     if goal.output not in OUTPUTS:
         raise ParameterError(
-            Message(
-                "{place}: there is no output {name}. {allowed}",
-                place=place,
-                name=goal.output,
-                allowed=nearest(goal.output, OUTPUTS),
-            ),
+            "{place}: there is no output {name}. {allowed}",
             code="unknown_name",
+            place=place,
+            name=goal.output,
+            allowed=nearest(goal.output, OUTPUTS),
         )
     if sum(each is not None for each in (goal.target, goal.at_most, goal.at_least)) != 1:
-        raise ParameterError(
-            Message("{place}: give one of target, at_most and at_least.", place=place), code="contradiction"
-        )
+        raise ParameterError("{place}: give one of target, at_most and at_least.", code="contradiction", place=place)
     chosen = goal.conditions or tuple(range(1, conditions + 1))
     if any(not 1 <= each <= conditions or each != int(each) for each in chosen) or (goal.ratio and len(chosen) != 2):
         raise ParameterError(
-            Message(
-                "{place}: conditions is {chosen}. Allowed: numbers from 1 to {count}, two of them for a ratio.",
-                place=place,
-                chosen=list(chosen),
-                count=conditions,
-            ),
+            "{place}: conditions is {chosen}. Allowed: numbers from 1 to {count}, two of them for a ratio.",
             code="out_of_range",
+            place=place,
+            chosen=list(chosen),
+            count=conditions,
         )
     return goal
 
@@ -252,12 +246,10 @@ def _constraint(table: Mapping[str, Any]) -> Constraint:
     )
     if not sound or set(table) - {"terms", "at_least", "at_most"} or not all(map(_is_number, limits.values())):
         raise ParameterError(
-            Message(
-                "constraints: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and "
-                "at_least or at_most.",
-                table=dict(table),
-            ),
+            "constraints: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and "
+            "at_least or at_most.",
             code="out_of_range",
+            table=dict(table),
         )
     return Constraint(terms=dict(terms or {}), **limits)
 
@@ -266,9 +258,7 @@ def _monotone(ski: Ski, key: str) -> list[Constraint]:
     """A stiffness that rises from the tip to the largest row of the start, and falls behind it."""
     values = (ski.keys or {}).get(key)
     if key not in LISTS or not isinstance(values, list):
-        raise ParameterError(
-            Message("monotone: {key} is no list of stiffness of this ski.", key=key), code="unknown_name"
-        )
+        raise ParameterError("monotone: {key} is no list of stiffness of this ski.", code="unknown_name", key=key)
     top = values.index(max(values))
     pairs = ((row, row + 1) if row < top else (row + 1, row) for row in range(len(values) - 1))
     return [

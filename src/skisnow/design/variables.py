@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from ..ski.variation import changed_keys
+from ..ski.editing import changed_keys
 
 COMBINED: Final = {
     "sidecut_mm": ("tip_width_mm", "tail_width_mm"),

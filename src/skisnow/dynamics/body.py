@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..compiled import core
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
@@ -21,13 +18,14 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
     array = np.asarray(given, float, order="C")
     if array.shape != shape:
         raise ParameterError(
-            Message(
-                "{name} has shape {shape}; it must be {needed}", name=name, shape=str(array.shape), needed=str(shape)
-            ),
+            "{name} has shape {shape}; it must be {needed}",
             code="wrong_shape",
+            name=name,
+            shape=str(array.shape),
+            needed=str(shape),
         )
     if not np.all(np.isfinite(array)):
-        raise ParameterError(Message("{name} holds a number that is not finite", name=name), code="not_a_number")
+        raise ParameterError("{name} holds a number that is not finite", code="not_a_number", name=name)
     return array
 
 
@@ -80,13 +78,11 @@ class FlexibleSki(ShownFields):
         free = np.asarray(self.unknown)[np.asarray(self.unknown) >= 0]
         if not np.array_equal(np.sort(free), np.arange(0, n, 3)) or n % 3:
             raise ParameterError(
-                Message(
-                    "FlexibleSki: unknown gives {n_free} free nodes their first unknowns, the matrices have "
-                    "{n} rows; each node needs three of its own",
-                    n_free=len(free),
-                    n=n,
-                ),
+                "FlexibleSki: unknown gives {n_free} free nodes their first unknowns, the matrices have {n} rows; "
+                "each node needs three of its own",
                 code="wrong_shape",
+                n_free=len(free),
+                n=n,
             )
 
     def compiled(self) -> core.FlexibleSki:
@@ -134,7 +130,7 @@ class Body(ShownFields):
         for name, shape in shapes.items():
             shaped(f"Body: {name}", getattr(self, name), shape)
         if not self.skis:
-            raise ParameterError(Message("Body: it needs one ski or more"), code="missing")
+            raise ParameterError("Body: it needs one ski or more", code="missing")
 
     def compiled(self) -> core.Body:
         """What the core takes."""

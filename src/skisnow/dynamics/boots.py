@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Final, TypeAlias
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.display import Facts, Shown, ShownFields, amount
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE
 from ..geometry.boot_axes import angles_of, axes_of
 from .body import shaped
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FARTHEST_TURN: Final = 1.0
 """Angle (rad) by which a boot may turn within one motion: rotation vectors are single up to π."""
@@ -52,8 +50,7 @@ class BootPose(Shown):
         off = np.abs(self.axes @ self.axes.T - np.eye(3)).max()
         if off > 1e-9 or np.linalg.det(self.axes) < 0.0:
             raise ParameterError(
-                Message("BootPose: axes are off by {off:.1e} from right-handed orthonormal ones", off=off),
-                code="not_a_rotation",
+                "BootPose: axes are off by {off:.1e} from right-handed orthonormal ones", code="not_a_rotation", off=off
             )
 
     def _facts(self) -> Facts:
@@ -98,25 +95,21 @@ class BootMotion(ShownFields):
     def __post_init__(self) -> None:
         if not self.start < self.end:
             raise ParameterError(
-                Message(
-                    "BootMotion: it starts at {start!r} s and ends at {end!r} s, not later",
-                    start=self.start,
-                    end=self.end,
-                ),
+                "BootMotion: it starts at {start!r} s and ends at {end!r} s, not later",
                 code="out_of_range",
+                start=self.start,
+                end=self.end,
             )
         turn = float(np.linalg.norm(self._turn))
         if turn > FARTHEST_TURN:
             raise ParameterError(
-                Message(
-                    "BootMotion: the boot turns by {degrees:.3g} degrees between {start:g} s and {end:g} s; "
-                    "at most {limit:.3g} are allowed. Give poses in between",
-                    degrees=math.degrees(turn),
-                    start=self.start,
-                    end=self.end,
-                    limit=math.degrees(FARTHEST_TURN),
-                ),
+                "BootMotion: the boot turns by {degrees:.3g} degrees between {start:g} s and {end:g} s; at most "
+                "{limit:.3g} are allowed. Give poses in between",
                 code="out_of_range",
+                degrees=math.degrees(turn),
+                start=self.start,
+                end=self.end,
+                limit=math.degrees(FARTHEST_TURN),
             )
 
     @property

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..compiled import core
 from ..contact import ContactState, SnowContact
 from .body import Body, shaped
 from .boots import BootMotion
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STEPS_AT_ONCE: Final = 1000
 """Steps after which compiled code comes back, so that an interrupt is heard."""
@@ -72,21 +70,17 @@ class StepControl:
         for name in ("first", "tolerance", "longest", "shortest", "closeness"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ParameterError(
-                    Message(
-                        "StepControl: {name} is {value!r}; it must be finite and above 0",
-                        name=name,
-                        value=getattr(self, name),
-                    ),
+                    "StepControl: {name} is {value!r}; it must be finite and above 0",
                     code="not_a_number",
+                    name=name,
+                    value=getattr(self, name),
                 )
         if self.shortest > self.longest:
             raise ParameterError(
-                Message(
-                    "StepControl: shortest is {shortest!r}, above longest, {longest!r}; it must not be",
-                    shortest=self.shortest,
-                    longest=self.longest,
-                ),
+                "StepControl: shortest is {shortest!r}, above longest, {longest!r}; it must not be",
                 code="out_of_range",
+                shortest=self.shortest,
+                longest=self.longest,
             )
 
     def compiled(self) -> core.StepRule:
@@ -134,24 +128,20 @@ class Dynamics:
     ) -> None:
         if len(contact.runners) != len(body.skis):
             raise ParameterError(
-                Message(
-                    "the body has {n_skis} skis, the contact {n_runners} runners",
-                    n_skis=len(body.skis),
-                    n_runners=len(contact.runners),
-                ),
+                "the body has {n_skis} skis, the contact {n_runners} runners",
                 code="wrong_shape",
+                n_skis=len(body.skis),
+                n_runners=len(contact.runners),
             )
         for k, (ski, runner) in enumerate(zip(body.skis, contact.runners, strict=True)):
             nodes = 0 if runner.nodes is None else len(runner.nodes)
             if nodes != len(ski.unknown):
                 raise ParameterError(
-                    Message(
-                        "ski {k} of the body has {n_unknown} nodes, its runner {nodes}",
-                        k=k,
-                        n_unknown=len(ski.unknown),
-                        nodes=nodes,
-                    ),
+                    "ski {k} of the body has {n_unknown} nodes, its runner {nodes}",
                     code="wrong_shape",
+                    k=k,
+                    n_unknown=len(ski.unknown),
+                    nodes=nodes,
                 )
         self.body, self.contact = body, contact
         self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
@@ -177,18 +167,13 @@ class Dynamics:
             Skis and motions differ in number, or a ski has no inertia.
         """
         if not self.feels_boots:
-            raise ParameterError(
-                Message("boots can move where each FlexibleSki has its inertia; one has none"),
-                code="no_data",
-            )
+            raise ParameterError("boots can move where each FlexibleSki has its inertia; one has none", code="no_data")
         if len(motions) != len(self.body.skis):
             raise ParameterError(
-                Message(
-                    "there are {n_motions} motions of boots for {n_skis} skis",
-                    n_motions=len(motions),
-                    n_skis=len(self.body.skis),
-                ),
+                "there are {n_motions} motions of boots for {n_skis} skis",
                 code="wrong_shape",
+                n_motions=len(motions),
+                n_skis=len(self.body.skis),
             )
         self._core.move_boots(np.array([each.numbers for each in motions]))
 

@@ -11,16 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.units import MM
 
 if TYPE_CHECKING:
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from .readings import Readings, ReadingUncertainty
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 _ROUNDS: Final = 40
 _SPREAD_ROUNDS: Final = 10

@@ -18,7 +18,6 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
@@ -26,11 +25,9 @@ from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwai
 from .campaign_fit import Freedom, Priors, Spreads, fit_series
 
 if TYPE_CHECKING:
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from .readings import Readings, ReadingUncertainty
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 FEWEST_READINGS: Final = 2
 """Readings in contact that a series needs."""

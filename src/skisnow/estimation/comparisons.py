@@ -19,7 +19,8 @@ from ..statistics.combined_uncertainty import expanded_factor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray = npt.NDArray[np.float64]
+    from .._support.arrays import BoolArray, FloatArray
+
 
 FEWEST_SITES: Final = 4
 """Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""
@@ -84,6 +85,34 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ow
         half = half / mean if mean > 0 else float("nan")
     low, high = (mean * np.exp([-half, half])).tolist()
     return OwnValue(mean, low, high, float(values.min()), float(values.max()))
+
+
+@dataclass(frozen=True, slots=True)
+class SiteValue:
+    """Geometric mean over n used experiments of a site (None: of all), and its 95 % interval, NaN for n = 1."""
+
+    site: str | None
+    n: int
+    value: float
+    low: float
+    high: float
+
+
+def site_values(values: FloatArray, used: BoolArray, site: Sequence[str]) -> tuple[SiteValue, ...]:
+    """Mean of each site in alphabetical order, then of all together; empty without a used and finite value.
+
+    ``values`` (m,) are above 0, ``used`` is a mask over the m experiments, ``site`` the name of the site of each.
+    """
+    counted = used & np.isfinite(values)
+    names = np.array(site, dtype=object)
+    if not counted.any():
+        return ()
+    rows = []
+    for name in (*sorted(set(names[counted].tolist())), None):
+        mask = counted if name is None else counted & (names == name)
+        own = own_mean(values[mask], names[mask].tolist(), geometric=True)
+        rows.append(SiteValue(name, int(mask.sum()), own.value, own.low, own.high))
+    return tuple(rows)
 
 
 def _half_width(data: FloatArray, sites: npt.NDArray[np.int64]) -> float:

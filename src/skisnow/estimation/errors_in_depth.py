@@ -1,4 +1,4 @@
-"""The model table with the error where it is: in depth as well as in load.
+"""The model table with errors in depth and load, and the factor b without its dilution by errors.
 
 The paper's fit takes H of each series from its last reading, as if that were exact, and puts all error into the load.
 Here H_V of each series comes from all its readings, together with the offset of its depth zero (`campaign_model`), with
@@ -8,6 +8,16 @@ fitted to these depths, each reading weighed by its effective variance (Orear 19
     (s F̂)² + u_F² + (dF̂/de · u_e)²,
 
 with the campaign's own relative scatter s. Rows, bounds and units are those of `models`.
+
+The factor b of F = b H_V V with H_V of Eqn 1: x = H_V V of a reading carries errors of its own depth and of the last
+one, which defines H_V. With the variance w of ln x the mean of x F is exp(w/2) times too large and that of x² exp(2 w)
+times, so that least squares give a b below 1 even where the law holds: *regression dilution*. Layering changes x by the
+factor u = (F/F₇)^(g_0 - 1). Both are corrected:
+
+    b = Σ (x/u) F exp(-w/2) / Σ (x/u)² exp(-2 w)
+
+with w from the spreads of `campaign_model`; the exponents also have the third cumulant of the layering, which is
+skewed. The error comes from the scatter between series (Student's t, m - 1 degrees of freedom).
 
 Notes
 -----
@@ -21,20 +31,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
+from .._support.units import CONFIDENCE
 from ..statistics.bounded import condensed, non_negative_fits
+from ..statistics.combined_uncertainty import expanded_factor
+from .campaign_model import CONTACT_STEPS
 from .hardness import DEFINITIONS, hardness_of_all_readings
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
 
 if TYPE_CHECKING:
+    from .._support.arrays import BoolArray, FloatArray
     from .campaign_model import CampaignModel
     from .readings import Readings, ReadingUncertainty
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-
 
 _EXACT_SHARE: Final = 1e-6
 """Of the median variance of a reading; none is taken to be smaller (modelling assumption)."""
@@ -94,15 +103,13 @@ def pooled_scatter(scatter: FloatArray) -> float:
 
 def fit_models_with_depth_errors(
     fitted: FittedHardness, uncertainty: ReadingUncertainty, *, n_iterations: int = 12
-) -> tuple[tuple[ModelFit, ...], dict[Model, FloatArray]]:
+) -> tuple[ModelFit, ...]:
     """Fit the nine candidate models by effective variance.
 
-    Returns the rows and the final weights of the readings (1/N²) of each, for the bootstrap. The rmse are in force and
-    unweighted, to stand beside those of `models.fit_models`.
+    The rmse are in force and unweighted, for comparison with those of `models.fit_models`.
     """
     readings, hardnesses, scatter = fitted.readings, fitted.value, pooled_scatter(fitted.scatter)
     fits: list[ModelFit] = []
-    weights: dict[Model, FloatArray] = {}
     bases = {symbol: end_basis(readings, H) for symbol, H in hardnesses.items()}
     slopes_of = {symbol: _depth_slopes(readings, H) for symbol, H in hardnesses.items()}
     for model in MODELS:
@@ -118,8 +125,7 @@ def fit_models_with_depth_errors(
             previous = ends
         of_load = condensed(basis.columns, readings.load, weights=weight)
         fits.append(fit_model(readings, basis, model, of_load))
-        weights[model] = weight
-    return tuple(fits), weights
+    return tuple(fits)
 
 
 def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:
@@ -154,3 +160,84 @@ def _weights(
     if least < _EXACT_SHARE * most:  # a reading of force 0 must not count as exact
         variance = np.maximum(variance, _EXACT_SHARE * float(np.median(variance[variance > 0])))
     return 1.0 / variance
+
+
+_LARGEST_VARIANCE: Final = 0.2
+"""Of ln x, above which the correction is no longer small and a reading is omitted."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class VolumeFactor(ShownFields):
+    """The factor b of n series.
+
+    Attributes
+    ----------
+    n
+        Number of series.
+    raw, expected_raw
+        By least squares, and the value that these estimate where F = H_V V holds, with these errors and layers.
+    value, low, high
+        Corrected, and its 95 % interval, NaN with one series.
+    """
+
+    n: int
+    raw: float
+    expected_raw: float
+    value: float
+    low: float
+    high: float
+
+
+def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel) -> VolumeFactor:
+    """The factor b of the series that have a hardness (N/m³, of Eqn 1) and an estimate of the model."""
+    known = np.isfinite(hardness) & np.isfinite(model.log_hardness)
+    if not known.any():
+        return VolumeFactor(0, *[float("nan")] * 5)
+    readings, hardness, model = readings.of(known), hardness[known], model.of(known)
+    F, x = readings.load, hardness[readings.series] * readings.displaced_volume
+    w, usable = _error_variance(readings, model)
+    layers = np.exp((model.spreads.mean_exponent[model.group][readings.series] - 1.0) * _log_share(readings))
+    even = x / layers
+    skew = _layering_skewness(model)[readings.series] * _log_share(readings) ** 3
+    mean, square = w / 2.0 + skew / 6.0, 2.0 * w + 8.0 * skew / 6.0  # logarithms of the means of e^ε and e^2ε
+    above = readings.sums(usable * even * F * np.exp(-mean))
+    below = readings.sums(usable * even**2 * np.exp(-square))
+    m = readings.n_series
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = float(above.sum() / below.sum())
+        error = np.sqrt(((above - value * below) ** 2).sum() * m / np.float64(m - 1)) / below.sum()
+    half = float(expanded_factor(m - 1.0, CONFIDENCE) * error)
+    law = F * layers  # the value of x without errors where b = 1; readings that are not usable count as they are
+    expected = np.where(usable > 0, law * F * np.exp(mean), x * F).sum()
+    expected /= np.where(usable > 0, law**2 * np.exp(square), x**2).sum()
+    return VolumeFactor(m, float((x @ F) / (x @ x)), float(expected), value, value - half, value + half)
+
+
+def _log_share(readings: Readings) -> FloatArray:
+    log = np.log(readings.load)
+    return log - log[readings.largest][readings.series]
+
+
+def _layering_skewness(model: CampaignModel) -> FloatArray:
+    """Third moment of g about g_0 in the group of each series: exponents of layered snow are skewed."""
+    cubes = (model.exponent - model.spreads.mean_exponent[model.group]) ** 3
+    n_groups = len(model.spreads.mean_exponent)
+    number = np.bincount(model.group, minlength=n_groups)
+    return (np.bincount(model.group, weights=cubes, minlength=n_groups) / np.maximum(number, 1))[model.group]
+
+
+def _error_variance(readings: Readings, model: CampaignModel) -> tuple[FloatArray, FloatArray]:
+    """Variance w of ln(H_V V/F) of each reading, 0 of the last, and a mask of the usable readings."""
+    series, last, uncertainty = readings.series, readings.largest, model.uncertainty
+    volume = readings.displaced_volume
+    per_depth = np.divide(readings.contact_area, volume, out=np.zeros_like(volume), where=volume > 0)
+    group = model.group[series]
+    own = model.spreads.scatter2[group] + (uncertainty.load / readings.load) ** 2 + (per_depth * uncertainty.depth) ** 2
+    seating2 = model.spreads.seating2[group] * (per_depth - per_depth[last][series]) ** 2
+    w = own + own[last][series] + seating2 + model.spreads.layering2[group] * _log_share(readings) ** 2
+    w[last] = 0.0
+    contact = readings.penetration_depth > CONTACT_STEPS * 12.0**0.5 * uncertainty.depth
+    usable = contact & (w < _LARGEST_VARIANCE)
+    if usable.sum() == len(last):  # none but the last readings, which are exact by definition
+        usable[:] = False
+    return np.where(usable, w, 0.0), usable.astype(float)

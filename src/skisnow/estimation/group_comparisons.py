@@ -20,7 +20,6 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import stdtr
 
 from .._support.content import index_names
@@ -33,12 +32,10 @@ from .spread_groups import bartlett
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from .screening import Screened
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 DIFFERENCE: Final = 0.2
 """Relative difference of two groups that a campaign is to detect (default of `skisnow.analyse`)."""

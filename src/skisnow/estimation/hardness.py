@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import N_PER_MM, N_PER_MM2, N_PER_MM3
@@ -27,11 +26,9 @@ from .campaign_model import Parts
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from .._support.arrays import BoolArray, FloatArray
     from .campaign_model import CampaignModel
     from .readings import Readings, ReadingUncertainty
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,28 +17,26 @@ narrower.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE, MM
 from ..statistics.combined_uncertainty import expanded_factor
-from .comparisons import own_mean
+from .comparisons import SiteValue, site_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .._support.arrays import BoolArray, FloatArray
     from .readings import Readings, ReadingUncertainty
 
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-
 SEATING_SD: Final = 0.1 * MM
 """Offsets of the depth zero that are put down to seating when layering is looked for; more bends the curve too far."""
+_PRIOR: Final = SEATING_SD**-2
 SHOWS: Final = 0.99
 """Layering is flagged where this interval of g leaves out 1: one series in a hundred of even snow."""
 FEWEST_READINGS: Final = 5
@@ -107,7 +105,8 @@ def layering(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncer
                 break
         _, variance = fit.step(b, scatter2)
         error = np.where(np.abs(step[:2]).max(axis=0) < 1e-4, np.sqrt(variance), np.nan)
-        dof = np.where(fit.dof >= 1.0, fit.dof, np.nan)
+        dof = _degrees_of_freedom(readings)
+        dof = np.where(dof >= 1.0, dof, np.nan)
         return Layering(load_exponent=b[1], load_exponent_error=error[1], degrees_of_freedom=dof)
 
 
@@ -118,8 +117,6 @@ class _Fit:
         self._readings, self._uncertainty = readings, uncertainty
         self._largest = np.log(readings.load[readings.largest])
         self._log_share = np.log(readings.load) - self._largest[readings.series]
-        self._prior = SEATING_SD**-2
-        self.dof = readings.sums(np.ones(readings.n)) - 2.0  # the prior determines δ
 
     def _line(self, b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residual, dê/d ln V and weight of each reading."""
@@ -136,21 +133,48 @@ class _Fit:
         """Gauss-Newton steps (3, m) and the variances (3, m) of the three."""
         residual, slope, weight = self._line(b, scatter2)
         J = (-slope, slope * self._log_share, np.ones_like(slope))
-        sums = self._readings.sums
-        normal = np.array([[sums(weight * J[i] * J[k]) for k in range(3)] for i in range(3)])
-        gain = np.array([sums(weight * J[i] * residual) for i in range(3)])
-        normal[2, 2] += self._prior
-        gain[2] -= self._prior * b[2]
-        inverse = inverse_of_each(np.moveaxis(normal, 2, 0))
-        return np.einsum("mik,km->im", inverse, gain), np.einsum("mii->im", inverse)
+        step, inverse = _gauss_newton_step(self._readings, J, residual, weight, b[2])
+        return step, np.einsum("mii->im", inverse)
 
     def scatter_step(self, b: FloatArray, scatter2: FloatArray) -> FloatArray:
-        """One Newton step on 1/Q towards Q = Σ r²/σ² = degrees of freedom (Paule and Mandel 1982)."""
-        residual, slope, weight = self._line(b, scatter2)
-        Q = self._readings.sums(weight * residual**2) + self._prior * b[2] ** 2
-        fall = self._readings.sums((weight * residual * slope) ** 2)
-        moved = scatter2 + (Q / self.dof - 1.0) * Q / fall
-        return np.clip(np.where(fall > 0, moved, 0.0), 1e-12, 10.0)
+        """Scatter after one Newton step."""
+        return _scatter_step(self._readings, scatter2, *self._line(b, scatter2), b[2])
+
+
+def _gauss_newton_step(
+    readings: Readings, J: tuple[FloatArray, ...], residual: FloatArray, weight: FloatArray, offset: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Step (3, m) of the three parameters and the inverse (m, 3, 3) of the normal matrix, with the prior of δ.
+
+    ``J`` has the derivatives of the depths by the parameters, one per reading; ``offset`` is δ of each series.
+    """
+    sums = readings.sums
+    normal = np.array([[sums(weight * J[i] * J[k]) for k in range(3)] for i in range(3)])
+    gain = np.array([sums(weight * J[i] * residual) for i in range(3)])
+    normal[2, 2] += _PRIOR
+    gain[2] -= _PRIOR * offset
+    inverse = inverse_of_each(np.moveaxis(normal, 2, 0))
+    return np.einsum("mik,km->im", inverse, gain), inverse
+
+
+def _scatter_step(
+    readings: Readings,
+    scatter2: FloatArray,
+    residual: FloatArray,
+    slope: FloatArray,
+    weight: FloatArray,
+    offset: FloatArray,
+) -> FloatArray:
+    """s² of each series after a Newton step on 1/Q towards Q = Σ r²/σ² = degrees of freedom (Paule and Mandel 1982)."""
+    Q = readings.sums(weight * residual**2) + _PRIOR * offset**2
+    fall = readings.sums((weight * residual * slope) ** 2)
+    moved = scatter2 + (Q / _degrees_of_freedom(readings) - 1.0) * Q / fall
+    return np.clip(np.where(fall > 0, moved, 0.0), 1e-12, 10.0)
+
+
+def _degrees_of_freedom(readings: Readings) -> FloatArray:
+    """Readings of each series less two: the prior determines δ."""
+    return readings.sums(np.ones(readings.n)) - 2.0
 
 
 def inverse_of_each(normal: FloatArray) -> FloatArray:
@@ -184,49 +208,30 @@ class GrowingHardness(ShownFields):
     growth_interval: FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class SiteGrowth:
-    """Geometric mean of 1 + γ over n used series of a site (None: all), less 1, and its 95 % interval, NaN for one."""
-
-    site: str | None
-    n: int
-    growth: float
-    low: float
-    high: float
-
-
 def growing_hardness(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> GrowingHardness:
     """Fit (ln H, γ, δ) to each series by weighted Gauss-Newton, from ``hardness`` (N/m³) and even snow.
 
     Error model and weights are those of `layering`.
     """
     m = readings.n_series
-    H_0, growth, error, dof = (np.full(m, np.nan) for _ in range(4))
+    H_0, growth, error = np.full((3, m), np.nan)
     enough = readings.sums(np.ones(readings.n)) >= FEWEST_READINGS
     known = enough & np.isfinite(hardness) & (hardness > 0)
     if known.any():
         fit = _GrowthFit(readings.of(known), hardness[known], uncertainty)
-        H_0[known], growth[known], error[known], dof[known] = fit.solve()
+        H_0[known], growth[known], error[known] = fit.solve()
     with np.errstate(invalid="ignore"):
         log, error = np.log1p(growth), error / (1.0 + growth)
+        dof = np.where(known, _degrees_of_freedom(readings), np.nan)
         half = expanded_factor(dof, CONFIDENCE) * error
         interval = np.expm1(np.stack((log - half, log + half), axis=-1))
     return GrowingHardness(H_0, growth, interval)
 
 
-def site_growth(growth: GrowingHardness, used: BoolArray, site: Sequence[str]) -> tuple[SiteGrowth, ...]:
-    """The mean of each site in alphabetical order, then of all together; empty without a used series that has one."""
-    there = used & np.isfinite(growth.growth)
-    names = np.array(site, dtype=object)
-    if not there.any():
-        return ()
-    rows = [(name, there & (names == name)) for name in sorted(set(names[there].tolist()))]
-    return tuple(_mean(growth.growth[chosen], names[chosen].tolist(), name) for name, chosen in [*rows, (None, there)])
-
-
-def _mean(growth: FloatArray, sites: list[str], site: str | None) -> SiteGrowth:
-    own = own_mean(1.0 + growth, sites, geometric=True)
-    return SiteGrowth(site, len(growth), own.value - 1.0, own.low - 1.0, own.high - 1.0)
+def site_growth(growth: GrowingHardness, used: BoolArray, site: Sequence[str]) -> tuple[SiteValue, ...]:
+    """γ of each site, then of all together, from the geometric means of 1 + γ."""
+    means = site_values(1.0 + growth.growth, used, site)
+    return tuple(replace(row, value=row.value - 1.0, low=row.low - 1.0, high=row.high - 1.0) for row in means)
 
 
 def second_moment(readings: Readings, penetration_depth: FloatArray) -> FloatArray:
@@ -242,7 +247,6 @@ class _GrowthFit:
 
     def __init__(self, readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> None:
         self._readings, self._uncertainty = readings, uncertainty
-        self._prior = SEATING_SD**-2
         self._deepest = readings.penetration_depth[readings.largest]
         at_top = second_moment(readings, readings.penetration_depth)[readings.largest]
         self._k = at_top / (readings.displaced_volume[readings.largest] * self._deepest)
@@ -250,19 +254,19 @@ class _GrowthFit:
         self._scatter2 = np.full_like(hardness, 1e-4)
         self._depth = readings.depth_at_volume(readings.load / hardness[readings.series])
 
-    def solve(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """H_0, γ, its standard error and degrees of freedom; NaN where the iteration came to no end."""
-        found = np.full((4, self._readings.n_series), np.nan)
+    def solve(self) -> FloatArray:
+        """H_0, γ and its standard error (3, m); NaN where the iteration did not converge."""
+        estimates = np.full((3, self._readings.n_series), np.nan)
         left = np.arange(self._readings.n_series)
         with np.errstate(all="ignore"):  # series without an answer run through as NaN and are left out at the end
             for _ in range(_ITERATIONS):
                 at_end, answer = self._step()
-                found[:, left[at_end]] = answer[:, at_end]
+                estimates[:, left[at_end]] = answer[:, at_end]
                 left = left[~at_end]
                 if not left.size:
                     break
                 self._keep(~at_end)
-        return found[0], found[1], found[2], found[3]
+        return estimates
 
     def _keep(self, going_on: BoolArray) -> None:
         of_reading = going_on[self._readings.series]
@@ -271,26 +275,17 @@ class _GrowthFit:
         self._b, self._scatter2 = self._b[:, going_on], self._scatter2[going_on]
 
     def _step(self) -> tuple[BoolArray, FloatArray]:
-        """One step in the three and in the scatter; which series are at their end, and the answers (4, m) before it."""
+        """One step in the three and in the scatter; which series are at their end, and the answers (3, m) before it."""
         residual, J, slope, weight, moved = self._line()
-        sums, low, high = self._readings.sums, *_LIMITS
-        normal = np.array([[sums(weight * J[i] * J[k]) for k in range(3)] for i in range(3)])
-        gain = np.array([sums(weight * J[i] * residual) for i in range(3)])
-        normal[2, 2] += self._prior
-        gain[2] -= self._prior * self._b[2]
-        inverse = inverse_of_each(np.moveaxis(normal, 2, 0))
-        step = np.einsum("mik,km->im", inverse, gain)
-        dof = sums(np.ones(self._readings.n)) - 2.0  # δ is held by its prior
-        Q = sums(weight * residual**2) + self._prior * self._b[2] ** 2
-        fall = sums((weight * residual * slope) ** 2)
-        scatter2 = self._scatter2 + (Q / dof - 1.0) * Q / fall  # Newton on 1/Q towards Q = dof
-        scatter2 = np.clip(np.where(fall > 0, scatter2, 0.0), 1e-12, 10.0)
+        low, high = _LIMITS
+        step, inverse = _gauss_newton_step(self._readings, J, residual, weight, self._b[2])
+        scatter2 = _scatter_step(self._readings, self._scatter2, residual, slope, weight, self._b[2])
         scatter2 = np.sqrt(scatter2 * self._scatter2)  # half a step on logarithms: whole ones oscillate
         drift = np.abs(scatter2 - self._scatter2) / (scatter2 + _LITTLE_SCATTER)
         changed = np.maximum(np.abs(step[:2]).max(axis=0), drift)
-        at_end = (changed < _SETTLED) & (sums((moved > _SETTLED).astype(float)) == 0)
+        at_end = (changed < _SETTLED) & (self._readings.sums((moved > _SETTLED).astype(float)) == 0)
         growth = self._b[1]
-        answer = np.stack((np.exp(self._b[0]) / (1.0 + growth * self._k), growth, np.sqrt(inverse[:, 1, 1]), dof))
+        answer = np.stack((np.exp(self._b[0]) / (1.0 + growth * self._k), growth, np.sqrt(inverse[:, 1, 1])))
         self._b = self._b + np.clip(step, [[-0.5], [-0.3], [-np.inf]], [[0.5], [0.3], [np.inf]])
         self._b[1] = np.clip(self._b[1], low, high)
         self._scatter2 = scatter2

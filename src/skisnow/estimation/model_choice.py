@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from ..statistics.bounded import non_negative_fits
 from ..statistics.f_tests import nested_f_test
@@ -22,16 +21,16 @@ from .models import MODELS, NESTED_PAIRS, EndBasis, Model, ModelFit, end_basis
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from .._support.arrays import BoolArray, FloatArray
     from .readings import Readings
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 MINIMUM_DETERMINANT: Final = 1e-12
 """Of a normal matrix of columns of length one: below it, some combination of coefficients is free but for rounding."""
 EQUAL_PERCENT: Final = 1e-9
 """Rows whose rmse differ by no more (in percent) are equal."""
 MOST_UNITS: Final = 5000
 """Experiments, or groups of them, that the bootstrap draws."""
+_PAIRS: Final = np.triu_indices(4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,28 +74,24 @@ def bootstrap_intervals(
     rng: np.random.Generator,
     *,
     n_resamples: int,
-    weights: dict[Model, FloatArray] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> dict[Model, FloatArray]:
     """95 % percentile intervals (4, 2) of a0, a1, b0, b1 of each row, drawing whole experiments.
 
     Each experiment enters by its 4 × 4 cross products alone, so a resample costs a few hundred operations. The same
-    draws serve all rows. ``weights`` gives the readings' weights row by row where a fit is weighted. Above
-    ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments are independent, so groups
-    are too, and their number still is large.
+    draws serve all rows. Above ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments
+    are independent, so groups are too, and their number still is large.
     """
     if readings.n_series < 2:  # one experiment cannot show how experiments differ
         return {model: np.full((4, 2), np.nan) for model in MODELS if model.n_parameters}
-    groups = _groups(readings, {symbol: end_basis(readings, hardnesses[symbol]) for symbol in DEFINITIONS}, weights)
-    products = [group.products for group in groups]
-    ends = np.cumsum([part.shape[1] for part in products])[:-1]
-    stacked = _in_groups(np.hstack(products), rng)
-    samples: dict[Model, list[FloatArray]] = {model: [] for group in groups for model in group.models}
+    fits = [_HardnessRows.of(readings, symbol, hardnesses[symbol]) for symbol in DEFINITIONS]
+    stacked = _in_groups(np.hstack([rows.products for rows in fits]), rng)
+    samples: dict[Model, list[FloatArray]] = {model: [] for rows in fits for model in rows.models}
     done = 0
     for counts in resampling_counts(len(stacked), n_resamples, rng):
-        for group, totals in zip(groups, np.split(counts @ stacked, ends, axis=1), strict=True):
-            for model in group.models:
-                samples[model].append(group.coefficients(model, totals))
+        for rows, totals in zip(fits, np.split(counts @ stacked, len(fits), axis=1), strict=True):
+            for model in rows.models:
+                samples[model].append(rows.coefficients(model, totals))
         done += len(counts)
         if progress:
             progress(f"bootstrap of the model table: {done} of {n_resamples} resamples")
@@ -104,28 +99,33 @@ def bootstrap_intervals(
 
 
 @dataclass(frozen=True)
-class _Group:
-    """Rows that share their regressors and weights, with each experiment's cross products of these regressors.
-
-    ``to_ends`` (4, q) makes the four end values from the coefficients of the group's q regressors.
-    """
+class _HardnessRows:
+    """Rows of one hardness, with each experiment's cross products of their four regressors and the loads (m, 14)."""
 
     basis: EndBasis
     models: tuple[Model, ...]
-    to_ends: FloatArray
     products: FloatArray
 
+    @classmethod
+    def of(cls, readings: Readings, symbol: str, hardness: FloatArray) -> _HardnessRows:
+        """Rows with fitted parameters of the hardness with this symbol, of which each series has a value (SI)."""
+        basis = end_basis(readings, hardness)
+        X, pairs = basis.columns, zip(*_PAIRS, strict=True)
+        sums = [readings.sums(X[:, i] * X[:, j]) for i, j in pairs]
+        sums += [readings.sums(column * readings.load) for column in X.T]
+        models = tuple(model for model in MODELS if model.n_parameters and model.hardness == symbol)
+        return cls(basis, models, np.stack(sums, axis=1))
+
     def coefficients(self, model: Model, totals: FloatArray) -> FloatArray:
-        """(B, 4) a0, a1, b0, b1 of B resamples from their summed products (B, q (q + 3)/2)."""
-        q = self.to_ends.shape[1]
-        rows, columns = np.triu_indices(q)
-        gram = np.empty((len(totals), q, q))
-        gram[:, rows, columns] = gram[:, columns, rows] = totals[:, :-q]
-        within = np.linalg.lstsq(self.to_ends, self.basis.projection(model))[0]
-        normal = within.T @ gram @ within
-        fitted = non_negative_fits(normal, totals[:, -q:] @ within)
+        """(B, 4) a0, a1, b0, b1 of B resamples from their summed products (B, 14)."""
+        rows, columns = _PAIRS
+        gram = np.empty((len(totals), 4, 4))
+        gram[:, rows, columns] = gram[:, columns, rows] = totals[:, :-4]
+        projection = self.basis.projection(model)
+        normal = projection.T @ gram @ projection
+        fitted = non_negative_fits(normal, totals[:, -4:] @ projection)
         fitted[_undetermined(normal)] = np.nan
-        return self.basis.coefficients(fitted @ self.basis.projection(model).T + self.basis.offset(model))
+        return self.basis.coefficients(fitted @ projection.T + self.basis.offset(model))
 
 
 def _undetermined(normal: FloatArray) -> BoolArray:
@@ -135,28 +135,6 @@ def _undetermined(normal: FloatArray) -> BoolArray:
     scale = np.where(length > 0, length, 1.0)
     determinant: FloatArray = np.linalg.det(normal / scale[:, :, None] / scale[:, None, :])
     return ~present | ~(determinant > MINIMUM_DETERMINANT)
-
-
-def _groups(readings: Readings, bases: dict[str, EndBasis], weights: dict[Model, FloatArray] | None) -> list[_Group]:
-    """One group a hardness where all readings count alike; one a row, with its own regressors, where they do not."""
-    fitted = [model for model in MODELS if model.n_parameters]
-    if weights is None:
-        shared = {symbol: tuple(model for model in fitted if model.hardness == symbol) for symbol in bases}
-        return [_group(readings, bases[symbol], models, np.eye(4), None) for symbol, models in shared.items()]
-    return [
-        _group(readings, bases[model.hardness], (model,), bases[model.hardness].projection(model), weights[model])
-        for model in fitted
-    ]
-
-
-def _group(
-    readings: Readings, basis: EndBasis, models: tuple[Model, ...], to_ends: FloatArray, weight: FloatArray | None
-) -> _Group:
-    X, F = basis.columns @ to_ends, readings.load
-    W = X if weight is None else X * weight[:, None]
-    pairs = zip(*np.triu_indices(X.shape[1]), strict=True)
-    sums = [readings.sums(W[:, i] * X[:, j]) for i, j in pairs] + [readings.sums(column * F) for column in W.T]
-    return _Group(basis, models, to_ends, np.stack(sums, axis=1))
 
 
 def _in_groups(products: FloatArray, rng: np.random.Generator) -> FloatArray:

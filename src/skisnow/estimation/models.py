@@ -20,9 +20,9 @@ from ..statistics.bounded import Condensed, condensed
 from .hardness import DEFINITIONS
 
 if TYPE_CHECKING:
+    from .._support.arrays import FloatArray
     from .readings import Readings
 
-FloatArray = npt.NDArray[np.float64]
 Term: TypeAlias = Literal["none", "one", "constant", "linear"]
 
 

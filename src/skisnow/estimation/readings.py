@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import ShownFields
 from ..campaign.screening import reading_at_largest_load
@@ -16,12 +15,10 @@ from ..geometry import in_form
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..campaign.records import PenetrationTests
     from ..geometry import GeometryForm, Tool
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 _FEW_ANGLES = 16
 """Readings at up to so many angles are gone through angle by angle: each has one sine and one tangent."""
 

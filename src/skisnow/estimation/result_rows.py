@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.messages import Message
 from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
@@ -17,18 +16,17 @@ from .screening import screened_both
 from .shear import shear_displacement, shear_stress
 
 if TYPE_CHECKING:
+    from .._support.arrays import FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..geometry import GeometryForm
     from .campaign_model import CampaignModel
     from .model_choice import NestedRows
     from .models import Model, ModelFit
     from .parts import ModelTable, PenetrationAnalysis
-    from .screening import Screened
-    from .series_estimates import SeriesEstimates
+    from .screening import Screened, SeriesEstimates
     from .shear import ShearDisplacement, ShearStress
     from .unloading import Unloading
 
-FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 _SAME_PERCENT: Final = 0.005
 """Rmse that differ by less are reported as the same."""

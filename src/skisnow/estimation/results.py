@@ -11,8 +11,6 @@ from dataclasses import asdict
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-import numpy as np
-import numpy.typing as npt
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM3
@@ -35,13 +33,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from .analysis import Analysis
+    from .errors_in_depth import VolumeFactor
     from .parts import PenetrationAnalysis, ShearAnalysis
     from .regressions import Regression
     from .sites import SiteMean
     from .unloading import SiteUnloading
-    from .volume_factor import VolumeFactor
 
-FloatArray = npt.NDArray[np.float64]
 Json: TypeAlias = dict[str, Any]
 
 SCHEMA_VERSION = 1
@@ -151,7 +148,7 @@ def _penetration(analysis: Analysis) -> Json:
                 {
                     "site": row.site,
                     "n": row.n,
-                    "growth_percent": 100.0 * row.growth,
+                    "growth_percent": 100.0 * row.value,
                     "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
                 }
                 for row in found.site_growth

@@ -1,4 +1,4 @@
-"""Which experiments are included: the quality flags of the field screening and those that need the hardness."""
+"""Estimates of each penetration series, quality flags that need them, and the experiments that are included."""
 
 from __future__ import annotations
 
@@ -7,28 +7,27 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.content import index_names
 from .._support.display import ShownFields
 from .._support.units import N_PER_MM3
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
-from .hardness import DEFINITIONS, hardness_at_largest_load
+from .campaign_model import DEFAULT_PRIORS, CampaignModel
+from .hardness import DEFINITIONS, Hardness, hardness, hardness_at_largest_load
 from .layering import layered
-from .readings import readings_of
-from .series_estimates import SeriesEstimates, reading_uncertainty, series_estimates
+from .readings import ReadingUncertainty, readings_of
 from .shear import shear_stress
-from .unloading import NOT_FALLING
+from .spread_groups import fit_in_groups
+from .unloading import NOT_FALLING, Unloading, unloading
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.problems import Problem
-    from ..campaign.records import Campaign
+    from ..campaign.records import Campaign, PenetrationTests
     from ..geometry import GeometryForm
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+    from .readings import Readings
 
 FEWEST_FOR_OUTLIERS: Final = 5
 OUTLIER_DISTANCE: Final = 3.5
@@ -135,3 +134,50 @@ def _used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> Boo
         if code in campaign.excluding:
             excluded |= mask
     return ~excluded
+
+
+@dataclass(frozen=True, repr=False)
+class SeriesEstimates(ShownFields):
+    """Estimates of m series: the model, the hardness of each definition by its symbol, and the unloading."""
+
+    model: CampaignModel
+    hardness: dict[str, Hardness]
+    unloading: Unloading
+
+
+def reading_uncertainty(campaign: Campaign) -> ReadingUncertainty:
+    """Standard uncertainties of a reading that the campaign states; 0 where it does not."""
+    return ReadingUncertainty(campaign.depth_uncertainty or 0.0, campaign.load_uncertainty or 0.0)
+
+
+def series_estimates(
+    campaign: Campaign,
+    tests: PenetrationTests,
+    readings: Readings,
+    *,
+    counts: BoolArray | None = None,
+    not_falling: BoolArray | None = None,
+) -> SeriesEstimates:
+    """Estimates of all series.
+
+    Parameters
+    ----------
+    campaign, tests, readings
+        The campaign, its penetration tests, and their readings.
+    counts
+        Mask of the series that the spreads are estimated from (default: all).
+    not_falling
+        Mask of the series whose unloading is omitted (default: none).
+    """
+    priors = DEFAULT_PRIORS if campaign.seating is None else replace(DEFAULT_PRIORS, seating=campaign.seating)
+    model = fit_in_groups(
+        readings,
+        hardness_at_largest_load(readings, DEFINITIONS["H_V"]),
+        reading_uncertainty(campaign),
+        labels={"site": tests.site, "tool": tests.tool},
+        counts=counts,
+        priors=priors,
+    )
+    H = {symbol: hardness(readings, definition, model) for symbol, definition in DEFINITIONS.items()}
+    bad = np.zeros(len(tests), dtype=np.bool_) if not_falling is None else not_falling
+    return SeriesEstimates(model, H, unloading(tests, readings, H["H_V"], model, bad))

@@ -19,16 +19,11 @@ import numpy.typing as npt
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor
-from .comparisons import own_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..campaign.records import Campaign, ShearTests, TurningReadings
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 RISING: Final = (0.1, 0.9)
 """Shares of the largest moment between which a reading is of the rising part (modelling assumption): below, the plate
 still comes to lie on the snow; above, parts of the snow have failed."""
@@ -112,17 +107,6 @@ class ShearDisplacement(ShownFields):
     interval: FloatArray
 
 
-@dataclass(frozen=True, slots=True)
-class SiteDisplacement:
-    """Geometric mean of u_y (m) over n used tests of a site (None: of all), and its 95 % interval, NaN for one."""
-
-    site: str | None
-    n: int
-    value: float
-    low: float
-    high: float
-
-
 def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplacement:
     """Fit the rising part of every test."""
     m, turning = len(tests), tests.turning
@@ -165,18 +149,3 @@ def _slope(x: FloatArray, y: FloatArray, test: IntArray, count: IntArray) -> tup
         slope = sums(dx * dy) / spread
         residual2 = sums((dy - slope[test] * dx) ** 2)
         return slope, np.sqrt(np.where(count > _FITTED, residual2 / (count - _FITTED), np.nan) / spread)
-
-
-def site_displacement(found: ShearDisplacement, used: BoolArray, site: Sequence[str]) -> tuple[SiteDisplacement, ...]:
-    """The mean of each site in alphabetical order, then of all together; empty without a used test that has one."""
-    there = used & np.isfinite(found.value)
-    names = np.array(site, dtype=object)
-    if not there.any():
-        return ()
-    rows = [(name, there & (names == name)) for name in sorted(set(names[there].tolist()))]
-    return tuple(_mean(found.value[chosen], names[chosen].tolist(), name) for name, chosen in [*rows, (None, there)])
-
-
-def _mean(values: FloatArray, sites: list[str], site: str | None) -> SiteDisplacement:
-    own = own_mean(values, sites, geometric=True)
-    return SiteDisplacement(site, len(values), own.value, own.low, own.high)

@@ -26,13 +26,12 @@ from .group_comparisons import letters_of_groups
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign
     from .group_comparisons import GroupComparison
     from .parts import PenetrationAnalysis, ShearAnalysis
 
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 TextArray = npt.NDArray[np.object_]
 
 

@@ -7,23 +7,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.display import Facts, Shown
 from .._support.units import MM
 from ..campaign.snow_micro_pen_records import SnowSurface, snow_surface
 from ..parameters import values_of
-from ..snow.penetrometer_relations import PENETROMETER_RELATIONS
+from ..snow.measured_range import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.snow_micro_pen import SnowMicroPenProfile
     from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 
 OVERLAP: Final = 0.5
 """Share of a window that the next one begins in (modelling assumption, as in the instrument's own program)."""

@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import chdtrc, expit, gammaln
 
 from .._support.content import index_names
@@ -26,12 +25,10 @@ from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from .campaign_fit import Priors
     from .readings import Readings, ReadingUncertainty
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 LEVEL: Final = 1e-3
 """Spreads are compared at this level."""

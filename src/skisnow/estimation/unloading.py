@@ -36,13 +36,11 @@ from .readings import Readings
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..campaign.records import PenetrationTests, UnloadingReadings
     from .campaign_model import CampaignModel
     from .hardness import Hardness
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-IntArray = npt.NDArray[np.int64]
 
 NOT_FALLING: Final = "unloading_not_falling"
 """The quality flag that excludes a series here, and nowhere else."""

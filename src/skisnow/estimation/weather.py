@@ -8,7 +8,6 @@ from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.content import index_names
 from .._support.display import Facts, Shown
@@ -17,10 +16,10 @@ from .._support.units import HOUR, PERCENT, ZERO_CELSIUS
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from .._support.arrays import FloatArray
     from ..campaign.records import Campaign
     from ..campaign.smet import CampaignWeather
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 QUANTITIES: Final = {
     "air_temperature_C": ("TA", 1.0, -ZERO_CELSIUS),

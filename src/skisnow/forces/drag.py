@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .measured_ranges import DRAG_AREA
 from .parameter_checks import require_above_zero, require_not_below_zero
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

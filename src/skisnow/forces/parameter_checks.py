@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 
 if TYPE_CHECKING:
-    FloatArray = npt.NDArray[np.float64]
+    from .._support.arrays import FloatArray
 
 RIGHT_ANGLE = math.pi / 2.0
 
@@ -22,13 +21,11 @@ def require_above_zero(owner: object, **parameters: float) -> None:
     for name, value in parameters.items():
         if not (math.isfinite(value) and value > 0):
             raise ParameterError(
-                Message(
-                    "{kind}: {name} is {value!r}; it must be a finite number above 0",
-                    kind=type(owner).__name__,
-                    name=name,
-                    value=value,
-                ),
+                "{kind}: {name} is {value!r}; it must be a finite number above 0",
                 code="out_of_range",
+                kind=type(owner).__name__,
+                name=name,
+                value=value,
             )
 
 
@@ -37,13 +34,11 @@ def require_not_below_zero(owner: object, **parameters: float) -> None:
     for name, value in parameters.items():
         if not (math.isfinite(value) and value >= 0):
             raise ParameterError(
-                Message(
-                    "{kind}: {name} is {value!r}; it must be a finite number, 0 or above",
-                    kind=type(owner).__name__,
-                    name=name,
-                    value=value,
-                ),
+                "{kind}: {name} is {value!r}; it must be a finite number, 0 or above",
                 code="out_of_range",
+                kind=type(owner).__name__,
+                name=name,
+                value=value,
             )
 
 
@@ -52,13 +47,11 @@ def require_finite(owner: object, **parameters: float) -> None:
     for name, value in parameters.items():
         if not math.isfinite(value):
             raise ParameterError(
-                Message(
-                    "{kind}: {name} is {value!r}; it must be a finite number",
-                    kind=type(owner).__name__,
-                    name=name,
-                    value=value,
-                ),
+                "{kind}: {name} is {value!r}; it must be a finite number",
                 code="not_a_number",
+                kind=type(owner).__name__,
+                name=name,
+                value=value,
             )
 
 
@@ -70,11 +63,9 @@ def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:
     if np.any(wrong):
         first = float(angle[wrong].flat[0])
         raise ParameterError(
-            Message(
-                "edge angle is {edge_angle!r} rad; it must be between 0 and π/2 rad (0° and 90°): an angle in "
-                "degrees must be converted with math.radians",
-                edge_angle=first,
-            ),
+            "edge angle is {edge_angle!r} rad; it must be between 0 and π/2 rad (0° and 90°): an angle in degrees "
+            "must be converted with math.radians",
             code="out_of_range",
+            edge_angle=first,
         )
     return angle

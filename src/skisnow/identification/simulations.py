@@ -23,7 +23,7 @@ from ..scenario.reading import build_input
 from ..scenario.resolution import ScenarioInput
 from ..simulation.run import Run
 from ..simulation.verification import NUDGE, NUDGED, limit_sentences
-from ..ski.sources import Sources
+from ..ski.ski_file import Sources
 
 SEARCH_STEP: Final = 4e-3
 """Fixed step (s) of the fast mode in a search: error of 1 to 3 cm after 46 m; too long on very hard snow."""

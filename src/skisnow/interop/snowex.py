@@ -15,7 +15,7 @@ from .._support.errors import ParameterError
 from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
-from ..estimation.observations import HARDNESS_KEY, STRESS_KEY
+from ..estimation.regressions import HARDNESS_KEY, STRESS_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

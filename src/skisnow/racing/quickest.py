@@ -18,7 +18,7 @@ from .._support.processes.executors import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows
 from ..scenario import Scenario
 from .line import RacingLine, course_of, first_gates, follower_line
-from .racers import Racer, RacerModel, ScoredLine, score_in, turns_in
+from .point import Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, require_cmaes
 from .windows import RANGES, How, Progress, Search, Windows

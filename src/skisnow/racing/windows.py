@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .line import RacingLine, first_gates, with_numbers
-from .racers import LinePoint, turns_in
+from .point import LinePoint, turns_in
 from .score import NOT_PASSED
 from .search import Batches, Evaluated, Evaluations, least_of
 from .surrogate_search import SurrogateSearch

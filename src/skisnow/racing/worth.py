@@ -25,7 +25,7 @@ from ..snow import SnowProperties
 from ..snow.mean_snow import drawn_snows
 from ..track.course.gates_table import GateGap, compare_gates
 from .line import RacingLine
-from .racers import LinePoint, Racer, RacerModel, ScoredLine, score_in
+from .point import LinePoint, Racer, RacerModel, ScoredLine, score_in
 from .score import Score
 
 AS_IT_IS: Final = "as it is"

@@ -14,7 +14,7 @@ from .._support.errors import ParameterError
 from .._support.outcomes import outcome_words
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
-from ..simulation.run_gates import feet_and_tips
+from ..simulation.run_summary import feet_and_tips
 from ..skier.segments import height_of
 from ..track.course import MovingPoint, passages
 from .replay import (

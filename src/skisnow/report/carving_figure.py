@@ -43,7 +43,7 @@ def carved_skis(contents: Json) -> Figure:
     Parameters
     ----------
     contents
-        JSON of `skisnow.carving.answer_dict.answers_dict`.
+        JSON of `skisnow.carving.answer.answers_dict`.
     """
     answers = answers_of(contents)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)

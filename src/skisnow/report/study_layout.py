@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, local_number
-from ..carving.keys import CARVE_KEYS
+from ..carving.question import CARVE_KEYS
 from ..studies import StudyTable
 from .symbols import figure_text
 

@@ -37,7 +37,7 @@ def carve_summary(contents: Json) -> str:
     Parameters
     ----------
     contents
-        JSON of `skisnow.carving.answer_dict.answers_dict`.
+        JSON of `skisnow.carving.answer.answers_dict`.
     """
     return "\n".join(_carve_lines(answers_of(contents)))
 

@@ -17,12 +17,12 @@ from ..track.projection import GeodeticPoint, earth_centred, geodetic
 from ..track.slope_frame import slope_axes
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    FloatArray = npt.NDArray[np.float64]
     from collections.abc import Iterator
 
     import numpy.typing as npt
+
+    from .._support.arrays import FloatArray
+
 
 ORIGIN: Final = GeodeticPoint(47.1234, 11.4321, 1900.0)
 AZIMUTH_DEG: Final = 140.0

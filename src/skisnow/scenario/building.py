@@ -13,7 +13,7 @@ from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..parameters import Word, changed, made, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
-from ..ski.sources import Sources
+from ..ski.ski_file import Sources
 from ..snow import SnowProperties, published_snow
 from ..snow.properties import require_stress
 from ..track.course import Course, course_names, read_course

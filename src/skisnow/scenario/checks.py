@@ -13,9 +13,8 @@ from .terrain import reach_of
 if TYPE_CHECKING:
     from ..ski import Ski
     from .run_settings import Start
-    from .shear import Shear
     from .skier import Skier
-    from .sledge import RigidSledge
+    from .sledge import RigidSledge, Shear
     from .terrain import Slope
 
 

@@ -18,7 +18,7 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
 from .._support.user_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
 from ..parameters import nearest
-from ..ski.sources import Sources
+from ..ski.ski_file import Sources
 from .building import build, changed_scenario
 from .identify_section import require_known
 from .keys import PATH_KEYS, SCENARIO_KEYS, SECTIONS, flatten_sections, scenario_values, validate

@@ -22,7 +22,7 @@ from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..parameters import InputValue
-from ..ski.sources import Sources
+from ..ski.ski_file import Sources
 from ..snow import SnowProperties
 from .keys import PATH_KEYS, SCENARIO_KEYS, validate
 from .scenario import Scenario

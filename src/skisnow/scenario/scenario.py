@@ -20,9 +20,8 @@ from .boots import Boots
 from .checks import require_skier, require_sound
 from .contact import Contact
 from .run_settings import Solver, Start, Stop
-from .shear import Shear
 from .skier import Skier
-from .sledge import Air, RigidSledge
+from .sledge import Air, RigidSledge, Shear
 from .slope import Plane, Profile
 from .terrain import Slope, Terrain
 

@@ -1,13 +1,19 @@
-"""The sledge of a run: what is rigid about it."""
+"""The sledge of a run, the air around it, and the law of the shear strength of the snow under it."""
 
 from __future__ import annotations
 
+import math
+import warnings
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Final, Literal, TypeAlias
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
-from ..parameters import Quantity, Search, declared_text, require_declared
+from .._support.units import DEGREE
+from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
+from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
+from ..parameters import Condition, Quantity, Search, declared_text, require_declared
+from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -172,3 +178,162 @@ class Air:
 
     def __post_init__(self) -> None:
         require_declared(self)
+
+
+Law: TypeAlias = Literal["constant", "by-angle", "by-density", "machining"]
+UPRIGHT: Final = 2.0
+"""F_t/(L e) of an upright edge without transverse friction, over the S of machining."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Shear:
+    """The law of the shear strength, in SI; a value of None is derived from the snow.
+
+    Attributes
+    ----------
+    law
+        S_f as it is; S_f (1 - k ϑ); S_f of a density; or cutting with its thrust.
+    relative_decrease
+        k (1/rad) of ``by-angle``.
+    snow_density
+        ρ (kg/m³) of ``by-density``.
+    dynamic_shear_strength, transverse_friction, least_shear_plane
+        S (N/m²), μ_t and the least (ϑ - β)/2 (rad) of ``machining``.
+    residual_ratio, slip_weakening
+        Share of the strength that slip leaves, and the slip (m) over which it is reached.
+    bearing
+        Height that holds an edge against a motion inwards.
+    """
+
+    law: Annotated[
+        Law,
+        Quantity(
+            "shear.law",
+            "law of the shear strength: S_f, S_f (1 - k ϑ), S_f of a density, or cutting with its thrust",
+            label=Message("law of shear"),
+            origin="choice: the paper's own, Eqn 9",
+        ),
+    ] = "constant"
+    relative_decrease: Annotated[
+        float,
+        Quantity(
+            "shear.relative_decrease_per_rad",
+            'k of law = "by-angle"; S_f is then that of a flat edge',
+            label=Message("relative decrease with the edge angle"),
+            lowest=0.0,
+            highest=0.6366,  # 2/π: beyond, an upright edge would have none
+            origin="Eqn 13, one soft snow",
+            condition=Condition("shear.law", "by-angle"),
+        ),
+    ] = STRESS_BY_ANGLE[1]
+    snow_density: Annotated[
+        float | None,
+        Quantity(
+            "shear.snow_density_kg_per_m3",
+            'density of law = "by-density", whose S_f (Eqn 14) then counts instead of the snow\'s',
+            label=Message("density of the snow"),
+            symbol="ρ",
+            lowest=151.7,  # below, Eqn 14 gives none
+            highest=917.0,
+            condition=Condition("shear.law", "by-density"),
+        ),
+    ] = None
+    dynamic_shear_strength: Annotated[
+        float | None,
+        Quantity(
+            "shear.dynamic_shear_strength_N_per_mm2",
+            'S of law = "machining"; default: half of S_f, with which an upright edge without μ_t fails at S_f',
+            label=Message("dynamic shear strength"),
+            lowest=0.0,
+            above=True,
+            condition=Condition("shear.law", "machining"),
+        ),
+    ] = None
+    transverse_friction: Annotated[
+        float,
+        Quantity(
+            "shear.transverse_friction",
+            'μ_t = tan β of law = "machining", across the ski',
+            label=Message("friction across the ski"),
+            lowest=0.0,
+            highest=2.0,
+            origin="choice: as the paper compares it; not measured",
+            condition=Condition("shear.law", "machining"),
+        ),
+    ] = 0.0
+    least_shear_plane: Annotated[
+        float,
+        Quantity(
+            "shear.least_shear_plane_deg",
+            'angle that (ϑ - β)/2 of law = "machining" does not fall below where an edge comes to lie flat',
+            label=Message("least shear plane"),
+            lowest=1.0,
+            highest=45.0,
+            origin="choice: strength and thrust grow without bound as it falls to 0",
+            condition=Condition("shear.law", "machining"),
+        ),
+    ] = 5.0 * DEGREE
+    residual_ratio: Annotated[
+        float,
+        Quantity(
+            "shear.residual_ratio",
+            "share of the strength that is left once an edge has slipped, with any law; 1: all of it",
+            label=Message("residual ratio"),
+            lowest=0.0,
+            highest=1.0,
+            origin="choice: the strength in slip was not measured",
+        ),
+    ] = RESIDUAL_RATIO
+    slip_weakening: Annotated[
+        float,
+        Quantity(
+            "shear.slip_weakening_mm",
+            "slip over which that share is reached, in proportion to it",
+            label=Message("slip weakening length"),
+            lowest=0.001,
+            highest=1000.0,
+            origin="choice: not measured",
+            condition=Condition("shear.residual_ratio", 1.0, differs=True),
+        ),
+    ] = SLIP_WEAKENING
+    bearing: Annotated[
+        Bearing,
+        Quantity(
+            "shear.bearing",
+            "an edge that moves inwards holds with its whole height, or with that of the base that bears",
+            label=Message("height that holds"),
+            origin="choice: the paper's depth of the edge; no measurement decides",
+        ),
+    ] = "whole-edge"
+
+    __repr__ = declared_text
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+        if self.law == "by-density" and self.snow_density is None:
+            raise ParameterError(
+                'shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3', code="missing"
+            )
+
+    def of(self, failure_shear_stress: float) -> ShearLaw | None:
+        """The law of a snow with this S_f (N/m²); None: S_f as it is."""
+        with warnings.catch_warnings():  # a scenario has separate warnings about unmeasured ranges
+            warnings.simplefilter("ignore", RangeWarning)
+            if self.law == "by-angle":
+                return AngleShear(flat_shear_stress=failure_shear_stress, relative_decrease=self.relative_decrease)
+            if self.law == "by-density" and self.snow_density is not None:
+                return DensityShear(snow_density=self.snow_density)
+            if self.law == "machining":
+                return MachiningShear(
+                    self.dynamic_shear_strength or failure_shear_stress / UPRIGHT,
+                    self.transverse_friction,
+                    least_shear_plane=self.least_shear_plane,
+                )
+        return None
+
+    @property
+    def least_edge_angle(self) -> float:
+        """Edge angle (rad) below which the law is not its own any more."""
+        if self.law != "machining":
+            return 0.0
+        return math.atan(self.transverse_friction) + 2.0 * self.least_shear_plane

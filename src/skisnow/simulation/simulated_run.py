@@ -21,9 +21,9 @@ from ..scenario.terrain import down_and_left
 from ..skier import BalancedSkier, Controller
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
-from .run_gates import GatesAhead, run_gates
 from .run_record import Record
 from .run_setup import AT_REST, Setup, hardness_at_start, set_up
+from .run_summary import GatesAhead, run_gates
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""

@@ -1,28 +1,27 @@
-"""A ski from its file, or by its name from the catalogue."""
+"""A ski from its file, or by its name from the catalogue; skis and snows by the words that name them."""
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .._support.errors import OutputError, ParameterError
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
-from .._support.user_files import is_file
+from .._support.user_files import is_file, toml_text
 from ..parameters import SMALLEST, nearest
+from ..snow import SnowProperties, published_snow, snow_from_results
+from ..snow.measured_range import with_range_warnings
 from .file_keys import COLUMNS, RIGID
 from .file_parts import FileParts
 from .file_values import file_values, values_of_keys
+from .ski import Ski
 from .table_file import read_table
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from .ski import Ski
 
 _CATALOGUE = files(__package__) / "catalogue"
 
@@ -173,7 +172,7 @@ def write_keys(keys: Mapping[str, Any], path: Path, *, digits: int = 9) -> None:
     def text(value: Any) -> str:
         if isinstance(value, list | tuple):
             return f"[{', '.join(text(each) for each in value)}]"
-        return _toml(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
+        return toml_text(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
 
     write_file(path, "".join(f"{key} = {text(value)}\n" for key, value in keys.items()))
 
@@ -220,7 +219,7 @@ def _keys_text(ski: Ski, table: str) -> str:
     if not ski.source.strip():
         del values["source"]
     rigid = "rigid = true\n" if _is_rigid(ski) else ""
-    return "".join(f"{key} = {_toml(value)}\n" for key, value in values.items()) + rigid
+    return "".join(f"{key} = {toml_text(value)}\n" for key, value in values.items()) + rigid
 
 
 def _table_text(ski: Ski) -> str:
@@ -248,8 +247,53 @@ def _plain(value: float) -> float:
     return 0.0 if abs(value) < SMALLEST else float(f"{value:.15g}")
 
 
-def _toml(value: str | float) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    # a JSON text is a TOML text but for the character that JSON leaves as it is
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, str) else repr(value)
+@dataclass(slots=True)
+class Sources:
+    """Skis and snows by the words that name them, each read once.
+
+    Attributes
+    ----------
+    folder
+        Where relative paths start; None: the current folder.
+    """
+
+    folder: Path | None = None
+    _skis: dict[str, tuple[Ski, tuple[str, ...]]] = field(default_factory=dict)
+    _snows: dict[tuple[str | None, str | None, str | None], SnowProperties] = field(default_factory=dict)
+
+    def ski(self, word: str) -> tuple[Ski, tuple[str, ...]]:
+        """The ski of a name or path, and what its reader warned of."""
+        if word not in self._skis:
+            self._skis[word] = with_range_warnings(lambda: read_ski(self._ski_place(word)))
+        return self._skis[word]
+
+    def named_snow(self, words: Mapping[str, Any]) -> SnowProperties:
+        """The snow of the words `published`, or `results` and `site`."""
+        named = (words.get("published"), words.get("results"), words.get("site"))
+        if named not in self._snows:
+            self._snows[named] = self._read_snow(*named)
+        return self._snows[named]
+
+    def take_snow(self, snow: SnowProperties, *, results: str, site: str | None) -> None:
+        """Take a snow that is at hand for that of the words `results` and `site`, whose file is then not read."""
+        self._snows[None, results, site] = snow
+
+    def path(self, word: str) -> Path:
+        """The place of a file."""
+        return (self.folder or Path()) / word
+
+    def ski_file(self, word: str) -> Path | None:
+        """The file that a ski's word names, None for a name of the catalogue."""
+        if word in ski_names():
+            return None
+        place = self.path(word)
+        looks_like_one = Path(word).suffix.lower() in (".toml", ".json") or Path(word).name != word
+        return place if looks_like_one or is_file(place) else None
+
+    def _ski_place(self, word: str) -> str | Path:
+        return self.ski_file(word) or word
+
+    def _read_snow(self, published: str | None, results: str | None, site: str | None) -> SnowProperties:
+        if results is not None:
+            return snow_from_results(self.path(results), site=site)
+        return published_snow(published or "")

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Final
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 
 POUND_INCH: Final = 0.112985
 """kg m² in 1 lb in s² (pounds of force)."""
@@ -76,14 +75,12 @@ def body_of(mass: float, height: float) -> Body:
     for name, value, low, high in (("mass", mass, 20.0, 200.0), ("height", height, 1.0, 2.3)):
         if not low <= value <= high:
             raise ParameterError(
-                Message(
-                    "body_of: {name} is {value:g}; it must be from {low:g} to {high:g}",
-                    name=name,
-                    value=value,
-                    low=low,
-                    high=high,
-                ),
+                "body_of: {name} is {value:g}; it must be from {low:g} to {high:g}",
                 code="wrong_kind",
+                name=name,
+                value=value,
+                low=low,
+                high=high,
             )
     shares = []
     for weight, tall, below, standing, crouched in SUBJECTS:

@@ -8,10 +8,9 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..dynamics import BootPose
 from ..scenario import Plane, Scenario
 from ..scenario.skier import Skier
@@ -25,8 +24,6 @@ from .plan import Gravity, Line, Plan, RecedingLine, TurnsOverTime, apexes_of, h
 from .posture import Posture
 from .seen import Moment, Seen, seen_at
 from .yaw import Body
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 BuiltIn: TypeAlias = SkidControl | CarveControl
 GREATEST_PRESSED = 2.0
@@ -92,7 +89,7 @@ class BalancedSkier:
         scenario = self.scenario
         if scenario.skier is None:
             raise ParameterError(
-                Message("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())"), code="no_data"
+                "BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())", code="no_data"
             )
         self.skier, sledge = scenario.skier, scenario.sledge
         half = float(scenario.ski.at(0.0).width) / 2.0

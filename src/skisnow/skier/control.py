@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, Protocol, TypeAlias
+from typing import Final, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..scenario.skier import Skier
 from .force_map import ForceMap
 from .plan import AHEAD, Gravity, Plan, Planned
 from .posture import Command, Posture
 from .seen import Seen
 from .yaw import FACING, Body, heading_ahead, yaw_gain, yaw_state
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 FORCE_TIME: Final = 0.02
 """Time (s) over which measured forces are smoothed (found by trial: from 0.01 to 0.04 the loads stay smooth)."""

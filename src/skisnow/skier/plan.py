@@ -6,16 +6,14 @@ import bisect
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol, TypeAlias
+from typing import Final, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..scenario.skier import Skier
 from ..track.course import Course
 from .seen import Seen
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 STEP: Final = 0.04
 """Time (s) between the moments of a plan (modelling assumption)."""

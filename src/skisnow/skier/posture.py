@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..dynamics import BootPose
 from ..geometry.boot_axes import axes_of
 from ..scenario.skier import Skier
 from .seen import Seen
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE = range(8)
 """Places in the numbers of a posture."""

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, Protocol, TypeAlias
+from typing import Final, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from ..scenario.terrain import down_and_left
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 BEARING: Final = 0.2
 """Share of the weight below which the loads tell nothing (modelling assumption: a leap has all but begun)."""

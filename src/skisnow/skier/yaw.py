@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .plan import STEP, Planned
 from .seen import Seen
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SHEAR_SHIFT: Final = 0.46
 """Shift of the force across the skis over that of the load along them, measured over the snow of the race piste."""

@@ -15,12 +15,14 @@ import numpy as np
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .least_squares import BoolArray, FloatArray, as_predictors, as_response, warn_if_ill_conditioned
+from .least_squares import as_predictors, as_response, warn_if_ill_conditioned
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     import numpy.typing as npt
+
+    from .._support.arrays import BoolArray, FloatArray
 
 MOST_COEFFICIENTS = 6
 _KKT_TOLERANCE = 1e-12

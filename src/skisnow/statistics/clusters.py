@@ -27,7 +27,8 @@ from .least_squares import (
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .least_squares import BoolArray, FloatArray
+    from .._support.arrays import BoolArray, FloatArray
+
 
 _WHOLLY = 1e-9
 """A direction of which a cluster holds all but this share is known from that cluster alone."""

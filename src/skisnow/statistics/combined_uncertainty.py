@@ -22,7 +22,7 @@ from .._support.messages import Message
 from .._support.units import CONFIDENCE
 
 if TYPE_CHECKING:
-    FloatArray = npt.NDArray[np.float64]
+    from .._support.arrays import FloatArray
 _LEAST_SHARE: Final = 1e-12
 """Relative standard error below which an estimate counts as exact: rounding of double precision."""
 _ITERATIONS: Final = 200

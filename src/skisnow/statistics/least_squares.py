@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Final, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -21,9 +21,8 @@ from .combined_uncertainty import expanded_factor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
-IntArray: TypeAlias = npt.NDArray[np.int64]
-BoolArray: TypeAlias = npt.NDArray[np.bool_]
+    from .._support.arrays import FloatArray, IntArray
+
 
 CONDITION_LIMIT: Final = 1e3
 """Of centred columns of unit length. NIST's Longley has 110 and keeps 13 digits; Wampler5 has 1,600 and keeps 8."""

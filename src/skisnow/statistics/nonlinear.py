@@ -21,14 +21,15 @@ import numpy.typing as npt
 from .._support.errors import FitError, FitWarning, ParameterError
 from .._support.messages import Message, template
 from .combined_uncertainty import require_confidence
-from .least_squares import Columns, Factorisation, FloatArray, as_response, factorise, require_finite, spread
+from .least_squares import Columns, Factorisation, as_response, factorise, require_finite, spread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .._support.arrays import FloatArray
+
 
 Model: TypeAlias = Callable[..., Any]
-_Values: TypeAlias = Callable[[FloatArray], FloatArray]
 
 _MOST_STEPS = 50
 _SETTLED = 1e-6
@@ -174,7 +175,7 @@ def nonlinear_fit(
     return NonlinearFit(**spread(b, observed - values(b), design, confidence), names=labels)
 
 
-def _searched(values: _Values, observed: FloatArray, start: FloatArray, scale: FloatArray) -> FloatArray:
+def _searched(values: Values, observed: FloatArray, start: FloatArray, scale: FloatArray) -> FloatArray:
     from scipy.optimize import least_squares
 
     def missed(b: FloatArray) -> FloatArray:
@@ -210,7 +211,7 @@ def _searched(values: _Values, observed: FloatArray, start: FloatArray, scale: F
 
 
 def _polished(
-    values: _Values, observed: FloatArray, b: FloatArray, scale: FloatArray, names: tuple[str, ...]
+    values: Values, observed: FloatArray, b: FloatArray, scale: FloatArray, names: tuple[str, ...]
 ) -> tuple[FloatArray, Factorisation, _Known]:
     """Gauss-Newton steps until they are lost in rounding: parameters, derivatives, how well both are known."""
     least = np.inf

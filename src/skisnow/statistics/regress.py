@@ -24,7 +24,7 @@ from .least_squares import (
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .least_squares import FloatArray
+    from .._support.arrays import FloatArray
 
 
 class RegressStatistics(NamedTuple):

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-    from .least_squares import FloatArray
+    from .._support.arrays import FloatArray
+
 
 _BEYOND = 1e300
 """Stands for an unknown sample; a quantile between it and any other number is still far beyond all numbers in use."""

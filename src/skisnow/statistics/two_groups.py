@@ -14,7 +14,8 @@ from .._support.messages import Message
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .least_squares import FloatArray
+    from .._support.arrays import FloatArray
+
 
 _MOST_TESTS = 10**9
 _FAR, _VERY_FAR = 4.5, 30.0

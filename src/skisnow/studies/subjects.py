@@ -14,11 +14,8 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.processes.kept_rows import Row
 from .._support.units import MM
 from .._support.user_files.json_text import json_number
-from ..carving.answer import CarveAnswer, answered
-from ..carving.answer_dict import inputs_dict, scalars_dict
-from ..carving.keys import CARVE_KEYS
-from ..carving.limits import require_clamp
-from ..carving.question import carve_question, require_complete
+from ..carving.answer import CarveAnswer, answered, inputs_dict, scalars_dict
+from ..carving.question import CARVE_KEYS, carve_question, require_clamp, require_complete
 from ..parameters import Quantity
 from ..scenario import ScenarioFile
 from ..scenario.keys import PATH_KEYS, SCENARIO_KEYS, SECTIONS, full_name
@@ -27,7 +24,7 @@ from ..scenario.resolution import ScenarioInput
 from ..simulation.run import Run
 from ..simulation.run_summary import end_dict, energies_dict, least_turn_radius, radii_dict, run_warnings
 from ..ski.beam import CLAMP_LENGTH
-from ..ski.sources import Sources
+from ..ski.ski_file import Sources
 from ..snow.properties import require_stress
 from .points import Point, Points
 

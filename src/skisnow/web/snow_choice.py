@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from ..estimation import Analysis
     from ..scenario.reading import ScenarioFile
-    from ..ski.sources import Sources
+    from ..ski.ski_file import Sources
     from ..snow import SnowProperties
     from .settings import Lab
 
@@ -234,7 +234,7 @@ def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[s
     ParameterError
         A value is not valid.
     """
-    from ..ski.sources import Sources
+    from ..ski.ski_file import Sources
 
     sources, site = Sources(), changes.get("snow.site") or None
     sources.take_snow(analysis.snow(site), results=RESULTS, site=site)

@@ -14,7 +14,7 @@ from nicegui import ui
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.user_files import natural_number
-from ..carving.keys import CARVE_KEYS
+from ..carving.question import CARVE_KEYS
 from .elements import choice, field, named
 from .language import said
 from .layout import sentence

@@ -27,7 +27,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "scenario.reading:scenario_text": "package data",
     "samples.folder:run_samples": "package data",
     "samples.folder:_contents": "sample files that the program has just made",
-    "cli.samples:run": "sample files that the program has just made",
+    "cli.beginning:write_samples": "sample files that the program has just made",
     "_support.language.catalogues:_entries": "package data",
     "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.carving.answer import answered
-from skisnow.carving.answer_dict import answers_dict
+from skisnow.carving.answer import answered, answers_dict
 from skisnow.carving.question import carve_question
 from skisnow.report.carving_figure import arc_through, carved_skis, contact_ends
 from skisnow.report.figures.figure_files import PNG_WIDTH, require_drawable, write_figure

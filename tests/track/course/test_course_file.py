@@ -12,7 +12,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import load_scenario
-from skisnow.simulation.run_gates import time_gates
+from skisnow.simulation.run_summary import time_gates
 from skisnow.track.course import Course, Gate, MovingPoint, course_warnings, on_slope, passages, read_course
 from skisnow.track.course.course_file import _bends
 from skisnow.track.projection import GeodeticPoint

@@ -15,8 +15,7 @@ import pandas
 import pytest
 
 from skisnow.campaign import read_campaign
-from skisnow.carving.answer import answered
-from skisnow.carving.answer_dict import answer_dict
+from skisnow.carving.answer import answer_dict, answered
 from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import stat
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -269,6 +271,19 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         As in `plain_text` and `toml_values`.
     """
     return toml_values(plain_text(path, most_bytes=MOST_TOML_BYTES), title=str(path))
+
+
+def toml_text(value: object) -> str:
+    """A text, number, truth value or list of them as TOML writes it.
+
+    >>> print(toml_text(["a", 1.5, True]))
+    ["a", 1.5, true]
+    """
+    if isinstance(value, str):  # a basic string of TOML is one of JSON, but for the letter DEL
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, Sequence):
+        return f"[{', '.join(map(toml_text, value))}]"
+    return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
 def toml_values(text: str, *, title: str = "") -> dict[str, Any]:

@@ -1,10 +1,9 @@
 """Import of workbooks and CSV files in any layout: proposed tables, columns, units, tools and sites."""
 
-from .answers import Answers, parse_template, read_template
+from .answers import Answers, Question, parse_template, read_template
 from .columns import ColumnChoice
 from .folder import RECORD, undo_import, write_import
 from .proposal import Proposal, propose
-from .questions import Question
 from .rows import ImportedTable
 from .sheets import Section
 

@@ -1,8 +1,7 @@
-"""Answers of the user to an import: options of the command, and the named template in campaign.toml."""
+"""Questions of an import, and answers of the user: options of the command, and the template in campaign.toml."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -10,12 +9,15 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
-from ..._support.user_files import read_toml, toml_values
+from ..._support.user_files import read_toml, toml_text, toml_values
+from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
 from ..reading.headings import plain_heading
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from ..problems import Problem
 
 SECTION: Final = "import"
 NONE: Final = "-"
@@ -93,11 +95,6 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def toml_text(text: str) -> str:
-    """A text in quotes as TOML writes it."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
 def read_template(place: str | Path) -> Answers:
     """Answers of an earlier import.
 
@@ -133,3 +130,66 @@ def _template(values: Mapping[str, Any], name: str) -> Answers:
             code="no_template",
         )
     return Answers(**answers)
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question that no heading, row of units or note answers.
+
+    Attributes
+    ----------
+    option, key
+        Option of the command, and the name before its equals sign.
+    choices
+        Possible answers; () for any text.
+    proposed
+        Answer that skisnow infers, or "".
+    problem
+        Error if it is not answered.
+    """
+
+    option: str
+    key: str
+    choices: tuple[str, ...]
+    proposed: str
+    problem: Problem
+
+
+WORDS = {
+    "table": Message("a stated table"),
+    "column": Message("a stated column"),
+    "unit": Message("a stated unit"),
+    "site": Message("a stated site"),
+    "tool": Message("a stated tool with its lengths and their unit"),
+    "plate": Message("a stated length of the blade with its unit"),
+    "cells": Message("a stated way of writing"),
+    "ignore": Message("rows and notes without a doubt"),
+}
+"""Required statement of each option."""
+
+
+def ask(
+    option: str,
+    key: str,
+    place: str,
+    *,
+    value: str | None = None,
+    choices: tuple[str, ...] = (),
+    proposed: str = "",
+    row: int | None = None,
+) -> Question:
+    """Question with its error, which names the option."""
+    answer = key if option == "ignore" else f"{key}={proposed or 'ANSWER'}" if key else proposed or "ANSWER"
+    text = f'--{option} "{answer}"'
+    action = (
+        Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=list(choices))
+        if choices
+        else Message("State it in the file or by {option}.", option=text)
+    )
+    problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=WORDS[option], action=action)
+    return Question(option, key, choices, proposed, problem)
+
+
+def is_asked(questions: Iterable[Question | Problem], option: str, key: str) -> bool:
+    """True if one of the questions has this option and key."""
+    return any(isinstance(item, Question) and (item.option, item.key) == (option, key) for item in questions)

@@ -1,7 +1,8 @@
-"""Columns and units of a table to import: what its headings, its row of units, notes and answers state."""
+"""Columns and units of a table to import, and notes around it: tool, blade, gauge, site, day, observers."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,18 +10,18 @@ from typing import TYPE_CHECKING, Final
 
 from ..._support.messages import Message
 from ..problems import error
+from ..reading.columns import iso_moment
 from ..reading.headings import conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
-from ..reading.synonyms import columns_by_synonym, stated_column
-from .answers import NONE
-from .notes import MEASURED, units_in_notes
-from .questions import Question, ask
+from ..reading.synonyms import SYNONYMS, columns_by_synonym, letters, stated_column
+from .answers import NONE, Question, ask
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from ..problems import Problem
     from ..reading.headings import UnitConversion
     from ..reading.table_forms import TableForm
     from .answers import Answers
-    from .notes import Note
     from .sheets import Section
 
 _NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
@@ -84,14 +85,9 @@ def _bad_answers(section: Section, form: TableForm, answers: Answers) -> Iterato
     for heading in section.headings:
         answer = answers.of_heading("column", table, heading)
         if answer and answer != NONE and answer not in form.known:
-            yield error(
-                "bad_answer",
-                section.key,
-                column=heading,
-                value=answer,
-                allowed=Message("the columns {columns}, or - for none", columns=list(form.known)),
-                action=Message("Correct --{option}.", option="column"),
-            )
+            allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
+            action = Message("Correct --{option}.", option="column")
+            yield error("bad_answer", section.key, column=heading, value=answer, allowed=allowed, action=action)
 
 
 def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) -> Iterator[Question | Problem]:
@@ -101,24 +97,20 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
     for heading, column in zip(section.headings, stated, strict=True):
         if times[column] > 1:
             key = f"{table}.{heading}"
-            yield ask("column", key, section, value=heading, choices=(column, NONE), proposed=column)
+            yield ask("column", key, section.key, value=heading, choices=(column, NONE), proposed=column)
     missing = [name for name in form.required if name not in times and name not in FROM_NOTES]
     free = [heading for heading, column in zip(section.headings, stated, strict=True) if not column]
     likely = columns_by_synonym(form, free)
     for heading in free if missing else ():
         proposed = likely.get(heading, NONE)
         choices = (*missing, *(name for name in form.known if name not in missing), NONE)
-        yield ask("column", f"{table}.{heading}", section, value=heading, choices=choices, proposed=proposed)
+        yield ask("column", f"{table}.{heading}", section.key, value=heading, choices=choices, proposed=proposed)
     if missing and not free:
-        yield error(
-            "missing_column",
-            section.key,
-            value=None,
-            allowed=Message("the columns {required}", required=list(form.required)),
-            action=Message(
-                "Add {columns} to the sheet, or name the column with --{option}.", columns=missing, option="column"
-            ),
+        allowed = Message("the columns {required}", required=list(form.required))
+        action = Message(
+            "Add {columns} to the sheet, or name the column with --{option}.", columns=missing, option="column"
         )
+        yield error("missing_column", section.key, value=None, allowed=allowed, action=action)
 
 
 def _statements(
@@ -166,5 +158,131 @@ def _unit(
         )
     else:
         choices = tuple(units_for(column).split(", "))
-        open_.append(ask("unit", f"{table}.{heading}", section, value=below or heading, choices=choices, proposed=""))
+        open_.append(ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices))
     return None
+
+
+_NUMBER: Final = r"\d+(?:[.,]\d+)?"
+_LENGTH: Final = rf"({_NUMBER})\s*(mm|cm|m|µm)?"
+TOOL: Final = re.compile(
+    rf"\b((?:skistück|ski piece|piece of ski|ski))\b[^\d;]{{0,20}}?{_LENGTH}\s*[x×*]\s*({_NUMBER})\s*(mm|cm|m)\b",
+    re.IGNORECASE,
+)
+DISC: Final = re.compile(
+    rf"\b((?:scheibe|disc|disk))\b[^\d;]{{0,8}}?(?:ø|durchmesser|diameter)\s*({_NUMBER})\s*(mm|cm|m)\b", re.IGNORECASE
+)
+PLATE: Final = re.compile(
+    rf"\b(scherblatt|scherplatte|klinge|blade|shear plate|plate|-)?\s*({_NUMBER})\s*(mm|cm|m)\b(?!\s*[x×*])",
+    re.IGNORECASE,
+)
+_GAUGE: Final = re.compile(rf"\b(messuhr|gauge)\b[^\d;,.]{{0,20}}({_NUMBER})\s*(mm|cm|µm)\b", re.IGNORECASE)
+_SITE: Final = re.compile(r"\b(ort|messort|standort|site)\s*:\s*([^;,]+)", re.IGNORECASE)
+_OBSERVERS: Final = re.compile(r"\b(beobachter|beobachterin|observers?)\s*:\s*([^;,]+)", re.IGNORECASE)
+_DAY: Final = re.compile(r"\b\d{1,2}\. ?\d{1,2}\. ?\d{4}\b|\b\d{4}-\d{2}-\d{2}\b")
+_LENGTH_LEFT: Final = re.compile(rf"{_NUMBER}\s*(?:mm|cm|m)\b")
+_QUALIFIED: Final = re.compile(
+    r"\b(ab|bis|außer|ausser|except|statt|instead|nicht|not|oder|or|ca|etwa|about|approx|circa|from|until|ohne|without|"
+    r"plus|minus|zuzüglich|abzüglich|neu|new|alt|old|korrektur|nullpunkt|offset)\b|≈|~",
+    re.IGNORECASE,
+)
+MEASURED: Final = ("edge_angle_deg", "load_N", "depth_mm", "lever_arm_mm", "moment_Nm")
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Cells of a row that are in no table."""
+
+    sheet: str
+    row: int
+    text: str
+
+
+def length_mm(number: str, unit: str) -> float:
+    """A length in mm.
+
+    >>> length_mm("6,2", "cm")
+    62.0
+    """
+    size = conversion(unit.casefold(), "depth_mm")
+    assert size is not None
+    return float(f"{float(number.replace(',', '.')) * size.factor:.10g}")
+
+
+def stated_tools(notes: Iterable[Note]) -> set[str]:
+    """Tools that notes state, as answers: ski with length and width, disc with diameter; "" for an unclear note."""
+    tools: set[str] = set()
+    for note in notes:
+        for match in TOOL.finditer(note.text):
+            _, length, unit, width, width_unit = match.groups()
+            lengths = length_mm(length, unit or width_unit), length_mm(width, width_unit)
+            tools.add(
+                "" if lengths[0] <= lengths[1] or _is_unclear(note) else f"ski {lengths[0]:g} x {lengths[1]:g} mm"
+            )
+        for match in DISC.finditer(note.text):
+            tools.add("" if _is_unclear(note) else f"disc {length_mm(match[2], match[3]):g} mm")
+    return tools
+
+
+def stated_plates(notes: Iterable[Note]) -> set[str]:
+    """Lengths of blades that notes state, as answers; "" for an unclear note."""
+    return {
+        "" if _is_unclear(note) else f"{length_mm(match[2], match[3]):g} mm"
+        for note in notes
+        for match in PLATE.finditer(TOOL.sub("", DISC.sub("", _GAUGE.sub("", note.text))))
+        if match[1] and match[1] != "-"
+    }
+
+
+def _is_unclear(note: Note) -> bool:
+    """True if a note limits its own statement, or has lengths of something else."""
+    rest = TOOL.sub("", DISC.sub("", _GAUGE.sub("", note.text)))
+    rest = PLATE.sub(lambda match: "" if match[1] and match[1] != "-" else match[0], rest)
+    return bool(_QUALIFIED.search(note.text) or _LENGTH_LEFT.search(rest))
+
+
+def gauge_steps_mm(notes: Iterable[Note]) -> set[float]:
+    """Steps of depth gauges that notes state (mm)."""
+    return {length_mm(match[2], match[3]) for note in notes for match in _GAUGE.finditer(note.text)}
+
+
+def stated_sites(sheet: str, notes: Sequence[Note]) -> set[str]:
+    """Sites that the notes of a sheet state; the name of the sheet if a note repeats it."""
+    sites = {match[2].strip() for note in notes for match in _SITE.finditer(note.text)}
+    parts = {" ".join(part.split()).casefold() for note in notes for part in re.split(r"[,;:–]", note.text)}
+    return sites | ({sheet.strip()} if " ".join(sheet.split()).casefold() in parts else set())
+
+
+def stated_days(notes: Iterable[Note]) -> set[str]:
+    """Days that notes state, in ISO 8601."""
+    days = {iso_moment(match[0].replace(". ", ".")) for note in notes for match in _DAY.finditer(note.text)}
+    return {day for day in days if day}
+
+
+def stated_observers(notes: Iterable[Note]) -> list[str]:
+    """Observers that notes state."""
+    lists = [match[2] for note in notes for match in _OBSERVERS.finditer(note.text)]
+    return list(dict.fromkeys(name.strip() for names in lists for name in re.split(r"[/&+]", names) if name.strip()))
+
+
+def units_in_notes(column: str, notes: Iterable[Note]) -> set[str]:
+    """Units that notes state for a column, such as "Last in kg"."""
+    words = "|".join(re.escape(word) for word in SYNONYMS[column] if len(word) > 2)
+    pattern = re.compile(rf"\b(?:{words})(?:en|e|n|s)?\s*(?:in|:|=|\[|\()\s*([^\s\]),;.]+)", re.IGNORECASE)
+    units = {known_unit(match[1]) for note in notes for match in pattern.finditer(_plain(note.text))}
+    return {unit for unit in units if unit and conversion(unit, column)}
+
+
+def _plain(text: str) -> str:
+    return text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
+
+
+def is_about_numbers(note: Note) -> bool:
+    """True for a note on measured numbers that may change them: a word for one, with a number or a limiting word."""
+    words = letters(note.text).split()
+    synonyms = {word for column in MEASURED for word in SYNONYMS[column] if len(word) > 2}
+    named = any(
+        word in synonyms or any(word == f"{synonym}{end}" for synonym in synonyms for end in ("e", "en", "n", "s"))
+        for word in words
+    )
+    rest = _DAY.sub("", note.text)
+    return named and bool(re.search(r"\d", rest) or _QUALIFIED.search(rest))

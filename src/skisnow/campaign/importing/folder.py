@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -14,13 +12,13 @@ from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import OutputError
 from ..._support.messages import Message
+from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
-from ..._support.user_files import own_json
+from ..._support.user_files import own_json, toml_text
 from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE
-from .answers import SECTION, toml_text
-from .notes import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
-from .questions import Question, ask, is_asked
+from .answers import SECTION, Question, ask, is_asked
+from .columns import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -34,15 +32,11 @@ ORIGINAL: Final = "original"
 RECORD: Final = f"{ORIGINAL}/import.json"
 
 
-def csv_text(form: TableForm, rows: Sequence[Mapping[str, str]]) -> str:
+def table_text(form: TableForm, rows: Sequence[Mapping[str, str]]) -> str:
     """CSV of rows with the columns that they have, those of the form first."""
     present = {name for row in rows for name in row}
     columns = [*(name for name in form.known if name in present), *sorted(present - set(form.known))]
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([row.get(column, "") for column in columns] for row in rows)
-    return stream.getvalue()
+    return csv_text([columns, *([row.get(column, "") for column in columns] for row in rows)])
 
 
 def description(
@@ -58,7 +52,7 @@ def description(
     notes: Sequence[str],
 ) -> str:
     """Text of campaign.toml; the step of the gauge only if the notes agree."""
-    lines = [f"name = {toml_text(title)}", f"observers = {_list(observers)}"]
+    lines = [f"name = {toml_text(title)}", f"observers = {toml_text(observers)}"]
     lines += [f"gauge_resolution_mm = {step:g}" for step in gauges if len(gauges) == 1]
     for kind, described in (("tool", tools), ("plate", plates)):
         for entry in described:
@@ -70,12 +64,8 @@ def description(
         f"template = {toml_text(title)}",
         f"file = {toml_text(f'{ORIGINAL}/{PurePath(file).name}')}",
     ]
-    lines += [f'sha256 = "{sha256}"', f"notes = {_list(notes)}", *template.toml_lines()]
+    lines += [f'sha256 = "{sha256}"', f"notes = {toml_text(notes)}", *template.toml_lines()]
     return "\n".join((*lines, ""))
-
-
-def _list(texts: Sequence[str]) -> str:
-    return f"[{', '.join(map(toml_text, texts))}]"
 
 
 def campaign_files(tables: Mapping[str, str], described: str, name: str, data: bytes) -> dict[str, bytes]:
@@ -238,16 +228,11 @@ def _described(
                 open_.append(_bad_answer(kind, table.section.key, answers[name], form))
             elif not is_asked(open_, kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
-                open_.append(ask(kind, name, table.section, value=value, proposed=form))
+                open_.append(ask(kind, name, table.section.key, value=value, proposed=form))
     return described
 
 
 def _bad_answer(kind: str, place: str, value: str, form: str) -> Problem:
-    return error(
-        "bad_answer",
-        place,
-        column=kind,
-        value=value,
-        allowed=Message("lengths with a unit, such as {form}", form=form),
-        action=Message("Correct --{option}.", option=kind),
-    )
+    allowed = Message("lengths with a unit, such as {form}", form=form)
+    action = Message("Correct --{option}.", option=kind)
+    return error("bad_answer", place, column=kind, value=value, allowed=allowed, action=action)

@@ -13,11 +13,9 @@ from ..._support.errors import FieldDataError
 from ..._support.messages import Message
 from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
-from .answers import NONE, Answers
-from .columns import choose_columns
-from .folder import PlateText, ToolText, campaign_files, csv_text, description, plates_of, tools_of
-from .notes import Note, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
-from .questions import Question, ask, is_asked
+from .answers import NONE, Answers, Question, ask, is_asked
+from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
+from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
 from .rows import ImportedTable, stored_rows
 from .sheets import KINDS, Ignored, Section, Sheet, find_sections, likely_table, read_sheets, table_of
 
@@ -101,7 +99,7 @@ def _kind(section: Section, answers: Answers, open_: list[Question | Problem]) -
     if form is None:
         value = ", ".join(section.headings)
         proposed = likely_table(section)
-        open_.append(ask("table", section.key, section, value=value, choices=(*KINDS, NONE), proposed=proposed))
+        open_.append(ask("table", section.key, section.key, value=value, choices=(*KINDS, NONE), proposed=proposed))
     return form
 
 
@@ -224,7 +222,7 @@ def _site(
         return stated.pop()
     if not is_asked(open_, "site", sheet):
         value = ", ".join(sorted(stated)) or None
-        open_.append(ask("site", sheet, table.section, value=value, choices=tuple(sorted(stated)), proposed=sheet))
+        open_.append(ask("site", sheet, table.section.key, value=value, choices=tuple(sorted(stated)), proposed=sheet))
     return ""
 
 
@@ -254,7 +252,7 @@ def _merged(tables: Sequence[ImportedTable]) -> dict[str, str]:
     by_form: dict[str, list[dict[str, str]]] = {}
     for table in tables:
         by_form.setdefault(table.form.file, []).extend(row.cells for row in table.rows)
-    return {file: csv_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
+    return {file: table_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
 
 
 def _description(

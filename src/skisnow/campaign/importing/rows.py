@@ -12,8 +12,8 @@ from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
 from ..problems import error
 from ..reading.synonyms import letters
+from .answers import Question, ask, is_asked
 from .columns import number_columns
-from .questions import Question, ask, is_asked
 from .sheets import column_letters
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def stored_rows(
             for name, choice in used.items()
         }
         if _is_summary(cells, form):
-            open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section, row=row + 1, value=cells.get(form.key)))
+            open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=cells.get(form.key)))
         _fill_down(section, row, cells, above, form, answers, open_)
         above = dict(cells)
         for name in numbers:
@@ -133,7 +133,7 @@ def _mark(
     if len(clear) == 1:
         return clear.pop()
     if clear or unclear:
-        open_.append(ask("cells", DECIMAL, section, value=unclear or ", .", choices=(",", "."), proposed=""))
+        open_.append(ask("cells", DECIMAL, section.key, value=unclear or ", .", choices=(",", ".")))
     return "."
 
 
@@ -178,7 +178,9 @@ def _fill_down(
             cells[name] = above[name]
         elif not is_asked(open_, "cells", FILL_DOWN):
             value = Message("a blank cell below {value}", value=above[name])
-            open_.append(ask("cells", FILL_DOWN, section, row=row + 1, value=value, choices=("yes",), proposed="yes"))
+            open_.append(
+                ask("cells", FILL_DOWN, section.key, row=row + 1, value=value, choices=("yes",), proposed="yes")
+            )
 
 
 def _is_summary(cells: dict[str, str], form: TableForm) -> bool:

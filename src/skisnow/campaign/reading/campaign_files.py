@@ -164,15 +164,9 @@ class RawFiles:
             if foreign_encoding == "Windows-1252"
             else Message("It was read as such; save as UTF-8 if letters look wrong in the report.")
         )
+        allowed = Message("UTF-8, in the plain form")
         self.problems.append(
-            warning(
-                "encoding",
-                name,
-                value=foreign_encoding,
-                allowed=Message("UTF-8, in the plain form"),
-                action=action,
-                needs_action=False,
-            )
+            warning("encoding", name, value=foreign_encoding, allowed=allowed, action=action, needs_action=False)
         )
 
 
@@ -198,14 +192,14 @@ def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None
     if "/" in name or "\\" in name or not name.lower().endswith(ENDING):
         action = Message("Write only the file's name, and put the file next to the tables.")
         allowed = Message("the name of a .PNT file in the campaign's folder")
-        files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
+        files.problems.append(table.error(row, "unreadable_file", "file", table.names["file"][row], allowed, action))
         return None
     before = len(files.problems)
     data = files.read(name)
     if data is None and len(files.problems) == before:
         action = Message("Lay the file beside the tables, correct its name, or take the row out.")
         allowed = Message("a file of this name in the campaign's folder")
-        files.problems.append(_refusal(table, row, "file", "unreadable_file", allowed, action))
+        files.problems.append(table.error(row, "unreadable_file", "file", table.names["file"][row], allowed, action))
     if data is None:
         return None
     try:
@@ -227,21 +221,8 @@ def _repeated_names(table: Table, column: str) -> list[Problem]:
         if name and reference != row:
             allowed = Message("each {column} once; row {row} has it, too", column=column, row=int(table.row[reference]))
             action = Message("Correct the cell, or take one of the rows out.")
-            problems.append(_refusal(table, row, column, "mixed_experiment", allowed, action))
+            problems.append(table.error(row, "mixed_experiment", column, table.names[column][row], allowed, action))
     return problems
-
-
-def _refusal(table: Table, row: int, column: str, code: str, allowed: str, action: str) -> Problem:
-    return error(
-        code,
-        SNOW_MICRO_PEN.file,
-        row=int(table.row[row]),
-        column=column,
-        experiment=table.names[SNOW_MICRO_PEN.key][row] or None,
-        value=table.names[column][row],
-        allowed=allowed,
-        action=action,
-    )
 
 
 def snow_micro_pen_recordings(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from datetime import date, datetime, time
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import numpy as np
 
@@ -17,9 +17,9 @@ from .table_forms import UNLOADING, allowed_words
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from ..._support.arrays import BoolArray, FloatArray, IntArray
     from ...parameters import Quantity
     from ..problems import Problem
-    from ..records import BoolArray, FloatArray, IntArray
     from .headings import UnitConversion
     from .table_forms import TableForm
 
@@ -227,6 +227,18 @@ class Table:
     def __len__(self) -> int:
         """Count the rows."""
         return len(self.row)
+
+    def error(self, row: int, code: str, column: str, value: str, allowed: str, action: str) -> Problem:
+        """Error of the cell in a column and the row with this index."""
+        return error(code, **self._place(row, column), value=value, allowed=allowed, action=action)
+
+    def warning(self, row: int, code: str, column: str | None, value: str, allowed: str, action: str) -> Problem:
+        """Warning of the cell in a column and the row with this index."""
+        return warning(code, **self._place(row, column), value=value, allowed=allowed, action=action)
+
+    def _place(self, row: int, column: str | None) -> dict[str, Any]:
+        experiment = self.names[self.form.key][row] or None
+        return {"file": self.form.file, "row": int(self.row[row]), "column": column, "experiment": experiment}
 
 
 class DateCollector:

@@ -18,8 +18,8 @@ from .table_forms import BRANCH
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from ..._support.arrays import BoolArray, FloatArray, IntArray
     from ..problems import Problem
-    from ..records import BoolArray, FloatArray, IntArray
     from .columns import NameColumn, Table
 
 
@@ -149,21 +149,14 @@ def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def _mixed(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:
-    return error(
-        "mixed_experiment",
-        table.form.file,
-        row=int(table.row[row]),
+    allowed = Message(
+        "one {column} in an experiment; row {row} has {other!r}",
         column=column,
-        experiment=table.names[table.form.key][row],
-        value=value,
-        allowed=Message(
-            "one {column} in an experiment; row {row} has {other!r}",
-            column=column,
-            row=int(table.row[reference]),
-            other=other,
-        ),
-        action=Message("Correct the cell, or give the rows that were another experiment another name."),
+        row=int(table.row[reference]),
+        other=other,
     )
+    action = Message("Correct the cell, or give the rows that were another experiment another name.")
+    return table.error(row, "mixed_experiment", column, value, allowed=allowed, action=action)
 
 
 def penetration_tests(table: Table) -> PenetrationTests:

@@ -130,13 +130,9 @@ def _all_missing(form: TableForm, header: Header) -> Problem:
         actions.append(Message("No heading looks like {columns}: rename or add it.", columns=left))
     if other:
         actions.append(Message("Convert first: {headings}.", headings=other))
-    return error(
-        "missing_column",
-        form.file,
-        row=header.row,
-        allowed=Message("{required}, or headings that campaign.toml maps to them", required=list(form.required)),
-        action=joined(actions),
-    )
+    allowed = Message("{required}, or headings that campaign.toml maps to them", required=list(form.required))
+    action = joined(actions)
+    return error("missing_column", form.file, row=header.row, allowed=allowed, action=action)
 
 
 def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
@@ -147,15 +143,9 @@ def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
 
 
 def _repeated(form: TableForm, name: str, row: int) -> Problem:
-    return error(
-        "unreadable_file",
-        form.file,
-        row=row,
-        column=name,
-        value=name,
-        allowed=Message("each column once"),
-        action=Message("Rename or remove one of the columns of this name."),
-    )
+    allowed = Message("each column once")
+    action = Message("Rename or remove one of the columns of this name.")
+    return error("unreadable_file", form.file, row=row, column=name, value=name, allowed=allowed, action=action)
 
 
 def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
@@ -173,15 +163,8 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
         if meant
         else Message("Add it; the unit belongs to the name.")
     )
-    return error(
-        "missing_column",
-        form.file,
-        row=row,
-        column=name,
-        value=meant,
-        allowed=Message("the columns {required}", required=list(form.required)),
-        action=action,
-    )
+    allowed = Message("the columns {required}", required=list(form.required))
+    return error("missing_column", form.file, row=row, column=name, value=meant, allowed=allowed, action=action)
 
 
 def _unknown(form: TableForm, name: str, header: Header) -> Problem:
@@ -269,24 +252,12 @@ def _note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
 
 def _other_unit(form: TableForm, heading: str, column: str, row: int, *, is_number: bool) -> Problem:
     units = units_for(column)
-    return error(
-        "other_unit",
-        form.file,
-        row=row,
-        column=column,
-        value=heading,
-        allowed=Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0]),
-        action=Message("Correct the unit, or convert the numbers."),
-    )
+    allowed = Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0])
+    action = Message("Correct the unit, or convert the numbers.")
+    return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)
 
 
 def _two_units(form: TableForm, heading: str, column: str, row: int) -> Problem:
-    return error(
-        "other_unit",
-        form.file,
-        row=row,
-        column=column,
-        value=heading,
-        allowed=Message("one unit among {units}", units=units_for(column)),
-        action=Message("Correct the heading, the row of units or campaign.toml: they state different units."),
-    )
+    allowed = Message("one unit among {units}", units=units_for(column))
+    action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
+    return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)

@@ -16,7 +16,7 @@ from .table_forms import CORRECTIONS, TABLES
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..records import FloatArray
+    from ..._support.arrays import FloatArray
     from .table_forms import TableForm
     from .toml_values import TomlValues
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..._support.messages import Message
 from ..._support.units import DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
-from ..problems import error, warning
+from ..problems import warning
 from .columns import is_unloading
 from .headings import conversion
 from .table_forms import BRANCH, PENETRATION, SHEAR
@@ -22,8 +22,8 @@ from .table_forms import BRANCH, PENETRATION, SHEAR
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from ..._support.arrays import FloatArray
     from ..problems import Problem
-    from ..records import FloatArray
     from .campaign_file import CampaignFile
     from .columns import Table
 
@@ -90,22 +90,19 @@ def _median(table: Table, name: str) -> float | None:
 
 
 def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
+    allowed = Message(
+        "numbers in {unit}; medians of {low:g} to {high:g} are usual",
+        unit=likely.unit,
+        low=likely.low,
+        high=likely.high,
+    )
+    action = Message(
+        "If these are {unit} convert them to {unit_2}; if they are {unit_2} no action is needed.",
+        unit=unit,
+        unit_2=likely.unit,
+    )
     return warning(
-        "unlikely_unit",
-        table.form.file,
-        column=name,
-        value=f"a median of {middle:g}",
-        allowed=Message(
-            "numbers in {unit}; medians of {low:g} to {high:g} are usual",
-            unit=likely.unit,
-            low=likely.low,
-            high=likely.high,
-        ),
-        action=Message(
-            "If these are {unit} convert them to {unit_2}; if they are {unit_2} no action is needed.",
-            unit=unit,
-            unit_2=likely.unit,
-        ),
+        "unlikely_unit", table.form.file, column=name, value=f"a median of {middle:g}", allowed=allowed, action=action
     )
 
 
@@ -240,20 +237,13 @@ def _middle(values: FloatArray, rows: list[int]) -> tuple[int, float]:
 def _missing_unit(table: Table, column: str, values: str, effect: Message, unit: str, row: int = 0) -> Problem:
     heading = table.unstated[column]
     line = f'units.{json.dumps(heading, ensure_ascii=False)} = "{unit}"'
-    return error(
-        "unit_missing",
-        table.form.file,
-        row=int(table.row[row]),
-        column=column,
-        experiment=table.names[table.form.key][row] or None,
-        value=f"{heading}: {values}",
-        allowed=Message("numbers whose unit is stated"),
-        action=Message(
-            "{effect} State the unit: in the heading, such as {heading} [{unit}], or at the top of "
-            "campaign.toml, such as {line}.",
-            effect=effect,
-            heading=heading,
-            unit=unit,
-            line=line,
-        ),
+    allowed = Message("numbers whose unit is stated")
+    action = Message(
+        "{effect} State the unit: in the heading, such as {heading} [{unit}], or at the top of "
+        "campaign.toml, such as {line}.",
+        effect=effect,
+        heading=heading,
+        unit=unit,
+        line=line,
     )
+    return table.error(row, "unit_missing", column, f"{heading}: {values}", allowed=allowed, action=action)

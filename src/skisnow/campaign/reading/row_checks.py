@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..._support.messages import Message
-from ..problems import error, warning
+from ..problems import warning
 from .campaign_file import CAMPAIGN_FILE
 from .columns import is_unloading
 from .experiments import Blocks, check_one_site, check_series, shear_blocks
@@ -17,8 +17,8 @@ from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRAT
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from ..._support.arrays import BoolArray
     from ..problems import Problem
-    from ..records import BoolArray
     from .campaign_file import CampaignFile
     from .columns import Table
     from .experiments import Blocks
@@ -65,22 +65,17 @@ def _unknown_names(table: Table, blocks: Blocks, column: str, described_names: f
     pairs = np.stack([blocks.of_row, names.code], axis=1)[unknown]
     _, first = np.unique(pairs, axis=0, return_index=True)
     for row in np.flatnonzero(unknown)[np.sort(first)].tolist():
-        yield error(
-            f"unknown_{column}",
-            table.form.file,
-            row=int(table.row[row]),
-            column=column,
-            experiment=table.names[table.form.key][row] or None,
-            value=names[row],
-            allowed=Message("one of {names}", names=sorted(described_names))
+        allowed = (
+            Message("one of {names}", names=sorted(described_names))
             if described_names
-            else Message("a {column} that {campaign_file} describes", column=column, campaign_file=CAMPAIGN_FILE),
-            action=Message(
-                "Correct the cell, or describe the {column} in {campaign_file} under [[{column}]].",
-                column=column,
-                campaign_file=CAMPAIGN_FILE,
-            ),
+            else Message("a {column} that {campaign_file} describes", column=column, campaign_file=CAMPAIGN_FILE)
         )
+        action = Message(
+            "Correct the cell, or describe the {column} in {campaign_file} under [[{column}]].",
+            column=column,
+            campaign_file=CAMPAIGN_FILE,
+        )
+        yield table.error(row, f"unknown_{column}", column, names[row], allowed=allowed, action=action)
 
 
 COLUMN: Final = "edge_angle_deg"
@@ -109,18 +104,13 @@ def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
     """Warning of each experiment at a larger edge angle than in the paper."""
     steep = table.numbers[COLUMN] > STEEPEST_MEASURED_DEG
     for row in _once_per_block(steep, blocks):
-        yield warning(
-            "angle_above_60",
-            table.form.file,
-            row=int(table.row[row]),
-            column=COLUMN,
-            experiment=table.names[table.form.key][row] or None,
-            value=f"{table.numbers[COLUMN][row]:g}",
-            allowed=Message(
-                "penetration at up to {steepest_measured_deg:g} degrees is what was measured before",
-                steepest_measured_deg=STEEPEST_MEASURED_DEG,
-            ),
-            action=Message("It is computed all the same; make sure that the angle is meant."),
+        allowed = Message(
+            "penetration at up to {steepest_measured_deg:g} degrees is what was measured before",
+            steepest_measured_deg=STEEPEST_MEASURED_DEG,
+        )
+        action = Message("It is computed all the same; make sure that the angle is meant.")
+        yield table.warning(
+            row, "angle_above_60", COLUMN, f"{table.numbers[COLUMN][row]:g}", allowed=allowed, action=action
         )
 
 
@@ -129,15 +119,10 @@ def check_flat_tools(table: Table, blocks: Blocks, flat_tools: frozenset[str]) -
     tool = table.names["tool"]
     is_flat = np.array([name in flat_tools for name in tool.names], dtype=np.bool_)[tool.code]
     for row in _once_per_block(is_flat & (table.numbers[COLUMN] > 0), blocks):
-        yield error(
-            "out_of_range",
-            PENETRATION.file,
-            row=int(table.row[row]),
-            column=COLUMN,
-            experiment=table.names[table.form.key][row] or None,
-            value=f"{table.numbers[COLUMN][row]:g}",
-            allowed=Message("0 for the tool {tool!r}, which has no edge", tool=tool[row]),
-            action=Message("Write 0, or name the tool that was used."),
+        allowed = Message("0 for the tool {tool!r}, which has no edge", tool=tool[row])
+        action = Message("Write 0, or name the tool that was used.")
+        yield table.error(
+            row, "out_of_range", COLUMN, f"{table.numbers[COLUMN][row]:g}", allowed=allowed, action=action
         )
 
 
@@ -172,18 +157,10 @@ def check_branches(table: Table, blocks: Blocks) -> Iterator[Problem]:
 
 
 def _refusal(table: Table, row: int, code: str, allowed: str) -> Problem:
-    return error(
-        code,
-        table.form.file,
-        row=int(table.row[row]),
-        column=BRANCH,
-        experiment=table.names[table.form.key][row] or None,
-        value=table.names[BRANCH][row],
-        allowed=allowed,
-        action=Message(
-            "Correct the cell; the rows are in the order of reading, and a second loading is another experiment."
-        ),
+    action = Message(
+        "Correct the cell; the rows are in the order of reading, and a second loading is another experiment."
     )
+    return table.error(row, code, BRANCH, table.names[BRANCH][row], allowed=allowed, action=action)
 
 
 _ONCE: Final = ("depth_mm", "lever_arm_mm")
@@ -195,18 +172,11 @@ def check_turning(table: Table, blocks: Blocks) -> Iterator[Problem]:
         values = table.numbers[name]
         first = values[blocks.start][blocks.of_row]
         for row in np.flatnonzero((values != first) & ~np.isnan(values) & ~np.isnan(first)).tolist():
-            yield error(
-                "mixed_experiment",
-                table.form.file,
-                row=int(table.row[row]),
-                column=name,
-                experiment=table.names[table.form.key][row] or None,
-                value=f"{values[row]:.12g}",
-                allowed=Message(
-                    "one {name} in an experiment; its first row has {first:.12g}", name=name, first=first[row]
-                ),
-                action=Message("Correct the cell, or give the rows that were another experiment another name."),
+            allowed = Message(
+                "one {name} in an experiment; its first row has {first:.12g}", name=name, first=first[row]
             )
+            action = Message("Correct the cell, or give the rows that were another experiment another name.")
+            yield table.error(row, "mixed_experiment", name, f"{values[row]:.12g}", allowed=allowed, action=action)
 
 
 MOST_LISTED: Final = 1000

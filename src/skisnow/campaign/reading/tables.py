@@ -19,8 +19,8 @@ from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from ..._support.arrays import IntArray
     from ..problems import Problem
-    from ..records import IntArray
     from .campaign_files import RawFiles
     from .columns import Collector
     from .corrections import RowCorrections
@@ -235,16 +235,11 @@ class _TableReading:
         return good
 
     def _surplus(self, line: int, cell: str, width: int) -> Problem:
-        return error(
-            "unreadable_file",
-            self._form.file,
-            row=line,
-            value=cell,
-            allowed=Message("{width} cells, one below each column name", width=width),
-            action=Message(
-                "Name the column in the header, or put the cell that holds a separator or decimal comma in quotes."
-            ),
+        allowed = Message("{width} cells, one below each column name", width=width)
+        action = Message(
+            "Name the column in the header, or put the cell that holds a separator or decimal comma in quotes."
         )
+        return error("unreadable_file", self._form.file, row=line, value=cell, allowed=allowed, action=action)
 
     def finish(self) -> None:
         """Report problems that only the whole file shows."""
@@ -293,11 +288,6 @@ def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
 def _format_notes(file: str, separator: str, mark: str) -> Iterator[Problem]:
     deviations = [SEPARATOR_NAMES[separator]] * (separator != ",") + ["decimal comma"] * (mark == ",")
     for value in deviations:
-        yield warning(
-            "separator",
-            file,
-            value=value,
-            allowed=Message("commas between cells and decimal points, in the plain form"),
-            action=Message("It was read as found; no action is needed."),
-            needs_action=False,
-        )
+        allowed = Message("commas between cells and decimal points, in the plain form")
+        action = Message("It was read as found; no action is needed.")
+        yield warning("separator", file, value=value, allowed=allowed, action=action, needs_action=False)

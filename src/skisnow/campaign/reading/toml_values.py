@@ -172,15 +172,10 @@ class TomlValues:
                 self._ignored(key, keys)
 
     def _ignored(self, key: str, allowed_keys: Sequence[str]) -> None:
+        allowed = Message("the keys {allowed_keys}", allowed_keys=list(allowed_keys))
+        action = Message("The key is not used; no action is needed.")
         self.problems.append(
-            warning(
-                "unknown_column",
-                self.file,
-                column=self.path_of(key),
-                value=key,
-                allowed=Message("the keys {allowed_keys}", allowed_keys=list(allowed_keys)),
-                action=Message("The key is not used; no action is needed."),
-            )
+            warning("unknown_column", self.file, column=self.path_of(key), value=key, allowed=allowed, action=action)
         )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
-import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
-from ..._support.user_files import GivenError, workbook_sheets
+from ..._support.user_files import GivenError, toml_text, workbook_sheets
 from ..problems import error, warning
 from .campaign_file import CAMPAIGN_KEYS
 from .synonyms import columns_by_synonym
@@ -107,13 +106,8 @@ def _likely_table(rows: Rows) -> str | None:
 def _misnamed_sheet(place: str, table: str) -> Problem:
     names = ", ".join(("campaign", "tools", "plates", "columns", *_FILES))
     action = Message("It looks like {table}: call the sheet so if it is. Otherwise no action is needed.", table=table)
-    return warning(
-        "unread_sheet",
-        place,
-        value=place.rpartition(", sheet ")[2],
-        allowed=Message("sheets called {names}", names=names),
-        action=action,
-    )
+    allowed = Message("sheets called {names}", names=names)
+    return warning("unread_sheet", place, value=place.rpartition(", sheet ")[2], allowed=allowed, action=action)
 
 
 def is_workbook(name: str) -> bool:
@@ -232,14 +226,14 @@ def _column_lines(row: Mapping[str, str]) -> Iterator[str]:
     heading, table = row.get("heading", ""), row.get("table", "")
     for section, name in (("columns", "column"), ("units", "unit")):
         if heading and row.get(name):
-            yield f"{section}.{f'{_quoted(table)}.' if table else ''}{_quoted(heading)} = {_quoted(row[name])}"
+            yield f"{section}.{f'{toml_text(table)}.' if table else ''}{toml_text(heading)} = {toml_text(row[name])}"
 
 
 def _pair(key: str, cell: str) -> str:
     if key in _LISTS:
         several = ", ".join(_value(item) for item in re.split(r"\s*;\s*", cell) if item)
-        return f"{_quoted(key)} = [{several}]"
-    return f"{_quoted(key)} = {_quoted(cell) if key in _TEXTS else _value(cell)}"
+        return f"{toml_text(key)} = [{several}]"
+    return f"{toml_text(key)} = {toml_text(cell) if key in _TEXTS else _value(cell)}"
 
 
 def _value(cell: str) -> str:
@@ -250,8 +244,4 @@ def _value(cell: str) -> str:
     """
     if is_number(cell, ".") or is_number(cell, ","):
         return repr(float(cell.replace(",", ".")))
-    return _quoted(cell)
-
-
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return toml_text(cell)

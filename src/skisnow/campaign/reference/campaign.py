@@ -18,7 +18,8 @@ from . import design, draws
 from .design import ReferenceNoise
 
 if TYPE_CHECKING:
-    from ..records import DensitySamples, DropConeTests, FloatArray, PenetrationTests, ShearTests
+    from ..._support.arrays import FloatArray
+    from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
 
 
 DEFAULT_NOISE: Final = ReferenceNoise()

@@ -28,7 +28,7 @@ from ...geometry import SkiPiece
 from ...snow.published import moessner_2013
 
 if TYPE_CHECKING:
-    from ..records import FloatArray
+    from ..._support.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from ..records import (
 from . import design
 
 if TYPE_CHECKING:
-    from ..records import BoolArray, FloatArray
+    from ..._support.arrays import BoolArray, FloatArray
     from .design import ReferenceNoise
 
 

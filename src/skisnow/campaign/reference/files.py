@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import tempfile
 from pathlib import Path
@@ -12,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..._support.errors import OutputError
+from ..._support.spreadsheet_text import csv_text
 from ..._support.units import DEGREE, MM, N_PER_MM2
 from ..reading.table_forms import LOADING, UNLOADING
 from . import design
@@ -20,7 +19,7 @@ from .campaign import DEFAULT_NOISE, reference_campaign
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from ..records import FloatArray
+    from ..._support.arrays import FloatArray
     from .campaign import ReferenceCampaign
     from .design import ReferenceNoise
 
@@ -115,11 +114,7 @@ def _move_into_place(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def _csv(header: Sequence[str], columns: Iterable[Sequence[str]]) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(zip(*columns, strict=True))
-    return stream.getvalue()
+    return csv_text([header, *zip(*columns, strict=True)])
 
 
 def _number_texts(values: FloatArray, unit: float, decimals: int) -> list[str]:

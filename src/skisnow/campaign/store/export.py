@@ -20,7 +20,7 @@ from .replayed import (
     campaign_files,
     correction_cells,
     correction_of_cell,
-    csv_text,
+    guarded_csv,
     replay_journal,
     write_campaign,
 )
@@ -116,7 +116,7 @@ def _combine_corrections(before: bytes, rows: list[AppliedCorrection]) -> str:
     came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
     cells_of_rows = (dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in rows)
     ours = ([cells.get(column, "") for column in header] for cells in cells_of_rows)
-    return csv_text([header, *came, *ours])
+    return guarded_csv([header, *came, *ours])
 
 
 def _records(data: bytes) -> list[list[str]]:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from ..._support.errors import FieldDataError
-from ..._support.spreadsheet_text import guarded
+from ..._support.spreadsheet_text import csv_text, guarded
+from ..._support.user_files import toml_text
 from ..problems import AppliedCorrection
 from ..reading.campaign import campaign_of_cells
 from ..reading.campaign_file import read_campaign_file
@@ -178,15 +176,9 @@ def correction_cells(correction: AppliedCorrection) -> tuple[str, ...]:
     return tuple(map(str, astuple(correction)))
 
 
-def csv_text(rows: Iterable[Sequence[str]]) -> str:
-    r"""CSV text with commas and line feeds; cells are protected from being read as formulas.
-
-    >>> csv_text([("old", "new"), ("1,5", "1.5")])
-    'old,new\n"1,5",1.5\n'
-    """
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(map(guarded, row) for row in rows)
-    return stream.getvalue()
+def guarded_csv(rows: Iterable[Sequence[str]]) -> str:
+    """CSV text whose cells are protected from being read as formulas."""
+    return csv_text(map(guarded, row) for row in rows)
 
 
 _TIME = "time"
@@ -207,10 +199,10 @@ def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | N
     for form, tests in _tests_by_table(campaign, of):
         columns = _columns(form, tests)
         rows = [_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
-        files[form.file] = csv_text([columns, *rows])
+        files[form.file] = guarded_csv([columns, *rows])
         corrections.extend(_corrections(tests))
     if corrections:
-        files[CORRECTIONS.file] = csv_text([COLUMNS, *map(correction_cells, corrections)])
+        files[CORRECTIONS.file] = guarded_csv([COLUMNS, *map(correction_cells, corrections)])
     return files
 
 
@@ -312,21 +304,13 @@ def description_text(description: Description) -> str:
     FieldDataError
         The description is invalid; the exception has the problems of reading the text.
     """
-    lines = [f"{key} = {_toml_text(value)}" for key, value in description.values.items() if value not in (None, "")]
+    lines = [f"{key} = {toml_text(value)}" for key, value in description.values.items() if value not in (None, "")]
     for table, entries in (("tool", description.tools), ("plate", description.plates)):
         for entry in entries:
-            lines += ["", f"[[{table}]]", *(f"{key} = {_toml_text(value)}" for key, value in entry.items())]
+            lines += ["", f"[[{table}]]", *(f"{key} = {toml_text(value)}" for key, value in entry.items())]
     text = "\n".join(lines) + "\n"
     problems: list[Problem] = []
     read_campaign_file(text, problems)
     if any(problem.severity == "error" for problem in problems):
         raise FieldDataError(problems)
     return text
-
-
-def _toml_text(value: Value | None) -> str:
-    if isinstance(value, str):  # a basic string of TOML is one of JSON, but for the letter DEL
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, Sequence):
-        return f"[{', '.join(_toml_text(item) for item in value)}]"
-    return repr(value)

@@ -3,7 +3,7 @@
 A campaign is a list of paths, each with a content. A content is a SHA-256 and its bytes in chunks, so that a file of
 any size needs the memory of one chunk. Campaigns that share a file share its content.
 
-The migrations must produce these tables; a change needs a migration and a new ``REVISION``.
+A change of these tables needs a migration of the stores that exist and a new ``REVISION``.
 """
 
 from __future__ import annotations

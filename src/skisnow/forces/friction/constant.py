@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..parameter_checks import require_not_below_zero
-from .law import FloatArray, FrictionLaw
+from .law import FrictionLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..measured_ranges import GLIDE_FRICTION
-
-FloatArray = npt.NDArray[np.float64]
 
 COMPARISON_SPEED: Final = 10.0
 """Speed (m/s) at which a new law is compared with the measured range (modelling assumption: an ordinary
@@ -46,21 +44,18 @@ class FrictionLaw(abc.ABC):
         v = np.asarray(speed, float)
         if np.any(v < 0):
             raise ParameterError(
-                Message("speed is {speed!r} m/s; a sliding speed is at least 0", speed=float(v.min())),
-                code="out_of_range",
+                "speed is {speed!r} m/s; a sliding speed is at least 0", code="out_of_range", speed=float(v.min())
             )
         mu = self._coefficient(v)
         if np.any(mu < 0):
             fastest = float(v.flat[int(np.argmin(mu))])
             raise ParameterError(
-                Message(
-                    "{kind}: the coefficient of friction is negative at {fastest:g} m/s: {law!r} would "
-                    "push the ski; use other parameters or lower speeds",
-                    kind=type(self).__name__,
-                    fastest=fastest,
-                    law=self,
-                ),
+                "{kind}: the coefficient of friction is negative at {fastest:g} m/s: {law!r} would push the ski; use "
+                "other parameters or lower speeds",
                 code="negative_friction",
+                kind=type(self).__name__,
+                fastest=fastest,
+                law=self,
             )
         return mu
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..._support.arrays import FloatArray
 from ..parameter_checks import require_finite, require_not_below_zero
-from .law import FloatArray, FrictionLaw
+from .law import FrictionLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..._support.arrays import FloatArray
 from ..parameter_checks import require_above_zero, require_not_below_zero
-from .law import FloatArray, FrictionLaw
+from .law import FrictionLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ...geometry import Tool
 from ..parameter_checks import require_above_zero, require_finite
-from .law import FloatArray, PenetrationLaw
+from .law import PenetrationLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,15 +81,12 @@ class BilinearLaw(PenetrationLaw):
         if np.any(value < 0):
             worst = float(angle.flat[int(np.argmin(value))])
             raise ParameterError(
-                Message(
-                    "BilinearLaw: {name} = {at_zero:g} + {slope:g} ϑ is negative at ϑ = {worst:.4g} rad: the "
-                    "snow would pull. Use the law where {name} ≥ 0, or coefficients that were fitted with "
-                    "that bound",
-                    name=name,
-                    at_zero=at_zero,
-                    slope=slope,
-                    worst=worst,
-                ),
+                "BilinearLaw: {name} = {at_zero:g} + {slope:g} ϑ is negative at ϑ = {worst:.4g} rad: the snow would "
+                "pull. Use the law where {name} ≥ 0, or coefficients that were fitted with that bound",
                 code="out_of_range",
+                name=name,
+                at_zero=at_zero,
+                slope=slope,
+                worst=worst,
             )
         return value

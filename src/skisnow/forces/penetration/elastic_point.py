@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..measured_ranges import SNOW_HARDNESS
 from ..parameter_checks import require_above_zero
-from .point_law import FloatArray, PointLaw
+from .point_law import PointLaw
 
 
 @dataclass(frozen=True, slots=True)

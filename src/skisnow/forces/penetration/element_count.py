@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ..measured_ranges import SNOW_HARDNESS
 from ..parameter_checks import edge_angles, require_above_zero
-from .law import FloatArray, PenetrationLaw
+from .law import PenetrationLaw
 
 
 @dataclass(frozen=True, slots=True)

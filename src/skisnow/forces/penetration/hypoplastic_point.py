@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..measured_ranges import SNOW_HARDNESS
 from ..parameter_checks import require_above_zero
-from .point_law import FloatArray, PointLaw
+from .point_law import PointLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +66,10 @@ class HypoplasticPoint(PointLaw):
         require_above_zero(self, snow_hardness=self.snow_hardness)
         if not self.unloading_ratio >= 1.0:
             raise ParameterError(
-                Message(
-                    "HypoplasticPoint: unloading_ratio k_u/H_V is {unloading_ratio!r}; it must be at least 1 "
-                    "(1 is elastic, math.inf rigid-plastic): unloading softer than loading would give energy "
-                    "away",
-                    unloading_ratio=self.unloading_ratio,
-                ),
+                "HypoplasticPoint: unloading_ratio k_u/H_V is {unloading_ratio!r}; it must be at least 1 (1 is "
+                "elastic, math.inf rigid-plastic): unloading softer than loading would give energy away",
                 code="out_of_range",
+                unloading_ratio=self.unloading_ratio,
             )
         SNOW_HARDNESS.warn_outside(self.snow_hardness, "HypoplasticPoint", stacklevel=3)
 

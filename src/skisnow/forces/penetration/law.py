@@ -9,12 +9,11 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ...snow import MeasuredRange
 from ..measured_ranges import PENETRATION_EDGE_ANGLE
 from ..parameter_checks import edge_angles
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class PenetrationLaw(abc.ABC):

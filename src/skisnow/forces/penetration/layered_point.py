@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..parameter_checks import require_above_zero, require_not_below_zero
-from .point_law import FloatArray, PointLaw
+from .point_law import PointLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +73,9 @@ class LayeredPoint(PointLaw):
         require_not_below_zero(self, hardness_growth=self.hardness_growth)
         if not 1.0 <= self.unloading_ratio < np.inf:
             raise ParameterError(
-                Message(
-                    "LayeredPoint: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite",
-                    unloading_ratio=self.unloading_ratio,
-                ),
+                "LayeredPoint: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite",
                 code="out_of_range",
+                unloading_ratio=self.unloading_ratio,
             )
 
     @property

@@ -9,11 +9,12 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ...snow import MeasuredRange
 from ..measured_ranges import PRESSURE_OFFSET, PRESSURE_SLOPE
 from ..parameter_checks import require_above_zero, require_not_below_zero
-from .law import FloatArray, PenetrationLaw
+from .law import PenetrationLaw
 
 
 @dataclass(frozen=True, slots=True)

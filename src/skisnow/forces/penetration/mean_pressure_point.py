@@ -8,11 +8,11 @@ from typing import ClassVar, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..measured_ranges import PRESSURE_OFFSET, PRESSURE_SLOPE
 from ..parameter_checks import require_above_zero, require_not_below_zero
-from .point_law import FloatArray, PointLaw
+from .point_law import PointLaw
 
 RAMP_DEPTH: Final = 0.5e-3
 """Depth (m) over which B comes in (modelling assumption: not measured; the law of the paper, all of it at once, is
@@ -77,12 +77,10 @@ class MeanPressurePoint(PointLaw):
         require_not_below_zero(self, pressure_offset=self.pressure_offset)
         if not 1.0 <= self.unloading_ratio < np.inf:
             raise ParameterError(
-                Message(
-                    "MeanPressurePoint: unloading_ratio is {unloading_ratio!r}; it must be finite and at "
-                    "least 1: unloading softer than loading would give energy away",
-                    unloading_ratio=self.unloading_ratio,
-                ),
+                "MeanPressurePoint: unloading_ratio is {unloading_ratio!r}; it must be finite and at least 1: "
+                "unloading softer than loading would give energy away",
                 code="not_a_number",
+                unloading_ratio=self.unloading_ratio,
             )
         PRESSURE_SLOPE.warn_outside(self.pressure_slope, "MeanPressurePoint", stacklevel=3)
         PRESSURE_OFFSET.warn_outside(self.pressure_offset, "MeanPressurePoint", stacklevel=3)

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..._support.arrays import FloatArray
 
 
 class PointLaw(abc.ABC):

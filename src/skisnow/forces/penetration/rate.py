@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..._support.arrays import FloatArray
 
 DAMPING: Final = 0.0
 """c of p = H_V ε + c ε̇ (N s/m³) (modelling assumption, not in the paper's law)."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ..measured_ranges import SNOW_HARDNESS
 from ..parameter_checks import require_above_zero
-from .law import FloatArray, PenetrationLaw
+from .law import PenetrationLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ...snow.published.moessner_2013 import ANGLE_TERM
 from .hypoplastic_point import HypoplasticPoint
-from .point_law import FloatArray, PointLaw
+from .point_law import PointLaw
 
 
 @dataclass(frozen=True, slots=True)

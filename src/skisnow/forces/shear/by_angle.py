@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.units import N_PER_MM2
 from ...snow.published.moessner_2013 import STRESS_BY_ANGLE
 from ..measured_ranges import FAILURE_SHEAR_STRESS
 from ..parameter_checks import RIGHT_ANGLE, require_above_zero, require_finite
-from .law import FloatArray, ShearLaw
+from .law import ShearLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +57,10 @@ class AngleShear(ShearLaw):
         require_finite(self, relative_decrease=self.relative_decrease)
         if self.relative_decrease * RIGHT_ANGLE > 1.0:
             raise ParameterError(
-                Message(
-                    "AngleShear: with a relative_decrease of {relative_decrease!r} per rad the stress is "
-                    "negative on an upright edge; it must be at most 2/π = 0.637 per rad (Eqn 13: 0.266)",
-                    relative_decrease=self.relative_decrease,
-                ),
+                "AngleShear: with a relative_decrease of {relative_decrease!r} per rad the stress is negative on an "
+                "upright edge; it must be at most 2/π = 0.637 per rad (Eqn 13: 0.266)",
                 code="out_of_range",
+                relative_decrease=self.relative_decrease,
             )
         FAILURE_SHEAR_STRESS.warn_outside(self.flat_shear_stress, "AngleShear", stacklevel=3)
 

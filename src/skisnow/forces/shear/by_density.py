@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.units import ICE_DENSITY
 from ...snow.published.moessner_2013 import STRESS_BY_DENSITY, failure_shear_stress_from_density
 from ..measured_ranges import GROOMED_SNOW_DENSITY
-from .law import FloatArray, ShearLaw
+from .law import ShearLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,17 +52,15 @@ class DensityShear(ShearLaw):
         minimum = -intercept / slope
         if not minimum < self.snow_density <= ICE_DENSITY:
             raise ParameterError(
-                Message(
-                    "DensityShear: snow_density is {snow_density!r} kg/m³; Eqn 14 gives no strength at or "
-                    "below {minimum:.1f} kg/m³, and no snow is denser than {ice_density:g} kg/m³; it was "
-                    "measured for {lowest:g} to {highest:g} kg/m³",
-                    snow_density=self.snow_density,
-                    minimum=minimum,
-                    ice_density=ICE_DENSITY,
-                    lowest=GROOMED_SNOW_DENSITY.lowest,
-                    highest=GROOMED_SNOW_DENSITY.highest,
-                ),
+                "DensityShear: snow_density is {snow_density!r} kg/m³; Eqn 14 gives no strength at or below "
+                "{minimum:.1f} kg/m³, and no snow is denser than {ice_density:g} kg/m³; it was measured for "
+                "{lowest:g} to {highest:g} kg/m³",
                 code="out_of_range",
+                snow_density=self.snow_density,
+                minimum=minimum,
+                ice_density=ICE_DENSITY,
+                lowest=GROOMED_SNOW_DENSITY.lowest,
+                highest=GROOMED_SNOW_DENSITY.highest,
             )
         GROOMED_SNOW_DENSITY.warn_outside(self.snow_density, "DensityShear", stacklevel=3)
 

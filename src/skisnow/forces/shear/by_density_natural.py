@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.units import ICE_DENSITY
 from ...snow.published.domine_2011 import LEAST_DENSITY, failure_shear_stress_from_density
 from ..measured_ranges import NATURAL_SNOW_DENSITY
-from .law import FloatArray, ShearLaw
+from .law import ShearLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +53,13 @@ class NaturalDensityShear(ShearLaw):
     def __post_init__(self) -> None:
         if not LEAST_DENSITY < self.snow_density <= ICE_DENSITY:
             raise ParameterError(
-                Message(
-                    "NaturalDensityShear: snow_density is {snow_density!r} kg/m³; the square (0.1027 ρ - "
-                    "11.5323)² is 0 at {least_density:.1f} kg/m³ and rises again below it, and no snow is "
-                    "denser than {ice_density:g} kg/m³; give a density between them",
-                    snow_density=self.snow_density,
-                    least_density=LEAST_DENSITY,
-                    ice_density=ICE_DENSITY,
-                ),
+                "NaturalDensityShear: snow_density is {snow_density!r} kg/m³; the square (0.1027 ρ - 11.5323)² is 0 "
+                "at {least_density:.1f} kg/m³ and rises again below it, and no snow is denser than {ice_density:g} "
+                "kg/m³; give a density between them",
                 code="out_of_range",
+                snow_density=self.snow_density,
+                least_density=LEAST_DENSITY,
+                ice_density=ICE_DENSITY,
             )
         NATURAL_SNOW_DENSITY.warn_outside(self.snow_density, "NaturalDensityShear", stacklevel=3)
 

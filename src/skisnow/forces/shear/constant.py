@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..measured_ranges import FAILURE_SHEAR_STRESS
 from ..parameter_checks import require_above_zero
-from .law import FloatArray, ShearLaw
+from .law import ShearLaw
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,13 +8,13 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ...snow import MeasuredRange
 from ...snow.published.lieu_mote_1985 import SNOW_OVER_ICE
 from ..measured_ranges import ICE_CUTTING_DEPTH, ICE_CUTTING_EDGE_ANGLE
 from ..parameter_checks import RIGHT_ANGLE, require_above_zero
-from .law import FloatArray, ShearLaw
+from .law import ShearLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +66,10 @@ class IceCuttingShear(ShearLaw):
         rows = self.ice_coefficients
         if len({len(row) for row in rows}) != 1 or not rows[0] or not np.all(np.isfinite(rows)):
             raise ParameterError(
-                Message(
-                    "IceCuttingShear: ice_coefficients are {rows!r}; they must be rows of finite numbers, "
-                    "equally long, a row for each power of the depth from 1, a column for each power of the "
-                    "rake angle from 0",
-                    rows=rows,
-                ),
+                "IceCuttingShear: ice_coefficients are {rows!r}; they must be rows of finite numbers, equally long, "
+                "a row for each power of the depth from 1, a column for each power of the rake angle from 0",
                 code="not_a_number",
+                rows=rows,
             )
 
     def thrust_force(
@@ -92,12 +89,10 @@ class IceCuttingShear(ShearLaw):
         if np.any(stress < 0):
             worst = int(np.argmin(stress))
             raise ParameterError(
-                Message(
-                    "IceCuttingShear: the coefficients give a negative force at {depth:.4g} m depth and an "
-                    "edge angle of {edge_angle:.4g} rad: use them where the ice was measured",
-                    depth=depth.flat[worst],
-                    edge_angle=angle.flat[worst],
-                ),
+                "IceCuttingShear: the coefficients give a negative force at {depth:.4g} m depth and an edge angle of "
+                "{edge_angle:.4g} rad: use them where the ice was measured",
                 code="negative_force",
+                depth=depth.flat[worst],
+                edge_angle=angle.flat[worst],
             )
         return stress

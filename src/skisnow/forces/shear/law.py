@@ -9,10 +9,9 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ...snow import MeasuredRange
 from ..parameter_checks import edge_angles
-
-FloatArray = npt.NDArray[np.float64]
 
 
 class ShearLaw(abc.ABC):

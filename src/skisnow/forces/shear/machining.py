@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..cutting import cutting_stress, cutting_thrust
 from ..measured_ranges import FAILURE_SHEAR_STRESS
 from ..parameter_checks import RIGHT_ANGLE, edge_angles, require_above_zero, require_not_below_zero
-from .law import FloatArray, ShearLaw
+from .law import ShearLaw
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +65,9 @@ class MachiningShear(ShearLaw):
         require_not_below_zero(self, transverse_friction=self.transverse_friction)
         if not 0.0 <= self.least_shear_plane <= RIGHT_ANGLE / 2.0:
             raise ParameterError(
-                Message(
-                    "MachiningShear: least_shear_plane is {least_shear_plane!r} rad; it must lie between 0 and π/4",
-                    least_shear_plane=self.least_shear_plane,
-                ),
+                "MachiningShear: least_shear_plane is {least_shear_plane!r} rad; it must lie between 0 and π/4",
                 code="out_of_range",
+                least_shear_plane=self.least_shear_plane,
             )
         FAILURE_SHEAR_STRESS.warn_outside(2.0 * self.dynamic_shear_strength, "MachiningShear, 2 S", stacklevel=3)
 

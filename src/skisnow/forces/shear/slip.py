@@ -7,7 +7,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from ..._support.arrays import FloatArray
 
 RESIDUAL_RATIO: Final = 1.0
 """Strength after slip over that before it (modelling assumption: the paper measured where shearing starts)."""

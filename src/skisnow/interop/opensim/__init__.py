@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from .boots import BootMarkers, boots_of_markers, boots_text
 from .c3d import read_c3d, write_c3d
-from .markers import Markers, read_trc, write_trc
+from .markers import BootMarkers, Markers, boots_of_markers, boots_text, read_trc, write_trc
 from .table import MotionTable, read_motion, write_motion
 
 __all__ = [

@@ -12,15 +12,14 @@ import numpy.typing as npt
 
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
-from ...estimation.observations import DENSITY_KEY
+from ...estimation.regressions import DENSITY_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ...campaign.records import Campaign
     from ...estimation import Analysis
-    from ...estimation.observations import Observations
-    from ...estimation.regressions import Source
+    from ...estimation.regressions import Observations, Source
     from ...geometry import GeometryForm
 
 FloatArray = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from ..._support.messages import Message
 from ..._support.units import MM
-from ...estimation.observations import PEN_FORCE_KEY
+from ...estimation.regressions import PEN_FORCE_KEY
 from ...geometry import in_form
 from ..charts import law_of_series
 from ..figures.drawing import Drawing, LeftOut

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from ..._support.messages import Message
 from ..._support.units import CONFIDENCE, DEGREE
-from ...estimation.observations import HARDNESS_KEY, STRESS_KEY
+from ...estimation.regressions import HARDNESS_KEY, STRESS_KEY
 from ...forces.cutting import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
 from ..figures.drawing import Drawing, LeftOut

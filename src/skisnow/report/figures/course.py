@@ -15,7 +15,7 @@ from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ...scenario import Plane
 from ...scenario.terrain import normals_of
-from ...simulation.run_gates import run_gates
+from ...simulation.run_summary import run_gates
 from .style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from ..._support.messages import ENGLISH, Message, in_language, languages
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import GivenError, plain_text
 from ...scenario.plausibility import implausible_values
-from ...simulation.run_gates import run_gates
-from ...simulation.run_summary import summary_dict
+from ...simulation.run_summary import run_gates, summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv
 from ..figures.figure_files import picture_files, silent

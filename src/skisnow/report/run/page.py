@@ -15,8 +15,7 @@ from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
 from ...scenario.plausibility import model_limits
-from ...simulation.run_gates import run_gates
-from ...simulation.run_summary import run_warnings
+from ...simulation.run_summary import run_gates, run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
 from ..figures.figure_files import silent, write_pictures

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..._support.units import MM
 from ..flags import Solution, solution_array
-from .nmea_sentences import SENTENCE
+from .nmea import SENTENCE
 from .recording import Recording, track_error
 
 SYNC: Final = b"\xb5\x62"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import GenericEventArguments
 
-    from ...ski.sources import Sources
+    from ...ski.ski_file import Sources
     from ..settings import Lab
     from ..snow_choice import ChosenSnow
 
@@ -107,10 +107,9 @@ class _Solver:
 
         ``snow``: snow of a campaign if the questions name its results.
         """
-        from ...carving.answer import answered
-        from ...carving.answer_dict import answer_dict
+        from ...carving.answer import answer_dict, answered
         from ...carving.question import carve_question
-        from ...ski.sources import Sources
+        from ...ski.ski_file import Sources
 
         with self._lock:
             self._sources = self._sources or Sources()

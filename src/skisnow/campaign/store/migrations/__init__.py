@@ -1,4 +1,4 @@
-"""Migrations of the store's schema, one file of ``versions`` each: a baseline with all tables, then later changes.
+"""Tables of an empty store, and migrations of older ones, one file of ``versions`` each.
 
 skisnow runs them itself and reads no ``alembic.ini`` of the working directory.
 """
@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING
 from alembic import command
 from alembic.config import Config
 from alembic.script import ScriptDirectory
+from sqlalchemy import inspect
+
+from ..schema import APPLICATION_ID, campaign, metadata
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
@@ -33,10 +36,16 @@ def is_known(revision: str) -> bool:
     return revision in {script.revision for script in ScriptDirectory.from_config(alembic_config()).walk_revisions()}
 
 
-def upgrade(connection: Connection, revision: str = "head") -> None:
-    """Run the missing migrations inside the connection's transaction."""
+def upgrade(connection: Connection) -> None:
+    """Create the tables of an empty store, or run the missing migrations; inside the connection's transaction."""
     with _ALEMBIC:
-        command.upgrade(alembic_config(connection), revision)
+        if inspect(connection).has_table(campaign.name):
+            command.upgrade(alembic_config(connection), "head")
+            return
+        command.stamp(alembic_config(connection), "head")
+        metadata.create_all(connection)
+        if connection.dialect.name == "sqlite":
+            connection.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
 
 
 def downgrade(connection: Connection, revision: str) -> None:

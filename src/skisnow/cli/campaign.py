@@ -1,18 +1,67 @@
-"""``skisnow analyse``: a campaign to snow parameters and, with ``--out``, to a report."""
+"""``skisnow check`` and ``analyse``: problems of a campaign; its snow parameters and, with ``--out``, a report."""
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from .ending import prepare_output
 from .options import MOST_RESAMPLES, add_language, number, seed_number, whole_number
+from .output import prepare_output
+from .progress import Progress
+
+if TYPE_CHECKING:
+    from ..campaign import Problem
 
 
-def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add ``skisnow check`` to the program."""
+    parser = commands.add_parser("check", help="list every problem of a campaign")
+    parser.add_argument("campaign", type=Path, help="folder of the campaign, or a workbook (.xlsx)")
+    parser.add_argument("--json", action="store_true", help="print the problems as JSON")
+    parser.set_defaults(run=check)
+
+
+def check(options: argparse.Namespace) -> int:
+    """Print the problems; 1 if any is an error."""
+    problems, notes = _problems(options.campaign)
+    errors, warnings, flags = (_count(problems, severity) for severity in ("error", "warning", "mark"))
+    if options.json:
+        entries = [problem.as_dict() for problem in problems]
+        print(json.dumps({"errors": errors, "warnings": warnings, "problems": entries}, ensure_ascii=False))
+    else:
+        from ..campaign.problems import lines_of
+
+        for line in lines_of(problems):
+            print(line)
+        for note in notes:
+            print(f"note: {note}")
+        warnings = _count([problem for problem in problems if problem.needs_action], "warning")
+        print(f"errors: {errors}, warnings: {warnings}, flags: {flags}")
+    return 1 if errors else 0
+
+
+def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
+    from .._support.errors import FieldDataError
+    from ..campaign import Problem, read_campaign
+    from ..estimation import campaign_notes, quality_flags
+
+    with Progress() as progress:
+        try:
+            campaign = read_campaign(folder, progress=progress)
+        except FieldDataError as error:
+            return [problem for problem in error.problems if isinstance(problem, Problem)], ()
+        return [*campaign.problems, *quality_flags(campaign)], campaign_notes(campaign)
+
+
+def _count(problems: list[Problem], severity: str) -> int:
+    return sum(problem.severity == severity for problem in problems)
+
+
+def add_analyse(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add ``skisnow analyse`` to the program."""
     parser = commands.add_parser("analyse", help="estimate snow hardness and failure shear stress of a campaign")
     parser.add_argument("campaign", type=Path, help="folder of the campaign, or a workbook (.xlsx)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write results.json, report, figures and tables here")
@@ -39,16 +88,15 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="difference of two sites, tools, observers or days that the campaign is to detect, for the number of "
         "tests that this takes (default: 20)",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=analyse)
 
 
-def run(options: argparse.Namespace) -> int:
+def analyse(options: argparse.Namespace) -> int:
     """Analyse, write the results, print the summary."""
+    from .. import estimation
     from .._support.environment import paused_collector
     from ..campaign import read_campaign
-    from ..estimation import analyse
     from ..estimation.results import results_json
-    from .progress import Progress
 
     chosen: dict[str, Any] = {}
     if options.seed is not None:
@@ -59,7 +107,7 @@ def run(options: argparse.Namespace) -> int:
         campaign = read_campaign(options.campaign, progress=progress)
         if options.out is not None:
             prepare_output(options.out)
-        analysis = analyse(
+        analysis = estimation.analyse(
             campaign,
             geometry=options.geometry,
             difference=options.difference / 100.0,
