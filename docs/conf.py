@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 sys.path.insert(0, str(Path(__file__).parent))
-from key_tables import write_tables
+from key_tables import write_schemas, write_tables
 
 _PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -41,6 +41,7 @@ highlight_language = "text"  # what is no program is not coloured as one
 html_theme = "furo"
 html_title = f"skisnow {release}"
 html_static_path = ["_static"]
+html_extra_path = ["_generated/extra"]
 html_css_files = ["skisnow.css"]
 html_js_files = ["skisnow.js"]
 html_copy_source = False
@@ -92,8 +93,9 @@ def _levels(app: Sphinx, page: str, template: str, context: dict[str, Any], doct
 
 
 def setup(app: Sphinx) -> None:
-    """Write the tables of keys; register the renderer of equations, the reader of bars, and the levels of captions."""
+    """Write tables of keys and schemas; register the renderer of equations, the reader of bars, levels of captions."""
     write_tables()
+    write_schemas()
     app.connect("autodoc-process-docstring", _bars)
     app.connect("html-page-context", _levels, priority=900)  # behind the theme's own
     app.add_html_math_renderer("mathml", (_visit_inline, None), (_visit_block, None))

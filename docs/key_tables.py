@@ -9,8 +9,9 @@ from skisnow.campaign.reading.table_forms import PENETRATION, SHEAR
 from skisnow.campaign.smet import WeatherSettings
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.carving.question import CARVE_KEYS
+from skisnow.cli.schema import NAMES, json_schema
 from skisnow.parameters import own_quantities
-from skisnow.parameters.json_schema import page_table
+from skisnow.parameters.json_schema import page_table, schema_text
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 
@@ -39,5 +40,13 @@ def write_tables(folder: Path = FOLDER) -> None:
         (folder / f"{name}.md").write_text(table, encoding="utf-8")
 
 
+def write_schemas(folder: Path = FOLDER / "extra" / "schemas") -> None:
+    """Write each JSON Schema as a file beside the pages."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in NAMES:
+        (folder / f"{name}.schema.json").write_text(schema_text(json_schema(name)), encoding="utf-8")
+
+
 if __name__ == "__main__":
     write_tables()
+    write_schemas()

@@ -14,8 +14,9 @@ import pytest
 import skisnow
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
+from skisnow.cli.schema import json_schema
 
-SCHEMA = json.loads((Path(skisnow.__file__).parent / "carving/schemas/carve.schema.json").read_text("utf-8"))
+SCHEMA = json_schema("carve")
 CONTRACT = [
     "outcome",
     "holds",

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +10,10 @@ import jsonschema
 import numpy as np
 import pytest
 
-import skisnow.track
 from skisnow.cli import main
+from skisnow.cli.schema import json_schema
 
-SCHEMA = json.loads((files(skisnow.track) / "schemas" / "compare.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json_schema("compare")
 NUMBERS = {"max_m", "mean_m", "rms_m", "max_share", "mean_share", "rms_share"}
 NORTH = ("--fall-line-azimuth-deg", "0")
 Printed = pytest.CaptureFixture[str]

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import sys
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +13,13 @@ import pytest
 
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
+from skisnow.cli.schema import json_schema
 from skisnow.report.figures.drawing import FORMS
 
 from ..identification import straight_tracks
 from ..identification.test_photo_cell_times import AREA, CHANGES, MU, STATION, truth
 
-SCHEMA = json.loads(
-    (files("skisnow.identification") / "schemas" / "identification.schema.json").read_text(encoding="utf-8")
-)
+SCHEMA = json_schema("identification")
 SETS = [word for key, value in CHANGES.items() for word in ("--set", f"{key}={value}")]
 Printed = pytest.CaptureFixture[str]
 

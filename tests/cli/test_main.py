@@ -10,10 +10,10 @@ from typing import IO, Any
 import jsonschema
 import pytest
 
-import skisnow
 from skisnow.cli import main
+from skisnow.cli.schema import json_schema
 
-CHECK_SCHEMA = json.loads((Path(skisnow.__file__).parent / "campaign/schemas/check.schema.json").read_text("utf-8"))
+CHECK_SCHEMA = json_schema("check")
 
 
 @pytest.fixture

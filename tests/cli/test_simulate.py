@@ -7,7 +7,6 @@ import signal
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -19,11 +18,12 @@ from skisnow import Run, Scenario
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
 from skisnow.cli.progress import Progress
+from skisnow.cli.schema import json_schema
 from skisnow.simulation.run_tables import write_track
 
 from ..simulation.straight_run import STRAIGHT, straight_run
 
-SCHEMA = json.loads((files("skisnow.simulation") / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json_schema("summary")
 ASKED = ["carved-46m", *(word for key, value in STRAIGHT.items() for word in ("--set", f"{key}={value}"))]
 LENGTH = 10.0 + 2.0 * 9.81 * (0.17364817766693033 - 0.05 * 0.984807753012208)  # 2 s from 5 m/s down 10°, μ = 0.05
 Printed = pytest.CaptureFixture[str]

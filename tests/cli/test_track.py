@@ -1,21 +1,20 @@
 """`skisnow track` as a user meets it."""
 
 import json
-from importlib.resources import files
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
 
-import skisnow.track
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
+from skisnow.cli.schema import json_schema
 from skisnow.report.figures.drawing import FORMS
 
 from ..track.paths import NOISE, circle
 
-SCHEMA = json.loads((files(skisnow.track) / "schemas" / "track.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json_schema("track")
 Printed = pytest.CaptureFixture[str]
 
 

@@ -1,14 +1,13 @@
 """The page on carved skis names every input with its default and every key of the JSON."""
 
-import json
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import skisnow
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
+from skisnow.cli.schema import json_schema
 from skisnow.studies import read_study
 from skisnow.studies.subjects import CARVE_RESULTS
 
@@ -26,8 +25,7 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 
 def test_every_key_of_the_json_and_every_column_is_told() -> None:
-    path = Path(skisnow.__file__).parent / "carving/schemas/carve.schema.json"
-    keys = {*keys_of(json.loads(path.read_text(encoding="utf-8"))), *CARVE_RESULTS}
+    keys = {*keys_of(json_schema("carve")), *CARVE_RESULTS}
     assert {key for key in keys if f"`{key}`" not in PAGE and f"`{{{key!r}: " not in PAGE} <= {"skis"}
 
 

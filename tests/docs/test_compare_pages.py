@@ -1,10 +1,9 @@
 """The pages name everything that skisnow compare prints."""
 
-import json
 from pathlib import Path
 from typing import Any
 
-import skisnow.track
+from skisnow.cli.schema import json_schema
 from skisnow.comparison.alignment import OFFSETS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -17,9 +16,8 @@ def keys_of(schema: Any) -> set[str]:
 
 
 def test_every_key_and_every_offset_is_told() -> None:
-    schema = Path(skisnow.track.__path__[0]) / "schemas" / "compare.schema.json"
     commands = (DOCS / "files" / "command-line.md").read_text(encoding="utf-8")
-    keys = keys_of(json.loads(schema.read_text(encoding="utf-8"))) - {"schema_version"}
+    keys = keys_of(json_schema("compare")) - {"schema_version"}
     assert {key for key in keys if f"`{key}`" not in commands} == set()
     page = (DOCS / "methods" / "track-distances.md").read_text(encoding="utf-8")
     assert all(f"*{offset}*" in page for offset in OFFSETS)

@@ -1,6 +1,5 @@
 """The pages of the contract name everything that the program has: they cannot drift apart unseen."""
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from skisnow.campaign.problems import ALWAYS_EXCLUDE, ERROR_CODES, QUALITY_FLAGS
 from skisnow.campaign.reading.campaign_file import SHAPES
 from skisnow.campaign.reading.table_forms import CORRECTIONS, TABLES
 from skisnow.cli import build_parser
+from skisnow.cli.schema import json_schema
 
 from .page_text import page_text
 
@@ -55,13 +55,13 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 
 def test_every_key_of_the_results_is_told() -> None:
-    schema = json.loads((PACKAGE / "estimation/schemas/results.schema.json").read_text(encoding="utf-8"))
+    schema = json_schema("results")
     missing = {key for key in keys_of(schema) if key not in RESULTS + BESIDE}
     assert not missing
 
 
 def test_every_key_of_campaign_toml_is_told() -> None:
-    schema = json.loads((PACKAGE / "campaign/schemas/campaign.schema.json").read_text(encoding="utf-8"))
+    schema = json_schema("campaign")
     missing = {key for key in keys_of(schema) if key not in CAMPAIGN + BESIDE}
     assert not missing
 

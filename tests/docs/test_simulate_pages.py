@@ -1,6 +1,5 @@
 """The page on scenarios names every key and every entry of the JSON; the files and studies of the pages can be read."""
 
-import json
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import Any, get_args
 
 import pytest
 
-import skisnow
+from skisnow.cli.schema import json_schema
 from skisnow.scenario import load_scenario, scenario_file
 from skisnow.simulation.run import Outcome
 from skisnow.simulation.run_tables import COLUMNS
@@ -31,8 +30,7 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 
 def test_every_key_of_the_summary_and_every_column_is_told() -> None:
-    path = Path(skisnow.__file__).parent / "simulation/schemas/summary.schema.json"
-    schema = json.loads(path.read_text(encoding="utf-8"))
+    schema = json_schema("summary")
     del schema["properties"]["scenario"]["properties"]  # the table's
     keys = {key.replace("_start_J", "_J") for key in keys_of(schema)}  # the page states how the start is named
     assert {key for key in (*keys, *COLUMNS) if f"`{key}`" not in RUNS} == set()

@@ -1,14 +1,12 @@
 """The pages on tracks name every key of track.json, and every format."""
 
-import json
 from collections.abc import Iterator
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, get_args
 
 import pytest
 
-import skisnow.track
+from skisnow.cli.schema import json_schema
 from skisnow.track.read import TrackFormat
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,7 +24,7 @@ def keys_of(schema: Any) -> Iterator[str]:
 
 
 def test_every_key_is_told() -> None:
-    schema = json.loads((files(skisnow.track) / "schemas" / "track.schema.json").read_text(encoding="utf-8"))
+    schema = json_schema("track")
     assert [key for key in keys_of(schema) if f"`{key}`" not in PAGE] == []
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import skisnow
 from skisnow.campaign import Campaign, read_campaign, write_reference
+from skisnow.cli.schema import json_schema
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.results import results_json
@@ -18,7 +19,7 @@ from tests.coded import raises
 
 from .conftest import MakeCampaign
 
-SCHEMA = json.loads((Path(skisnow.__file__).parent / "estimation/schemas/results.schema.json").read_text("utf-8"))
+SCHEMA = json_schema("results")
 Json = dict[str, Any]
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Literal, cast
@@ -18,6 +16,7 @@ from skisnow._support.units import MM
 from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
+from skisnow.cli.schema import json_schema
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
 from skisnow.report.campaign.summary import summary
 from skisnow.snow.measured_range import PENETROMETER_RELATIONS
@@ -198,7 +197,7 @@ def test_mean_force_is_over_the_stated_depth_and_pairs_by_spot_else_by_site(make
     contents = {f"r{number}.pnt": plain_snow(number, seed=number) for number in range(1, 7)}
     analysis = skisnow.analyse(pen(make_campaign, rows, contents), n_resamples=100)
     results = analysis.results
-    schema = json.loads(files("skisnow").joinpath("estimation/schemas/results.schema.json").read_text(encoding="utf-8"))
+    schema = json_schema("results")
     jsonschema.validate(results, schema)
     section = results["snow_micro_pen"]
     assert (section["from_depth_mm"], section["to_depth_mm"]) == (5.0, 30.0)

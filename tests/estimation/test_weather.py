@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-from importlib.resources import files
 from pathlib import Path
 
 import jsonschema
@@ -13,6 +11,7 @@ import pytest
 
 import skisnow
 from skisnow._support.errors import FieldDataError
+from skisnow.cli.schema import json_schema
 from skisnow.interop.snowex import site_pit
 
 from .conftest import MakeCampaign
@@ -48,7 +47,7 @@ def test_conditions_at_the_time_of_each_experiment(make_campaign: MakeCampaign) 
     """10:00 an hour ahead of UTC is 9:00 UTC, as p2 says by itself: -8 °C, 60 %. 11:00 is the last reading."""
     analysis = skisnow.analyse(campaign(make_campaign), n_resamples=100)
     section = analysis.results["weather"]
-    schema = json.loads(files("skisnow").joinpath("estimation/schemas/results.schema.json").read_text(encoding="utf-8"))
+    schema = json_schema("results")
     jsonschema.validate(analysis.results, schema)
     rows = {row["experiment"]: row for row in section["experiments"]}
     air = {name: row["air_temperature_C"] for name, row in rows.items()}

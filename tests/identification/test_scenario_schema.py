@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
-from importlib.resources import files
 from typing import Any
 
 import jsonschema
 import pytest
 
 from skisnow._support.errors import ParameterError
+from skisnow.cli.schema import json_schema
 from skisnow.scenario import scenario_text
 from skisnow.scenario.identify_section import GIVEN, SITE, given_parameters
 
-SCHEMA: dict[str, Any] = json.loads((files("skisnow.scenario") / "schemas" / "scenario.schema.json").read_text("utf-8"))
+SCHEMA: dict[str, Any] = json_schema("scenario")
 SECTION = """
 [identify]
 clock = "free"

@@ -20,6 +20,7 @@ from skisnow import Analysis, Run, Scenario
 from skisnow._support.errors import ParameterError
 from skisnow.campaign.reference import reference_campaign
 from skisnow.cli import main
+from skisnow.cli.schema import json_schema
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.parameters import values_of
 from skisnow.pipeline import turn as pipeline_turn
@@ -404,19 +405,16 @@ def test_the_command_s_json_is_that_of_the_report(asked: list[Scenario], tmp_pat
 
 def test_the_json_keeps_to_its_schema(analysis: Analysis, asked: list[Scenario]) -> None:
     assert asked == []
-    schemas = {
-        name: json.loads((PACKAGE / package / "schemas" / f"{name}.schema.json").read_text(encoding="utf-8"))
-        for package, name in (("report", "turn"), ("simulation", "summary"))
-    }
-    summary = schemas["summary"]
+    summary = json_schema("summary")
     known = Registry().with_resource(summary["$id"], Resource.from_contents(summary))
     found = turn_dict(skisnow.turn(analysis, "C", runs=3, workers=1))
-    checked = Draft202012Validator(schemas["turn"], registry=known)
+    schema = json_schema("turn")
+    checked = Draft202012Validator(schema, registry=known)
     checked.validate(found)
     checked.validate(turn_dict(skisnow.turn(with_measured(analysis, **MEASURED_HERE), "C", runs=3, workers=1)))
     found["runs"][0]["summary"]["outcome"] = "well"
     assert not checked.is_valid(found)
-    assert set(schemas["turn"]["properties"]) == set(found)
+    assert set(schema["properties"]) == set(found)
 
 
 def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:

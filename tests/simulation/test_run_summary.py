@@ -4,13 +4,13 @@ import json
 import math
 from dataclasses import replace
 from hashlib import sha256
-from importlib.resources import files
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
 
+from skisnow.cli.schema import json_schema
 from skisnow.scenario import scenario_file
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_summary import run_warnings, summary_dict
@@ -18,7 +18,7 @@ from skisnow.simulation.simulated_run import REMEDIES
 
 from .straight_run import STRAIGHT, straight_run
 
-SCHEMA = json.loads((files("skisnow.simulation") / "schemas" / "summary.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json_schema("summary")
 ASKED = scenario_file("carved-46m", changes=STRAIGHT)
 CONTRACT = {
     *("outcome", "remedy", "run_length_m", "simulated_s", "wall_s", "steps", "rejected_steps", "energies"),

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +9,8 @@ import jsonschema
 import numpy as np
 import pytest
 
-import skisnow.track
 from skisnow._support.errors import ParameterError
+from skisnow.cli.schema import json_schema
 from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, half_wavelength, summary_dict, track_summary
 from skisnow.track.track import Track
@@ -19,7 +18,7 @@ from tests.coded import raises
 
 from .paths import NOISE, circle, track
 
-SCHEMA = json.loads((files(skisnow.track) / "schemas" / "track.schema.json").read_text(encoding="utf-8"))
+SCHEMA = json_schema("track")
 DAY = Path(__file__).resolve().parents[3] / "shared" / "data" / "ski-track" / "morin_heights_2022-12-27.csv"
 DEVICE_DISTANCE, DEVICE_TOP_SPEED = 13731.42, 15.546
 

@@ -121,7 +121,7 @@ SCHEMA_VERSION: Final = 1
 
 
 def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
-    """The JSON of `skisnow carve` for one ski; its JSON Schema is schemas/carve.schema.json."""
+    """The JSON of `skisnow carve` for one ski; its JSON Schema is that of ``skisnow schema carve``."""
     return {
         "schema_version": SCHEMA_VERSION,
         **equilibrium_dict(answer.equilibrium),

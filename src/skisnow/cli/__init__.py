@@ -33,6 +33,7 @@ def build_parser() -> argparse.ArgumentParser:
         import_file,
         race,
         replay,
+        schema,
         serve,
         shell,
         simulate,
@@ -50,7 +51,22 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
-    modules = (carve, design, simulate, replay, turn, study, race, track, compare, identify, export, convert, serve)
+    modules = (
+        carve,
+        design,
+        simulate,
+        replay,
+        turn,
+        study,
+        race,
+        track,
+        compare,
+        identify,
+        export,
+        convert,
+        schema,
+        serve,
+    )
     for add_command in (
         beginning.add_new, import_file.add_parser, campaign.add_check, campaign.add_analyse, store.add_parser,
         beginning.add_reference, beginning.add_samples, *(module.add_parser for module in modules),

@@ -202,7 +202,7 @@ class Identification(Shown):
 def identification_dict(identification: Identification, *, files: Iterable[Path] = ()) -> dict[str, Any]:
     """The contents of identification.json, and of ``skisnow identify --json``; nothing is rounded, nothing is NaN.
 
-    Its JSON Schema is schemas/identification.schema.json.
+    Its JSON Schema is that of ``skisnow schema identification``.
 
     Parameters
     ----------

@@ -9,8 +9,6 @@ from ..parameters.json_schema import DRAFT, Schema, output_schema, table_schema
 from .identify_section import CLOCKS, Site, Sought
 from .keys import SCENARIO_KEYS, SECTIONS
 
-FILE: Final = "scenario/schemas/scenario.schema.json"
-
 
 def _one_of(*names: str) -> list[Schema]:
     return [{"required": [name]} for name in names]
@@ -39,7 +37,7 @@ _TOGETHER: Final[dict[str, Schema]] = {
 
 
 def scenario_schema() -> Schema:
-    """The schema that is in the package as `FILE`."""
+    """The schema of a parsed scenario file."""
     sections = {name: {**table_schema(_keys(name)), **_TOGETHER.get(name, {})} for name in SECTIONS}
     return {
         "$schema": DRAFT,

@@ -41,7 +41,7 @@ def summary_dict(
     warnings: Sequence[str] = (),
     verification: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """The contents of summary.json; its JSON Schema is schemas/summary.schema.json.
+    """The contents of summary.json; its JSON Schema is that of ``skisnow schema summary``.
 
     Parameters
     ----------

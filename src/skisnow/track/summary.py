@@ -174,7 +174,7 @@ def _remarks(track: Track, motion: TrackMotion, distances: dict[str, float]) -> 
 
 
 def summary_dict(summary: TrackSummary) -> Json:
-    """The JSON of `skisnow track`; its JSON Schema is schemas/track.schema.json. Null: unknown or infinite."""
+    """The JSON of `skisnow track`; its JSON Schema is that of ``skisnow schema track``. Null: unknown or infinite."""
     smoothed = summary.motion.smoothed
     horizontal = summary.horizontal_distance
     from_places = summary.motion.arc_length_source == "places"

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import tomllib
-from importlib.resources import files
 from typing import Any
 
 import jsonschema
@@ -12,6 +10,7 @@ import pytest
 
 from skisnow.campaign.problems import QUALITY_FLAGS, Problem
 from skisnow.campaign.reading.campaign_file import SHAPES, CampaignFile, read_campaign_file
+from skisnow.cli.schema import json_schema
 
 SKI = '[[tool]]\nname = "a"\nshape = "ski"\nlength_mm = 200\nwidth_mm = 62\n'
 PLATE = '[[plate]]\nname = "b"\nlength_mm = 200\n'
@@ -24,7 +23,7 @@ def read(text: str) -> tuple[CampaignFile | None, list[Problem]]:
 
 @pytest.fixture(scope="module")
 def schema() -> Any:
-    return json.loads((files("skisnow.campaign") / "schemas" / "campaign.schema.json").read_text(encoding="utf-8"))
+    return json_schema("campaign")
 
 
 # text, code, column, value; and whether the schema can tell

@@ -25,6 +25,7 @@ _WRITING: Final = frozenset("wxa+")
 NO_READERS: Final[Mapping[str, str]] = {
     "compiled.sources:fingerprint": "sources of the core beside the package",
     "scenario.reading:scenario_text": "package data",
+    "cli.schema:json_schema": "package data",
     "samples.folder:run_samples": "package data",
     "samples.folder:_contents": "sample files that the program has just made",
     "cli.beginning:write_samples": "sample files that the program has just made",

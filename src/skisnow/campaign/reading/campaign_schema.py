@@ -11,12 +11,11 @@ from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
 from .campaign_file import CAMPAIGN_KEYS, PLATE_LENGTH, SHAPES, Shape
 
-FILE: Final = "campaign/schemas/campaign.schema.json"
 _NAME: Final[Schema] = {"type": "string", "pattern": "\\S", "description": "Unique in its list."}
 
 
 def campaign_schema() -> Schema:
-    """JSON Schema of campaign.toml; the package contains it as `FILE`."""
+    """JSON Schema of a parsed campaign.toml."""
     return {
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:campaign:1",

@@ -185,7 +185,7 @@ SCHEMA_VERSION: Final = 1
 
 
 def turn_dict(chain: TurnChain) -> dict[str, Any]:
-    """The JSON of `skisnow turn`, and the contents of turn.json; its JSON Schema is schemas/turn.schema.json."""
+    """The JSON of `skisnow turn`, and the contents of turn.json; its JSON Schema is that of ``skisnow schema turn``."""
     across, along = band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
     return {
         "schema_version": SCHEMA_VERSION,
