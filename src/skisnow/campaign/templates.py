@@ -235,14 +235,12 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     folder = Path(folder)
     there = _there(folder)
     if CAMPAIGN_FILE in there or (there and xlsx):
-        raise OutputError(
-            Message(
-                "{folder} holds a campaign already ({there}); nothing was written. Choose another folder.",
-                folder=folder,
-                there=list(there),
-            ),
-            code="holds_campaign_already",
+        message = Message(
+            "{folder} holds a campaign already ({there}); nothing was written. Choose another folder.",
+            folder=folder,
+            there=list(there),
         )
+        raise OutputError(message, code="holds_campaign_already")
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
     contents = _workbook(name) if xlsx else _files(name, tables=not there)
     prepare_folder(folder)

@@ -91,14 +91,12 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     azimuth = options.fall_line_azimuth_deg
     if track.axes == "east_north_up":
         if azimuth is None:
-            raise ParameterError(
-                Message(
-                    "{track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
-                    "direction the slope falls",
-                    track=options.track,
-                ),
-                code="missing",
+            message = Message(
+                "{track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
+                "direction the slope falls",
+                track=options.track,
             )
+            raise ParameterError(message, code="missing")
         angle = shown.tilt if shown.profile is None else None
         track = in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=angle, missing_height="on_slope")
     elif azimuth is not None:

@@ -182,12 +182,10 @@ def _group_place(word: str) -> StorePlace:
 
     place = store_place(word)
     if isinstance(place, Path) and not place.parent.is_dir():
-        raise StoreError(
-            Message(
-                "{parent} is not there; is the disk or stick with the group's store plugged in?", parent=place.parent
-            ),
-            code="wrong_kind",
+        message = Message(
+            "{parent} is not there; is the disk or stick with the group's store plugged in?", parent=place.parent
         )
+        raise StoreError(message, code="wrong_kind")
     return place
 
 

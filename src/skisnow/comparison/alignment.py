@@ -143,15 +143,13 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     solutions = [_iterate(path, places, motion, start=start, heading=heading) for motion in refined]
     answers = [motion for motion in solutions if math.isfinite(motion.rms)]
     if not answers:
-        raise FitError(
-            Message(
-                "start and heading cannot be fitted: less than {share:g} % of the measured track then "
-                "has the simulated one beside it, or the steps do not settle. Look at both tracks "
-                "without a fit",
-                share=100 * LEAST_SHARE,
-            ),
-            code="no_alignment",
+        message = Message(
+            "start and heading cannot be fitted: less than {share:g} % of the measured track then "
+            "has the simulated one beside it, or the steps do not settle. Look at both tracks "
+            "without a fit",
+            share=100 * LEAST_SHARE,
         )
+        raise FitError(message, code="no_alignment")
     answers = [motion for motion in answers if _same_direction(path, places, motion)] or answers
     best = answers[0]
     for motion in answers[1:]:

@@ -112,14 +112,12 @@ def compare_tracks(
             Message("places are known to 0 m or more, not to {known_to!r}", known_to=known_to), code="out_of_range"
         )
     if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
-        raise ParameterError(
-            Message(
-                "slope_angle is {slope_angle!r} rad. Allowed: from 0 to {steepest:.4g}.",
-                slope_angle=slope_angle,
-                steepest=STEEPEST,
-            ),
-            code="out_of_range",
+        message = Message(
+            "slope_angle is {slope_angle!r} rad. Allowed: from 0 to {steepest:.4g}.",
+            slope_angle=slope_angle,
+            steepest=STEEPEST,
         )
+        raise ParameterError(message, code="out_of_range")
     if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:
         simulated = simulated.at_origin(measured.origin)
     placed, together = set(fit) >= _PLACED, _share_frame(simulated, measured)
@@ -236,17 +234,15 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
     places = measured.at_arc_length(np.linspace(0.0, measured.length, 1001))
     nearest = float(Path(simulated.place).nearest(places).distance.min())
     if nearest > FARTHEST:
-        raise ParameterError(
-            Message(
-                "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
-                "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading",
-                first=names[0],
-                second=names[1],
-                nearest=nearest / 1000.0,
-                farthest=FARTHEST / 1000.0,
-            ),
-            code="nothing_common",
+        message = Message(
+            "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
+            "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading",
+            first=names[0],
+            second=names[1],
+            nearest=nearest / 1000.0,
+            farthest=FARTHEST / 1000.0,
         )
+        raise ParameterError(message, code="nothing_common")
 
 
 def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:

@@ -264,14 +264,12 @@ def track_polyline(track: Track, *, dimensions: int) -> Polyline:
     points = compared_points(track, dimensions=dimensions)
     line = polyline(track.place[points][:, :dimensions], track.time[points])
     if not line.length > 0.0:
-        raise ParameterError(
-            Message(
-                "{name}: {usable} of its {count} points can be used, all in one place. A comparison needs "
-                "two points in different places; give a longer track",
-                name=track.name,
-                usable=int(points.sum()),
-                count=len(track),
-            ),
-            code="one_place",
+        message = Message(
+            "{name}: {usable} of its {count} points can be used, all in one place. A comparison needs "
+            "two points in different places; give a longer track",
+            name=track.name,
+            usable=int(points.sum()),
+            count=len(track),
         )
+        raise ParameterError(message, code="one_place")
     return line

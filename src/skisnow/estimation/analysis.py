@@ -271,14 +271,12 @@ def analyse(
     * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
     """
     if n_resamples < FEWEST_RESAMPLES:
-        raise ParameterError(
-            Message(
-                "n_resamples is {n_resamples!r}; a 95 % interval needs {fewest_resamples} or more",
-                n_resamples=n_resamples,
-                fewest_resamples=FEWEST_RESAMPLES,
-            ),
-            code="out_of_range",
+        message = Message(
+            "n_resamples is {n_resamples!r}; a 95 % interval needs {fewest_resamples} or more",
+            n_resamples=n_resamples,
+            fewest_resamples=FEWEST_RESAMPLES,
         )
+        raise ParameterError(message, code="out_of_range")
     if not 0.0 < difference < np.inf:
         raise ParameterError(
             Message("difference is {difference!r}; a number above 0 is needed, 0.2 for 20 %", difference=difference),

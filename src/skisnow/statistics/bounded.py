@@ -193,14 +193,12 @@ def _root_weights(weights: npt.ArrayLike | None, n: int) -> FloatArray:
         return np.ones(n)
     w = np.asarray(weights, dtype=float)
     if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
-        raise ParameterError(
-            Message(
-                "weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response",
-                shape=str(w.shape),
-                n=n,
-            ),
-            code="wrong_shape",
+        message = Message(
+            "weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response",
+            shape=str(w.shape),
+            n=n,
         )
+        raise ParameterError(message, code="wrong_shape")
     return np.sqrt(w)
 
 
@@ -278,14 +276,12 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     """
     G, m = np.asarray(gram, dtype=float), np.asarray(moment, dtype=float)
     if m.ndim != 2 or G.shape != (*m.shape, m.shape[1]):
-        raise ParameterError(
-            Message(
-                "gram has shape {shape}, moment {shape_2}; (B, p, p) and (B, p) are needed",
-                shape=str(G.shape),
-                shape_2=str(m.shape),
-            ),
-            code="wrong_shape",
+        message = Message(
+            "gram has shape {shape}, moment {shape_2}; (B, p, p) and (B, p) are needed",
+            shape=str(G.shape),
+            shape_2=str(m.shape),
         )
+        raise ParameterError(message, code="wrong_shape")
     _require_few(m.shape[1])
     known = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))
     result = np.full(m.shape, np.nan)

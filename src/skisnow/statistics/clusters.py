@@ -106,14 +106,12 @@ def cluster_intervals(
     X = as_predictors(predictors, len(y))
     labels = np.asarray(clusters)
     if labels.shape != y.shape:
-        raise ParameterError(
-            Message(
-                "clusters have shape {shape}; one of them is needed for each of {n_y} responses",
-                shape=str(labels.shape),
-                n_y=len(y),
-            ),
-            code="wrong_shape",
+        message = Message(
+            "clusters have shape {shape}; one of them is needed for each of {n_y} responses",
+            shape=str(labels.shape),
+            n_y=len(y),
         )
+        raise ParameterError(message, code="wrong_shape")
     names, cluster = np.unique(labels, return_inverse=True)
     columns = standardised(X, intercept=intercept)
     warn_if_ill_conditioned(columns.scaled)

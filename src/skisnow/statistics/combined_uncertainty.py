@@ -100,13 +100,11 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
 def require_confidence(confidence: float) -> None:
     """Raise `ParameterError` unless the confidence lies between 0 and 1."""
     if not 0.0 < confidence < 1.0:
-        raise ParameterError(
-            Message(
-                "confidence is {confidence!r}; it must lie between 0 and 1, 0.95 for a 95 % interval",
-                confidence=confidence,
-            ),
-            code="out_of_range",
+        message = Message(
+            "confidence is {confidence!r}; it must lie between 0 and 1, 0.95 for a 95 % interval",
+            confidence=confidence,
         )
+        raise ParameterError(message, code="out_of_range")
 
 
 class RandomEffectsMean(NamedTuple):

@@ -69,24 +69,20 @@ def nested_f_test(
     """
     df1, df2 = n_parameters_full - n_parameters_reduced, n - n_parameters_full
     if df1 < 0:
-        raise ParameterError(
-            Message(
-                "the reduced model has {n_parameters_reduced} parameters, the full one "
-                "{n_parameters_full}; the reduced model must be the smaller one: are the two swapped?",
-                n_parameters_reduced=n_parameters_reduced,
-                n_parameters_full=n_parameters_full,
-            ),
-            code="contradiction",
+        message = Message(
+            "the reduced model has {n_parameters_reduced} parameters, the full one "
+            "{n_parameters_full}; the reduced model must be the smaller one: are the two swapped?",
+            n_parameters_reduced=n_parameters_reduced,
+            n_parameters_full=n_parameters_full,
         )
+        raise ParameterError(message, code="contradiction")
     if sse_full < 0 or sse_reduced < 0:
-        raise ParameterError(
-            Message(
-                "sums of squares are {sse_full!r} and {sse_reduced!r}; they cannot be below 0",
-                sse_full=sse_full,
-                sse_reduced=sse_reduced,
-            ),
-            code="out_of_range",
+        message = Message(
+            "sums of squares are {sse_full!r} and {sse_reduced!r}; they cannot be below 0",
+            sse_full=sse_full,
+            sse_reduced=sse_reduced,
         )
+        raise ParameterError(message, code="out_of_range")
     if df1 == 0 or df2 <= 0:
         return NestedTest(float("nan"), df1, df2, float("nan"))
     F = f_ratio(max(sse_reduced - sse_full, 0.0), df1, sse_full, df2)

@@ -90,12 +90,10 @@ def as_predictors(predictors: npt.ArrayLike, n: int) -> FloatArray:
     if X.ndim == 1:
         X = X[:, None]
     if X.ndim != 2 or len(X) != n:
-        raise ParameterError(
-            Message(
-                "predictors have shape {shape}; {n} rows are needed, one for each response", shape=str(X.shape), n=n
-            ),
-            code="wrong_shape",
+        message = Message(
+            "predictors have shape {shape}; {n} rows are needed, one for each response", shape=str(X.shape), n=n
         )
+        raise ParameterError(message, code="wrong_shape")
     require_finite("predictors", X)
     return X
 
@@ -105,15 +103,13 @@ def require_finite(name: str, values: FloatArray) -> None:
     bad = ~np.isfinite(values)
     if np.any(bad):
         place = tuple(int(i) for i in np.argwhere(bad)[0])
-        raise ParameterError(
-            Message(
-                "{name}{place} is {value}; only finite numbers can be fitted: leave such rows out",
-                name=name,
-                place=place,
-                value=values[place],
-            ),
-            code="not_a_number",
+        message = Message(
+            "{name}{place} is {value}; only finite numbers can be fitted: leave such rows out",
+            name=name,
+            place=place,
+            value=values[place],
         )
+        raise ParameterError(message, code="not_a_number")
 
 
 def centre(values: FloatArray) -> tuple[FloatArray, FloatArray]:

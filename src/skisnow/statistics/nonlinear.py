@@ -141,12 +141,10 @@ def nonlinear_fit(
     n, p = len(observed), len(b)
     labels = tuple(names) if names is not None else tuple(f"b{j + 1}" for j in range(p))
     if len(labels) != p:
-        raise ParameterError(
-            Message(
-                "{n_labels} names for {p} parameters; one is needed for each starting value", n_labels=len(labels), p=p
-            ),
-            code="wrong_shape",
+        message = Message(
+            "{n_labels} names for {p} parameters; one is needed for each starting value", n_labels=len(labels), p=p
         )
+        raise ParameterError(message, code="wrong_shape")
     if n < p:
         raise FitError(
             Message("{n} observations cannot determine {p} parameters; at least {p} are needed", n=n, p=p),
@@ -158,14 +156,12 @@ def nonlinear_fit(
         with np.errstate(all="ignore"):  # trial steps may leave the model's domain; they are judged by their residuals
             found = np.asarray(model(x, *parameters), dtype=float)
         if found.shape != (n,):
-            raise ParameterError(
-                Message(
-                    "the model returned shape {shape}; one value is needed for each of {n} responses",
-                    shape=str(found.shape),
-                    n=n,
-                ),
-                code="wrong_shape",
+            message = Message(
+                "the model returned shape {shape}; one value is needed for each of {n} responses",
+                shape=str(found.shape),
+                n=n,
             )
+            raise ParameterError(message, code="wrong_shape")
         return found
 
     require_finite("model at the start", values(b))

@@ -130,14 +130,12 @@ def _checked(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray
     if design.ndim == 1:
         design = design[:, None]
     if response.ndim != 1 or design.ndim != 2 or len(response) != len(design) or design.shape[1] == 0:
-        raise ParameterError(
-            Message(
-                "y has shape {shape}, X {shape_2}; X needs one row for each value of y",
-                shape=str(response.shape),
-                shape_2=str(design.shape),
-            ),
-            code="wrong_shape",
+        message = Message(
+            "y has shape {shape}, X {shape_2}; X needs one row for each value of y",
+            shape=str(response.shape),
+            shape_2=str(design.shape),
         )
+        raise ParameterError(message, code="wrong_shape")
     for name, values in (("y", response), ("X", design)):
         require_finite(name, np.where(np.isnan(values), 0.0, values))
     return response, design

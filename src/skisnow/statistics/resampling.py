@@ -56,15 +56,13 @@ def resampling_counts(
     ((3, 5), [5.0, 5.0, 5.0])
     """
     if n_units < 1 or n_resamples < 0 or (chunk is not None and chunk < 1):
-        raise ParameterError(
-            Message(
-                "n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed",
-                n_units=n_units,
-                n_resamples=n_resamples,
-                chunk=chunk,
-            ),
-            code="out_of_range",
+        message = Message(
+            "n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed",
+            n_units=n_units,
+            n_resamples=n_resamples,
+            chunk=chunk,
         )
+        raise ParameterError(message, code="out_of_range")
     return _drawn(n_units, n_resamples, rng, chunk or max(1, _DRAWS_AT_ONCE // n_units))
 
 

@@ -116,13 +116,11 @@ def undo_import(folder: str | Path) -> list[str]:
             Message("{folder} has no {record}; nothing was removed.", folder=folder, record=RECORD), code="no_import"
         ) from failure
     if changed:
-        raise OutputError(
-            Message(
-                "Changed since the import: {files}. Nothing was removed. Keep these files, and delete the folder.",
-                files=changed,
-            ),
-            code="changed_since",
+        message = Message(
+            "Changed since the import: {files}. Nothing was removed. Keep these files, and delete the folder.",
+            files=changed,
         )
+        raise OutputError(message, code="changed_since")
     removed = [*hashes, RECORD]
     for path in removed:
         (folder / path).unlink(missing_ok=True)

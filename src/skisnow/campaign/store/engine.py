@@ -278,13 +278,11 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
                 return  # another process was faster
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
-                raise StoreError(
-                    Message(
-                        "{path} holds rows that point nowhere; it was left as it is. Put a backup in its place.",
-                        path=path,
-                    ),
-                    code="damaged",
+                message = Message(
+                    "{path} holds rows that point nowhere; it was left as it is. Put a backup in its place.",
+                    path=path,
                 )
+                raise StoreError(message, code="damaged")
 
 
 def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:

@@ -123,16 +123,14 @@ def _records(data: bytes) -> list[list[str]]:
     try:
         return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:
-        raise StoreError(
-            Message(
-                "The {file} that came with the campaign cannot be read, so that no rows can follow: "
-                "{allowed} is wanted. `skisnow store export --as-added` gives the files without later "
-                "corrections.",
-                file=CORRECTIONS.file,
-                allowed=error.allowed,
-            ),
-            code="unreadable_corrections",
-        ) from error
+        message = Message(
+            "The {file} that came with the campaign cannot be read, so that no rows can follow: "
+            "{allowed} is wanted. `skisnow store export --as-added` gives the files without later "
+            "corrections.",
+            file=CORRECTIONS.file,
+            allowed=error.allowed,
+        )
+        raise StoreError(message, code="unreadable_corrections") from error
 
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:

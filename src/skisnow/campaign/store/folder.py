@@ -99,15 +99,13 @@ def list_files(folder: Path) -> dict[str, FileState]:
             else:
                 refused.append(path)
     if refused:
-        raise StoreError(
-            Message(
-                "{folder} holds what is neither file nor folder (links, pipes, …): {paths}; put the "
-                "files themselves in their place, or take them out.",
-                folder=folder,
-                paths=list(map(_printable, refused)),
-            ),
-            code="not_a_file",
+        message = Message(
+            "{folder} holds what is neither file nor folder (links, pipes, …): {paths}; put the "
+            "files themselves in their place, or take them out.",
+            folder=folder,
+            paths=list(map(_printable, refused)),
         )
+        raise StoreError(message, code="not_a_file")
     return files
 
 
@@ -169,14 +167,12 @@ def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
 
 def _require_safe(path: str, *, for_windows: bool) -> None:
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
-        raise StoreError(
-            Message(
-                "The file {path} cannot be imported or exported: {why}; rename it.",
-                path=_printable(path),
-                why=why,
-            ),
-            code="unsafe_name",
+        message = Message(
+            "The file {path} cannot be imported or exported: {why}; rename it.",
+            path=_printable(path),
+            why=why,
         )
+        raise StoreError(message, code="unsafe_name")
 
 
 def _printable(path: str) -> str:
@@ -233,21 +229,17 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
             stream.flush()
             os.fsync(stream.fileno())
     except FileExistsError as error:
-        raise StoreError(
-            Message(
-                "{path} and another file of the campaign have the same name on this file system; export "
-                "to one that tells upper from lower case.",
-                path=file.path,
-            ),
-            code="same_name",
-        ) from error
-    if digest.hexdigest() != file.sha256:
-        raise StoreError(
-            Message(
-                "{path} is damaged in the store and was not written; `skisnow store verify` lists all.", path=file.path
-            ),
-            code="damaged",
+        message = Message(
+            "{path} and another file of the campaign have the same name on this file system; export "
+            "to one that tells upper from lower case.",
+            path=file.path,
         )
+        raise StoreError(message, code="same_name") from error
+    if digest.hexdigest() != file.sha256:
+        message = Message(
+            "{path} is damaged in the store and was not written; `skisnow store verify` lists all.", path=file.path
+        )
+        raise StoreError(message, code="damaged")
 
 
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
@@ -260,12 +252,10 @@ def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     """
     data = b"".join(pieces)
     if hashlib.sha256(data).hexdigest() != file.sha256:
-        raise StoreError(
-            Message(
-                "{path} is damaged in the store and was not read; `skisnow store verify` lists all.", path=file.path
-            ),
-            code="damaged",
+        message = Message(
+            "{path} is damaged in the store and was not read; `skisnow store verify` lists all.", path=file.path
         )
+        raise StoreError(message, code="damaged")
     return data
 
 

@@ -245,16 +245,14 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
     row = connection.execute(query.order_by(journal_entry.c.sequence.desc())).mappings().first()
     if row is not None:
         subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
-        raise OvertakenError(
-            Message(
-                "Nothing was stored: {who} wrote about {subject} meanwhile ({at}). Look at it as it is "
-                "now, then enter again what is still missing.",
-                who=row["who"] or Message("somebody"),
-                subject=subject,
-                at=row["at"],
-            ),
-            code="overtaken",
+        message = Message(
+            "Nothing was stored: {who} wrote about {subject} meanwhile ({at}). Look at it as it is "
+            "now, then enter again what is still missing.",
+            who=row["who"] or Message("somebody"),
+            subject=subject,
+            at=row["at"],
         )
+        raise OvertakenError(message, code="overtaken")
 
 
 def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
@@ -262,12 +260,10 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
         return
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)
     if connection.execute(query).first() is None:
-        raise StoreError(
-            Message(
-                "{test} has no entry {about} that could be corrected or undone.", test=entry.test, about=entry.about
-            ),
-            code="no_entry",
+        message = Message(
+            "{test} has no entry {about} that could be corrected or undone.", test=entry.test, about=entry.about
         )
+        raise StoreError(message, code="no_entry")
 
 
 def entered_name(connection: Connection, journal_id: str) -> str:

@@ -102,16 +102,14 @@ def required_digits(beginning: str) -> str:
     """
     digits = beginning.strip().lower()
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
-        raise StoreError(
-            Message(
-                "{digits!r} is not the id of a campaign: give its {most} hexadecimal digits or the first "
-                "{fewest} or more of them.",
-                digits=digits,
-                most=ID_DIGITS,
-                fewest=_SHORTEST_PREFIX,
-            ),
-            code="not_an_id",
+        message = Message(
+            "{digits!r} is not the id of a campaign: give its {most} hexadecimal digits or the first "
+            "{fewest} or more of them.",
+            digits=digits,
+            most=ID_DIGITS,
+            fewest=_SHORTEST_PREFIX,
         )
+        raise StoreError(message, code="not_an_id")
     return digits
 
 
@@ -124,22 +122,18 @@ def campaign_ids(connection: Connection) -> list[NamedId]:
 def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
     """Error for an unknown or ambiguous beginning of an id, with candidates."""
     if matching:
-        return StoreError(
-            Message(
-                "Several campaigns begin with {beginning}: {candidates}; give more digits.",
-                beginning=beginning,
-                candidates=_candidates(matching),
-            ),
-            code="ambiguous_id",
-        )
-    return StoreError(
-        Message(
-            "No campaign begins with {beginning}; the store holds {candidates}.",
+        message = Message(
+            "Several campaigns begin with {beginning}: {candidates}; give more digits.",
             beginning=beginning,
-            candidates=_candidates(stored),
-        ),
-        code="unknown_id",
+            candidates=_candidates(matching),
+        )
+        return StoreError(message, code="ambiguous_id")
+    message = Message(
+        "No campaign begins with {beginning}; the store holds {candidates}.",
+        beginning=beginning,
+        candidates=_candidates(stored),
     )
+    return StoreError(message, code="unknown_id")
 
 
 def _candidates(campaigns: Sequence[NamedId]) -> Message:
@@ -158,13 +152,11 @@ def stored_hashes(connection: Connection) -> set[str]:
 
 def damage_error(what: str) -> StoreError:
     """Error for damaged rows."""
-    return StoreError(
-        Message(
-            "{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place.",
-            what=what,
-        ),
-        code="damaged",
+    message = Message(
+        "{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place.",
+        what=what,
     )
+    return StoreError(message, code="damaged")
 
 
 def require_whole(stored: StoredCampaign) -> None:
@@ -318,14 +310,12 @@ def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) 
 def refuse_changed(paths: Sequence[str]) -> None:
     """Raise an error if files changed while they were read."""
     if paths:
-        raise StoreError(
-            Message(
-                "Changed while being read: {paths}; nothing was stored. Close the program that writes "
-                "there and add the folder again.",
-                paths=list(paths),
-            ),
-            code="changed_meanwhile",
+        message = Message(
+            "Changed while being read: {paths}; nothing was stored. Close the program that writes "
+            "there and add the folder again.",
+            paths=list(paths),
         )
+        raise StoreError(message, code="changed_meanwhile")
 
 
 def store_campaign(

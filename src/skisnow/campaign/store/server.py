@@ -110,12 +110,10 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
             _require_unicode(connection, address)
             revision = _revision(connection, address)
         if revision is None and not create:
-            raise StoreError(
-                Message(
-                    "There is no store at {address}; add a campaign first, or name another place.", address=address
-                ),
-                code="no_store",
+            message = Message(
+                "There is no store at {address}; add a campaign first, or name another place.", address=address
             )
+            raise StoreError(message, code="no_store")
         if needs_migration(revision, address):
             _bring_up_to_date(engine, address)
     except BaseException:
@@ -151,13 +149,11 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
     try:
         engine = create_engine(address.url, connect_args=defaults, pool_pre_ping=True, hide_parameters=True)
     except ModuleNotFoundError as missing:
-        raise StoreError(
-            Message(
-                "A store on a server needs {name}; install it with: pip install 'skisnow[postgresql]'",
-                name=missing.name,
-            ),
-            code="not_installed",
-        ) from None
+        message = Message(
+            "A store on a server needs {name}; install it with: pip install 'skisnow[postgresql]'",
+            name=missing.name,
+        )
+        raise StoreError(message, code="not_installed") from None
 
     def set_up(connection: Any, _: object) -> None:
         connection.autocommit = True  # what is set inside a transaction ends with it
@@ -180,15 +176,13 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
 def _require_unicode(connection: Connection, address: ServerAddress) -> None:
     encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
     if encoding != "UTF8":
-        raise StoreError(
-            Message(
-                "The database {address} holds texts as {encoding}, which has not every letter; make one "
-                "with: createdb --encoding=UTF8 --template=template0 NAME",
-                address=address,
-                encoding=encoding,
-            ),
-            code="wrong_encoding",
+        message = Message(
+            "The database {address} holds texts as {encoding}, which has not every letter; make one "
+            "with: createdb --encoding=UTF8 --template=template0 NAME",
+            address=address,
+            encoding=encoding,
         )
+        raise StoreError(message, code="wrong_encoding")
 
 
 def _revision(connection: Connection, address: ServerAddress) -> str | None:
@@ -201,21 +195,17 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
     if not tables.keys() - {"alembic_version"}:
         return None
     if tables.get("campaign") != MARK or "alembic_version" not in tables:
-        raise StoreError(
-            Message(
-                "{address} holds tables of another program, not a store; create a separate database for the store.",
-                address=address,
-            ),
-            code="other_database",
+        message = Message(
+            "{address} holds tables of another program, not a store; create a separate database for the store.",
+            address=address,
         )
+        raise StoreError(message, code="other_database")
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1:
-        raise StoreError(
-            Message(
-                "{address} is damaged: it does not say what version it is. Put a backup in its place.", address=address
-            ),
-            code="damaged",
+        message = Message(
+            "{address} is damaged: it does not say what version it is. Put a backup in its place.", address=address
         )
+        raise StoreError(message, code="damaged")
     return str(versions[0])
 
 
@@ -232,16 +222,14 @@ def needs_migration(revision: str | None, place: object) -> bool:
     from .migrations import is_known
 
     if revision is not None and not is_known(revision):
-        raise StoreError(
-            Message(
-                "{place} has schema {revision}, which this version of skisnow does not know; it reads "
-                "{known}. Update skisnow, or name another store.",
-                place=place,
-                revision=revision,
-                known=REVISION,
-            ),
-            code="unknown_schema",
+        message = Message(
+            "{place} has schema {revision}, which this version of skisnow does not know; it reads "
+            "{known}. Update skisnow, or name another store.",
+            place=place,
+            revision=revision,
+            known=REVISION,
         )
+        raise StoreError(message, code="unknown_schema")
     return True
 
 
@@ -310,15 +298,13 @@ def _server_url(text: str) -> URL:
     try:
         url = make_url(text).set(drivername="postgresql+psycopg")
     except (ArgumentError, ValueError):  # their messages contain the address
-        raise StoreError(
-            Message(
-                "The address of the server cannot be read; it has the form {form}, and any other character than "
-                "A–Z, 0–9, - . _ ~ in a user's name or a password is written as % and two hexadecimal "
-                "digits.",
-                form=_FORM,
-            ),
-            code="not_an_address",
-        ) from None
+        message = Message(
+            "The address of the server cannot be read; it has the form {form}, and any other character than "
+            "A–Z, 0–9, - . _ ~ in a user's name or a password is written as % and two hexadecimal "
+            "digits.",
+            form=_FORM,
+        )
+        raise StoreError(message, code="not_an_address") from None
     if not url.database:
         raise StoreError(
             Message("The address of the server names no database; it has the form {form}.", form=_FORM),

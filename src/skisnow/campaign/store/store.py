@@ -140,12 +140,10 @@ class Store(Shown):
                 )
             if not place.exists():
                 if not create:
-                    raise StoreError(
-                        Message(
-                            "There is no store at {place}; add a campaign first, or name another file.", place=place
-                        ),
-                        code="no_store",
+                    message = Message(
+                        "There is no store at {place}; add a campaign first, or name another file.", place=place
                     )
+                    raise StoreError(message, code="no_store")
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
 
@@ -212,12 +210,10 @@ class Store(Shown):
                 code="no_folder",
             )
         if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
-            raise StoreError(
-                Message(
-                    "The store {path} is in {folder} itself; keep it somewhere else.", path=self.path, folder=folder
-                ),
-                code="inside_folder",
+            message = Message(
+                "The store {path} is in {folder} itself; keep it somewhere else.", path=self.path, folder=folder
             )
+            raise StoreError(message, code="inside_folder")
         files = list_files(folder)
         if not files:
             raise StoreError(

@@ -165,14 +165,12 @@ class _Sync:
         with reading(self._there.engine) as there, writing(self._here.engine) as here:
             open_ = {divergence.id: divergence for divergence in self._open(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
-                raise StoreError(
-                    Message(
-                        "No open conflict is called {names}: one of its sides may have changed. Nothing was "
-                        "settled; synchronise without a choice to see what is open.",
-                        names=list(unknown),
-                    ),
-                    code="unknown_conflict",
+                message = Message(
+                    "No open conflict is called {names}: one of its sides may have changed. Nothing was "
+                    "settled; synchronise without a choice to see what is open.",
+                    names=list(unknown),
                 )
+                raise StoreError(message, code="unknown_conflict")
             sides = {id_: chosen.get(id_, chosen.get(ALL)) for id_ in open_}
             choices = [(open_[id_], side) for id_, side in sides.items() if side is not None]
             for divergence, side in choices:
