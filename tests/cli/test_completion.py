@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from skisnow.cli import build_parser
-from skisnow.cli.shell import candidates
+from skisnow.cli.options import number
+from skisnow.cli.shell import candidates, manual_page
 
 
 def after(*words: str) -> list[str]:
@@ -81,3 +85,118 @@ def test_in_the_shell_itself(shell: str, tmp_path: Path) -> None:
     )
     assert done.stdout == SAID[shell]
     assert done.stderr == ""
+
+
+# The manual page
+
+
+PAGE = manual_page(build_parser(), "0.1.0")
+
+
+def test_every_command_and_option_stands_there() -> None:
+    commands = re.findall(r"^\.SS skisnow (.*)$", PAGE, re.MULTILINE)
+    assert {"new campaign", "check", "store verify", "simulate", "serve", "completion"} <= set(commands)
+    plain = PAGE.replace("\\-", "-")
+    for option in ("--xlsx", "--fall-line-azimuth-deg", "--fit-offset", "--H-V-N-per-mm3"):
+        assert option in plain
+    assert "0.1 % more" in plain  # the help says %%
+    assert "%(" not in plain
+
+
+def test_roff_takes_every_line() -> None:
+    groff = shutil.which("groff")
+    if groff is None:
+        pytest.skip("groff is not installed")
+    done = subprocess.run(
+        [groff, "-man", "-Tutf8", "-ww", "-Kutf8"],
+        input=PAGE,
+        check=True,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+    )
+    assert "SKISNOW(1)" in done.stdout
+    assert [line for line in done.stderr.splitlines() if "warning: can't break" not in line] == []
+
+
+# How words of the command line become numbers
+
+
+def test_an_end_that_is_not_given_is_open() -> None:
+    assert number("N", highest=5.0)("-1e9") == -1e9
+    assert number("N", lowest=5.0)("1e9") == 1e9
+    assert number("N")("-3.5") == -3.5
+
+
+def test_ends_are_allowed_but_the_lowest_above_which_it_must_be() -> None:
+    within = number("s", lowest=0.0, highest=10.0)
+    assert (within("0"), within("10")) == (0.0, 10.0)
+    for word in ("-1e-9", "10.1", "nan"):
+        with pytest.raises(argparse.ArgumentTypeError, match="from 0 to 10"):
+            within(word)
+    above = number("s", lowest=0.0, highest=10.0, above=True)
+    assert (above("1e-9"), above("10")) == (1e-9, 10.0)
+    with pytest.raises(argparse.ArgumentTypeError, match="above 0 to 10"):
+        above("0")
+
+
+@pytest.mark.parametrize(
+    ("unit", "word", "told"), [("N", "800 N", "in N, .* 800"), ("", "1,5", r" 1\.5"), ("m", "much", "in m")]
+)
+def test_what_is_no_number_gets_an_example(unit: str, word: str, told: str) -> None:
+    with pytest.raises(argparse.ArgumentTypeError, match=told):
+        number(unit)(word)
+
+
+# docs/files/command-line.md names every command and option that there is, and no other
+
+
+COMMAND_PAGE = (Path(__file__).parents[2] / "docs" / "files" / "command-line.md").read_text(encoding="utf-8")
+PIECES = [piece for piece in re.split(r"\n\n|\n(?=`skisnow |\| )", COMMAND_PAGE) if piece.strip()]
+
+
+def commands(parser: argparse.ArgumentParser, words: tuple[str, ...] = ()) -> Iterator[tuple[str, argparse.Action]]:
+    """Each command that does something, with each of its options."""
+    inner = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    for group in inner:
+        for name, command in group.choices.items():
+            yield from commands(command, (*words, name))
+    if not inner:
+        for action in parser._actions:
+            yield " ".join(words), action
+
+
+EVERY = list(commands(build_parser()))
+
+
+def told(command: str) -> str:
+    """The page's rows about a command and those that begin with its name; of stores their common words."""
+    group, *rest = command.split()
+    own = [piece for piece in PIECES if re.search(rf"`skisnow {command}(?![\w-])", piece)]
+    if group == "store":
+        own += [piece for piece in PIECES if f"`{' '.join(rest)}" in piece or "Each `store` command" in piece]
+    return "\n".join(own)
+
+
+@pytest.mark.parametrize("command", sorted({command for command, _ in EVERY}))
+def test_it_names_the_command_with_every_option_and_choice(command: str) -> None:
+    text = told(command)
+    assert text, f"skisnow {command} is not there"
+    for action in (action for name, action in EVERY if name == command):
+        if not action.option_strings or action.dest == "help" or action.help == argparse.SUPPRESS:
+            continue
+        option = max(action.option_strings, key=len)
+        assert re.search(rf"{option}(?![\w-])", text), f"skisnow {command} {option} is not there"
+        for choice in action.choices or ():
+            assert re.search(rf"(?<![\w-]){re.escape(str(choice))}(?![\w-])", text), f"{command} {option} {choice}"
+
+
+def test_it_names_no_option_that_is_none() -> None:
+    known = {option for _, action in EVERY for option in action.option_strings} | {"--version"}
+    assert set(re.findall(r"(?<![\w-])--[A-Za-z][\w-]*", COMMAND_PAGE)) <= known
+    for row in re.findall(r"^\| `skisnow (.*?)` ", COMMAND_PAGE, re.MULTILINE):
+        words = re.match(r"[a-z]+(?: [a-z]+)*", row)
+        assert words is not None
+        command = next(name for name in (words[0], words[0].split()[0], " ".join(words[0].split()[:2])) if told(name))
+        own = {o for name, action in EVERY if name.startswith(command) for o in action.option_strings}
+        assert set(re.findall(r"--[A-Za-z][\w-]*", row)) <= own, row

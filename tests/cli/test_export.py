@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import builtins
 import platform
+import re
+import shlex
 import sys
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -52,3 +56,80 @@ def test_wrong_words_and_names_are_refused(tmp_path: Path, capsys: pytest.Captur
     assert ended.value.code == 2
     assert "--contact" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+# `skisnow serve` where the web lab is not installed. What it serves is tested with the pages
+
+
+@pytest.fixture
+def missing(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Importing the server fails without this module."""
+    imported = builtins.__import__
+
+    def put(name: str | None) -> None:
+        def importing(module: str, *others: Any, **named: Any) -> Any:
+            if module == "web.server":
+                raise ModuleNotFoundError("gone", name=name)
+            return imported(module, *others, **named)
+
+        monkeypatch.setattr(builtins, "__import__", importing)
+
+    return put
+
+
+def test_it_says_what_to_install(missing: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    missing("nicegui")
+    assert main(["serve"]) == 1
+    told = capsys.readouterr()
+    assert "pip install 'skisnow[web]'" in told.err
+    assert told.out == ""
+
+
+@pytest.mark.parametrize("name", ["skisnow.web.server", "skisnow", None])
+def test_a_part_of_our_own_is_not_to_be_installed(
+    name: str | None, missing: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    missing(name)
+    assert main(["serve"]) != 0
+    assert "pip install" not in capsys.readouterr().err
+
+
+# The commands of `make demo` print no warning
+
+
+MAKEFILE = Path(__file__).parents[2] / "Makefile"
+REDUCED = {
+    "analyse": ["--resamples", "100"],
+    "turn": ["--runs", "3", "--workers", "1", "--set", "run.duration_s=0.5"],
+    "simulate": ["--set", "run.duration_s=0.5"],
+}
+"""Further options with which each command is quick."""
+
+
+def commands(folder: Path) -> list[list[str]]:
+    """Arguments of the commands of the demo, with its own settings."""
+    text = MAKEFILE.read_text(encoding="utf-8")
+    turn = re.search(r"^TURN := (.*)$", text, re.MULTILINE)
+    recipe = re.search(r"^demo:.*\n((?:\t.*\n)+)", text, re.MULTILINE)
+    assert turn is not None
+    assert recipe is not None
+    lines = re.findall(r"^\t\$\(BIN\)/skisnow (.*)$", recipe[1], re.MULTILINE)
+    values = {"DEMO": str(folder), "SEED": "1", "TURN": turn[1]}
+    return [shlex.split(re.sub(r"\$\((\w+)\)", lambda found: values[found[1]], line)) for line in lines]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("reduced", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_the_demo_prints_no_warning(
+    reduced: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
+) -> None:
+    if reduced:
+        request.getfixturevalue("undrawn")
+    found = commands(tmp_path / "demo")
+    assert [arguments[0] for arguments in found] == ["reference", "analyse", "turn", "simulate"]
+    for arguments in found:
+        status = main([*arguments, *(REDUCED.get(arguments[0], []) if reduced else [])])
+        said = capsys.readouterr()
+        # the reduced slalom passes no gate, which is the outcome of its length
+        assert status == 0 or (reduced and arguments[0] == "simulate")
+        assert "warning" not in (said.out + said.err).lower()

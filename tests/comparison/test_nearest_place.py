@@ -1,17 +1,21 @@
 """The nearest place on a path is the true one: held against every piece, one after the other."""
 
 import itertools
+import json
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
+from benchmarks.track_headings import KINDS, fitted_track, row
+from scipy.integrate import quad
 
 from skisnow._support.errors import ParameterError
+from skisnow.comparison import compare_tracks, comparison_dict
+from skisnow.comparison.distances import OffsetSeries, distance_statistics, mean_lengths
 from skisnow.comparison.nearest_place import Path, distance_from_path
 from tests.coded import raises
 
-FloatArray = npt.NDArray[np.float64]
+from .made_tracks import FloatArray, build_track
 
 
 def by_hand(point: FloatArray, path: FloatArray) -> float:
@@ -108,3 +112,74 @@ def test_distance_beside_has_none_without_a_path_or_a_place() -> None:
 def test_a_path_in_one_place_is_refused() -> None:
     with raises(ParameterError, "one_place"):
         Path(np.ones((4, 3)))
+
+
+# Intervals of fitted headings: coverage over simulated tracks, and none where other headings fit as well
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in KINDS if name != "arc of one radius"])
+def test_coverage_of_200_tracks(name: str) -> None:
+    """Seeds that were not used to design the interval."""
+    tracks = [fitted_track(*KINDS[name], seed) for seed in range(1000, 1200)]
+    covers = [track.covers for track in tracks if track.covers is not None]
+    assert len(covers) > 160, row(name, tracks)
+    assert 0.90 <= np.mean(covers) <= 0.99, row(name, tracks)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_arc_of_one_radius_has_no_interval(seed: int) -> None:
+    motion = fitted_track("arc", 0.0, seed).motion
+    assert motion.rival is not None
+    assert motion.turned_error is None
+
+
+def test_a_comparison_reports_the_other_heading_instead_of_an_interval() -> None:
+    angle = np.linspace(0.0, 2.0, 200)
+    circle: FloatArray = 15.0 * np.column_stack([np.cos(angle), np.sin(angle)])
+    noise = 0.02 * np.random.default_rng(7).normal(size=(120, 2))
+    found = compare_tracks(
+        build_track(circle, angle), build_track(circle[40:160] + noise, angle[40:160]), fit=("start", "heading")
+    )
+    fitted = json.loads(json.dumps(comparison_dict(found)))["fitted"]
+    assert fitted["turned_error_deg"] is None
+    assert abs(fitted["rival"]["turned_deg"] - fitted["turned_deg"]) > 5.0
+    assert fitted["rival"]["rms_m"] < 0.05
+    assert len(found.warnings) == 1
+
+
+# Means of lengths of vectors that change linearly, against integrals done by quadrature and by hand
+
+
+def test_mean_length_against_quadrature() -> None:
+    """From nearly constant vectors to ones that pass through nothing; both formulas and the seam between them."""
+    random = np.random.default_rng(3)
+    first = random.normal(size=(60, 3))
+    change = random.normal(size=(60, 3)) * np.repeat([1e-12, 1e-3, 0.049, 0.051, 1.0, 50.0], 10)[:, None]
+    found = mean_lengths(first, first + change)
+    for begin, step, value in zip(first, change, found, strict=True):
+        low = float(np.clip(-(begin @ step) / (step @ step), 0.0, 1.0))
+
+        def length(share: float, begin: FloatArray = begin, step: FloatArray = step) -> float:
+            return float(np.linalg.norm(begin + share * step))
+
+        expected, _ = quad(length, 0.0, 1.0, points=[low], epsabs=0.0, epsrel=1e-12)
+        assert value == pytest.approx(expected, rel=1e-11)
+
+
+def test_numbers_of_a_straight_line_that_leaves_another() -> None:
+    """d = s tan α: mean L tan α / 2, rms L tan α / √3, largest at the end; the standstill at 2 m weighs nothing."""
+    arc_length = np.array([0.0, 2.0, 2.0, 7.0, 10.0])
+    found = distance_statistics(OffsetSeries(arc_length, np.column_stack([0.0 * arc_length, 0.1 * arc_length])))
+    assert found is not None
+    assert (found.max, found.max_at, found.mean, found.compared) == pytest.approx((1.0, 10.0, 0.5, 10.0))
+    assert found.rms == pytest.approx(1.0 / math.sqrt(3.0), rel=1e-14)
+
+
+def test_what_has_no_offset_is_left_out() -> None:
+    offset = np.array([[1.0, 0.0], [1.0, 0.0], [np.nan, np.nan], [3.0, 0.0], [3.0, 0.0]])
+    found = distance_statistics(OffsetSeries(np.array([0.0, 1.0, 5.0, 6.0, 9.0]), offset))
+    assert found is not None
+    assert (found.compared, found.mean) == pytest.approx((4.0, (1.0 + 3.0 * 3.0) / 4.0))
+    assert distance_statistics(OffsetSeries(np.array([0.0, 1.0]), np.full((2, 2), np.nan))) is None
+    assert distance_statistics(OffsetSeries(np.array([1.0, 1.0]), np.ones((2, 2)))) is None

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from skisnow.campaign import check_campaign, read_campaign
-from skisnow.estimation import analyse, quality_flags
+import numpy as np
+import pytest
+
+from skisnow._support.errors import FieldDataError
+from skisnow.campaign import Campaign, campaign_of_files, check_campaign, read_campaign
+from skisnow.estimation import analyse, quality_flags, results_dict
 
 from ...support.user_files.test_workbook import packed
+from ..recordings import plain_snow
 
 WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
 TABLES = ("penetration", "shear", "density", "drop_cone")
@@ -110,3 +116,129 @@ def test_a_workbook_that_cannot_be_read_is_a_problem(
     (problem,) = check_campaign(write_campaign({**small_campaign, "Hang.xlsx": b"PK\3\4"}))
     assert (problem.severity, problem.code, problem.file) == ("error", "unreadable_file", "Hang.xlsx")
     assert ".xlsx" in problem.action
+
+
+# A campaign whose files are at hand is read as one in a folder, and nothing is searched on the disk
+
+
+def at_hand(files: Mapping[str, str]) -> dict[str, bytes]:
+    return {name: text.encode("utf-8") for name, text in files.items()}
+
+
+def numbers_of(campaign: Campaign) -> dict[str, object]:
+    results = results_dict(analyse(campaign, n_resamples=100))
+    return {key: value for key, value in results.items() if key != "provenance"} | {
+        "files": results["provenance"]["files"]
+    }
+
+
+def test_results_are_those_of_the_folder(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign["notes.txt"] = "wind"
+    folder = read_campaign(write_campaign(small_campaign))
+    campaign = campaign_of_files(at_hand(small_campaign))
+    assert numbers_of(campaign) == numbers_of(folder)
+    assert campaign.unread_files == folder.unread_files == ("notes.txt",)
+    assert campaign.penetration is not None
+    assert folder.penetration is not None
+    assert np.array_equal(campaign.penetration.load, folder.penetration.load)
+
+
+def test_nothing_is_opened(small_campaign: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise AssertionError("the disk was asked")
+
+    files = at_hand(small_campaign)
+    for name in ("stat", "lstat", "scandir", "listdir"):
+        monkeypatch.setattr(os, name, refused)
+    monkeypatch.setattr(Path, "open", refused)
+    assert campaign_of_files(files).name == "north slope"
+
+
+def test_errors_are_those_of_the_folder(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign["shear.csv"] = small_campaign["shear.csv"].replace("12.25", "twelve")
+    small_campaign["Density.csv"] = small_campaign.pop("density.csv")
+    with pytest.raises(FieldDataError) as told:
+        read_campaign(write_campaign(small_campaign))
+    with pytest.raises(FieldDataError) as found:
+        campaign_of_files(at_hand(small_campaign))
+    assert found.value.problems == told.value.problems
+    assert len(found.value.problems) == 2
+
+
+def test_files_that_are_named_alone_are_told(small_campaign: dict[str, str]) -> None:
+    campaign = campaign_of_files(at_hand(small_campaign), others=("photo.jpg", ".hidden"))
+    assert campaign.unread_files == ("photo.jpg",)
+
+
+# snow_micro_pen.csv and the files that it names: every wrong cell is reported with its row
+
+
+Write = Callable[[Mapping[str, str | bytes]], Path]
+SOUND = plain_snow(1.0)
+HEAD = "recording,site,file\n"
+
+
+def test_recordings_are_read_in_the_order_of_the_table(small_campaign: dict[str, str], write_campaign: Write) -> None:
+    table = "recording,site,spot,file,surface_mm,operator\nb,Süd,a,two.PNT,30.5,X\na,Nord,,one.pnt,,Y\n"
+    folder = write_campaign(
+        small_campaign | {"snow_micro_pen.csv": table, "one.pnt": SOUND, "two.PNT": SOUND, "three.pnt": SOUND}
+    )
+    campaign = read_campaign(folder)
+    found = campaign.snow_micro_pen
+    assert found is not None
+    assert (found.recording, found.site, found.spot) == (("b", "a"), ("Süd", "Nord"), ("a", ""))
+    assert found.surface[0] == pytest.approx(0.0305)
+    assert found.further == {"operator": ("X", "Y")}
+    assert len(found.profile(1).force) == 22_500
+    assert campaign.unread_files == ("three.pnt",)
+    assert {"one.pnt", "two.PNT"} <= set(campaign.file_hashes)
+    assert "2 recordings" in repr(found)
+
+
+@pytest.mark.parametrize(
+    ("rows", "row", "column", "words"),
+    [
+        ("r,Süd,gone.pnt\n", 2, "file", "this name"),
+        ("r,Süd,../one.pnt\n", 2, "file", ".PNT"),
+        ("r,Süd,notes.txt\n", 2, "file", ".PNT"),
+        ("r,Süd,one.pnt\nr,Süd,two.pnt\n", 3, "recording", "row 2"),
+        ("r,Süd,one.pnt\nq,Süd,one.pnt\n", 3, "file", "row 2"),
+        ("r,,one.pnt\n", 2, "site", "non-empty"),
+    ],
+)
+def test_wrong_cells(
+    small_campaign: dict[str, str], write_campaign: Write, rows: str, row: int, column: str, words: str
+) -> None:
+    further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + rows, "one.pnt": SOUND, "two.pnt": SOUND}
+    problems = check_campaign(write_campaign({**small_campaign, **further}))
+    (problem,) = [each for each in problems if each.severity == "error"]
+    assert (problem.row, problem.column) == (row, column)
+    assert words in problem.allowed
+
+
+def test_a_damaged_recording_is_told_with_its_name(small_campaign: dict[str, str], write_campaign: Write) -> None:
+    further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + "r7,Süd,one.pnt\n", "one.pnt": SOUND[:5000]}
+    (problem,) = [
+        each for each in check_campaign(write_campaign({**small_campaign, **further})) if each.severity == "error"
+    ]
+    assert (problem.file, problem.experiment, problem.code) == ("one.pnt", "r7", "unreadable_file")
+    assert "cut off" in problem.action
+
+
+@pytest.mark.parametrize(
+    ("section", "column", "words"),
+    [
+        ('relation = "proksch"', "snow_micro_pen.relation", "proksch-2015, calonne-2020"),
+        ("to_depth_mm = 4", "snow_micro_pen.to_depth_mm", "above from_depth_mm"),
+        ("from_depth_mm = -1", "snow_micro_pen.from_depth_mm", "0 or more"),
+        ("subtract_air_force = 1", "snow_micro_pen.subtract_air_force", "true or false"),
+        ("to_dept_mm = 4", "snow_micro_pen.to_dept_mm", "to_depth_mm"),
+    ],
+)
+def test_wrong_settings(
+    small_campaign: dict[str, str], write_campaign: Write, section: str, column: str, words: str
+) -> None:
+    small_campaign["campaign.toml"] += f"\n[snow_micro_pen]\n{section}\n"
+    (problem,) = [each for each in check_campaign(write_campaign(small_campaign)) if each.severity == "error"]
+    assert (problem.code, problem.column) == ("bad_toml", column)
+    assert words in problem.allowed

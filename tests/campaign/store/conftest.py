@@ -40,6 +40,12 @@ def opened(place: Path | str) -> Iterator[Store]:
         yield store
 
 
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    """Place of a store that does not exist, in a folder that does not exist either."""
+    return tmp_path / "deep" / "store.sqlite3"
+
+
 @pytest.fixture(params=["file", "server"])
 def store(request: pytest.FixtureRequest, empty_file: Path, tmp_path: Path) -> Iterator[Store]:
     """An empty store, in a file or on the server."""

@@ -53,11 +53,6 @@ def folder(tmp_path: Path) -> Path:
     return write(tmp_path / "Brenner 2012", FILES)
 
 
-@pytest.fixture
-def place(tmp_path: Path) -> Path:
-    return tmp_path / "deep" / "er" / "store.sqlite3"
-
-
 def change(place: Path, statement: str) -> None:
     """Meddle with a store behind its back, foreign keys off."""
     connection = sqlite3.connect(place, isolation_level=None)

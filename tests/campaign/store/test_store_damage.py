@@ -16,6 +16,7 @@ from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, Store
 
 from .reasons import LOCKED, NO_ROOM
+from .test_store import change, contents, write
 
 FILES = {
     "empty.csv": b"",
@@ -34,29 +35,6 @@ ENTRY = (
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     return write(tmp_path / "Brenner 2012", FILES)
-
-
-@pytest.fixture
-def place(tmp_path: Path) -> Path:
-    return tmp_path / "deep" / "store.sqlite3"
-
-
-def write(folder: Path, files: dict[str, bytes]) -> Path:
-    for path, data in files.items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_bytes(data)
-    return folder
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
-
-
-def change(place: Path, statement: str) -> None:
-    """Meddle with a store behind its back, foreign keys off."""
-    connection = sqlite3.connect(place, isolation_level=None)
-    connection.executescript(statement)
-    connection.close()
 
 
 def flip_in_file(place: Path, data: bytes) -> None:

@@ -30,11 +30,6 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def place(tmp_path: Path) -> Path:
-    return tmp_path / "there" / "store.sqlite3"
-
-
-@pytest.fixture
 def id_(folder: Path, place: Path) -> str:
     with Store.open(place) as store:
         return store.add(folder).id
