@@ -36,26 +36,26 @@ def run(options: argparse.Namespace) -> int:
 
         task = read_design(options.design)
     with Progress() as progress:
-        found = design_ski(task, progress=lambda done, count: progress(f"{done} of {count} starts"))
-    paths = found.write(options.out or options.design.parent)
+        design = design_ski(task, progress=lambda done, count: progress(f"{done} of {count} starts"))
+    paths = design.write(options.out or options.design.parent)
     if options.json:
-        print_json(found.as_dict())
+        print_json(design.as_dict())
     else:
-        print(_summary(found))
+        print(_summary(design))
         print("\n".join(f"written: {path}" for path in paths))
-    return 0 if found.reached else 1
+    return 0 if design.reached else 1
 
 
-def _summary(found: Design) -> str:
+def _summary(design: Design) -> str:
     lines = [f"{'variable':24} {'design':>12}"]
-    lines += [f"{name:24} {value:12.6g}" for name, value in found.values.items()]
+    lines += [f"{name:24} {value:12.6g}" for name, value in design.values.items()]
     lines += ["", f"{'condition':>9}  {'output':26} {'before':>11} {'design':>11} {'change %':>9} {'rounded':>11}"]
-    for row in found.rows:
+    for row in design.rows:
         numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "9.3g"), _number(row.rounded))
         lines.append("{:9}  {:26} {} {} {} {}".format(row.condition, row.output, *numbers))
     lines += ["", "local optima, with the share of starts that reached them:"]
-    lines += [f"  {each.share:5.0%}  objective {each.result:.6g}" for each in found.optima]
-    lines += ["", *map(str, found.remarks), f"equilibria: {found.equilibria}"]
+    lines += [f"  {optimum.share:5.0%}  objective {optimum.result:.6g}" for optimum in design.optima]
+    lines += ["", *map(str, design.remarks), f"equilibria: {design.equilibria}"]
     return "\n".join(lines)
 
 

@@ -33,18 +33,18 @@ class Ending:
 
     Attributes
     ----------
-    asked
+    requested
         True after a request of the system.
     pressed
         True after Ctrl-C during `finishing`.
     """
 
-    asked: bool = False
+    requested: bool = False
     pressed: bool = False
 
     def status(self) -> int:
         """Exit status of an interrupted command: 143 after a request of the system, otherwise 130."""
-        return 143 if self.asked else 130
+        return 143 if self.requested else 130
 
     @contextmanager
     def finishing(self) -> Iterator[None]:
@@ -64,12 +64,12 @@ class Ending:
     _later: bool = False
 
     def _ask(self, *_: Any) -> None:
-        self.asked = True
+        self.requested = True
         raise Ended
 
     def _ask_later(self, number: int, _: Any) -> None:
         by_system = number == signal.SIGTERM
-        self.asked, self.pressed = self.asked or by_system, self.pressed or not by_system
+        self.requested, self.pressed = self.requested or by_system, self.pressed or not by_system
         if self._later:
             raise Ended if by_system else KeyboardInterrupt
         self._later = True

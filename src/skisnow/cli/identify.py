@@ -161,6 +161,6 @@ def _tell(options: argparse.Namespace, result: Identification, scenario_input: S
 
 
 def _status(result: Identification, ending: Ending) -> int:
-    if ending.asked or ending.pressed or result.outcome == "interrupted":
+    if ending.requested or ending.pressed or result.outcome == "interrupted":
         return ending.status()
     return 1 if result.outcome in ("too_few_points", "not_converged") else 0

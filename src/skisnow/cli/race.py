@@ -114,12 +114,12 @@ def run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, options.out)
     _tell(options, raced)
-    return 1 if raced.found.score.time is None else 0
+    return 1 if raced.fastest.score.time is None else 0
 
 
 @dataclass(frozen=True)
 class _Raced:
-    found: QuickestLine
+    fastest: QuickestLine
     checked: list[tuple[str, Score]]
     run: Run | None
     worth: tuple[Worth, ...]
@@ -197,7 +197,7 @@ def _checked(
 def _tell(options: argparse.Namespace, raced: _Raced) -> None:
     from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
 
-    fastest, checked, worth = raced.found, raced.checked, raced.worth
+    fastest, checked, worth = raced.fastest, raced.checked, raced.worth
     place = write_race(
         fastest, options.out, checked=checked, worth=worth, run=raced.run, against=tuple(options.against)
     )

@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _status(result: Run, ending: Ending) -> int:
-    return ending.status() if ending.asked or ending.pressed or result.outcome == "interrupted" else 0
+    return ending.status() if ending.requested or ending.pressed or result.outcome == "interrupted" else 0
 
 
 def _list(name: str | None) -> int:

@@ -351,14 +351,14 @@ def _penetration(
     estimates = screened.estimates
     if estimates is None:
         return None
-    found, model, sites = estimates.hardness, estimates.model, campaign.penetration.site
-    growing = growing_hardness(readings, found["H_V"].value, uncertainty)
+    hardnesses, model, sites = estimates.hardness, estimates.model, campaign.penetration.site
+    growing = growing_hardness(readings, hardnesses["H_V"].value, uncertainty)
     fitted = fitted_hardness(readings, model)
     of_series = PenetrationAnalysis(
         screened=screened,
         readings=readings,
         model=model,
-        hardness=found,
+        hardness=hardnesses,
         seating=seating(readings, model),
         fitted=fitted,
         growing=growing,
@@ -372,7 +372,7 @@ def _penetration(
 
     used = readings.of(screened.used)
     _report(progress, f"model table over {used.n} readings")
-    by_last = {symbol: H.value[screened.used] for symbol, H in found.items()}
+    by_last = {symbol: H.value[screened.used] for symbol, H in hardnesses.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
     depth_fits = fit_models_with_depth_errors(fitted.of(screened.used), uncertainty)

@@ -79,7 +79,7 @@ class CampaignModel(ShownFields):
     group, spreads, freedom
         Index of the group of each series; spreads and their degrees of freedom, by group.
     uncertainty, priors
-        Of a reading, and of the spreads.
+        Uncertainty of a reading, and priors of the spreads.
     grouped_by, group_names
         ``campaign``, ``site`` or ``tool``, and the names of the groups.
     """
@@ -145,9 +145,9 @@ class CampaignModel(ShownFields):
         """
         pairs = [(getattr(parts, name), getattr(self.freedom, name)[group]) for name in _SPREADS]
         variances, degrees = (np.stack(values, axis=-1) for values in zip(*pairs, *further, strict=True))
-        known = np.maximum(parts.variance - variances.sum(axis=-1), 0.0)[..., None]
-        variances = np.concatenate((variances, known), axis=-1)
-        degrees = np.concatenate((degrees, np.full(known.shape, np.inf)), axis=-1)
+        unexplained = np.maximum(parts.variance - variances.sum(axis=-1), 0.0)[..., None]
+        variances = np.concatenate((variances, unexplained), axis=-1)
+        degrees = np.concatenate((degrees, np.full(unexplained.shape, np.inf)), axis=-1)
         return expanded_factor(np.maximum(welch_satterthwaite(variances, degrees), 1.0), CONFIDENCE)
 
 
@@ -173,7 +173,7 @@ def fit_campaign(
     group
         Index of the group of each series (default: one group).
     priors
-        Of the spreads.
+        Priors of the spreads.
     """
     m = readings.n_series
     group = np.zeros(m, dtype=np.int64) if group is None else group

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from .readings import Readings, ReadingUncertainty
 
 _EXACT_SHARE: Final = 1e-6
-"""Of the median variance of a reading; none is taken to be smaller (modelling assumption)."""
+"""Smallest variance of a reading as a share of the median one (modelling assumption)."""
 _BLOCK: Final = 8192
 """Readings whose columns fit a core's cache."""
 
@@ -97,8 +97,8 @@ def fitted_hardness(readings: Readings, model: CampaignModel) -> FittedHardness:
 
 def pooled_scatter(scatter: FloatArray) -> float:
     """Root mean square of the series' relative scatters; series without one take no part, 0 if none has any."""
-    known = scatter[np.isfinite(scatter)]
-    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
+    finite = scatter[np.isfinite(scatter)]
+    return float(np.sqrt(np.mean(finite**2))) if finite.size else 0.0
 
 
 def fit_models_with_depth_errors(
@@ -163,7 +163,7 @@ def _weights(
 
 
 _LARGEST_VARIANCE: Final = 0.2
-"""Of ln x, above which the correction is no longer small and a reading is omitted."""
+"""Variance of ln x above which a reading is omitted, because its correction is not small."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -190,10 +190,10 @@ class VolumeFactor(ShownFields):
 
 def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel) -> VolumeFactor:
     """The factor b of the series that have a hardness (N/m³, of Eqn 1) and an estimate of the model."""
-    known = np.isfinite(hardness) & np.isfinite(model.log_hardness)
-    if not known.any():
+    estimated = np.isfinite(hardness) & np.isfinite(model.log_hardness)
+    if not estimated.any():
         return VolumeFactor(0, *[float("nan")] * 5)
-    readings, hardness, model = readings.of(known), hardness[known], model.of(known)
+    readings, hardness, model = readings.of(estimated), hardness[estimated], model.of(estimated)
     F, x = readings.load, hardness[readings.series] * readings.displaced_volume
     w, usable = _error_variance(readings, model)
     layers = np.exp((model.spreads.mean_exponent[model.group][readings.series] - 1.0) * _log_share(readings))

@@ -59,7 +59,7 @@ class GroupComparison:
     n_a, n_b
         Used experiments of each group.
     ratio, interval, p
-        With 95 % interval and test against 1, of this pair alone; NaN where the scatter is unknown.
+        With 95 % interval and test against 1, of this pair; NaN where the scatter is unknown.
     p_holm, n_pairs
         p corrected for the number of pairs of this quantity and kind of group (Holm 1979, Scand. J. Stat. 6, 65-70).
     n_needed
@@ -111,8 +111,8 @@ def group_labels(tests: PenetrationTests | ShearTests, tool: tuple[str, ...]) ->
     if observer is not None:
         labels["observer"] = tuple(observer[index].strip() for index in first)
     if "time" in further:
-        found = (_DAY.match(further["time"][index].strip()) for index in first)
-        labels["day"] = tuple(match[0] if match else "" for match in found)
+        days = (_DAY.match(further["time"][index].strip()) for index in first)
+        labels["day"] = tuple(match[0] if match else "" for match in days)
     return labels
 
 
@@ -128,12 +128,12 @@ def compare_groups(data: Measured, by: str, difference: float = DIFFERENCE) -> t
     difference
         Relative difference that ``n_needed`` is for, > 0.
     """
-    known = np.flatnonzero([bool(label) for label in data.labels[by]])
-    if known.size == 0:
+    labelled = np.flatnonzero([bool(label) for label in data.labels[by]])
+    if labelled.size == 0:
         return ()
-    groups = [data.labels[by][index] for index in known.tolist()]
-    sites = [data.labels["site"][index] for index in known.tolist()] if by != "site" else None
-    fit = _EffectsFit(data.logs[known], data.error2[known], groups, sites)
+    groups = [data.labels[by][index] for index in labelled.tolist()]
+    sites = [data.labels["site"][index] for index in labelled.tolist()] if by != "site" else None
+    fit = _EffectsFit(data.logs[labelled], data.error2[labelled], groups, sites)
     needed = None if not fit.scatter > 0 else tests_per_group(fit.scatter, ratio=1.0 + difference, power=POWER)
     pairs = []
     for a, b in combinations(np.argsort(fit.names).tolist(), 2):
@@ -210,13 +210,13 @@ class _EffectsFit:
         """σ² of each group and its degrees of freedom, pooled unless the groups clearly scatter differently."""
         degrees = max(round(float(free.sum()), 6), 0.0)
         self.degrees = degrees
-        known = float(free @ error2)
+        error_squares = float(free @ error2)
         Q, f, u2 = (
             np.bincount(self._of_cell, values, minlength=n_groups).astype(np.float64)
             for values in (squares, free, free * error2)
         )
         with np.errstate(invalid="ignore", divide="ignore"):
-            pooled = max(float(squares.sum()) - known, 0.0) / degrees if degrees > 0.5 else np.nan
+            pooled = max(float(squares.sum()) - error_squares, 0.0) / degrees if degrees > 0.5 else np.nan
             own = np.maximum(Q - u2, 0.0) / f
         enough = f > 0.5
         self.is_pooled = not bartlett(Q, f, fewest=1.0).p < OWN_SCATTER_LEVEL

@@ -105,9 +105,9 @@ def hardness(readings: Readings, definition: HardnessDefinition, model: Campaign
         per_depth = definition.growth(readings)[last] / definition.measure(readings)[last]
         of_volume = readings.contact_area[last] / readings.displaced_volume[last]
         own = (per_depth / of_volume) ** 2 * scatter2
-        known = (uncertainty.load / readings.load[last]) ** 2 + per_depth**2 * (uncertainty.depth**2 + seating2)
+        instrument2 = (uncertainty.load / readings.load[last]) ** 2 + per_depth**2 * (uncertainty.depth**2 + seating2)
         nothing = np.zeros_like(own)
-        half = model.factor(Parts(own + known, nothing, nothing, own), model.group) * np.sqrt(own + known)
+        half = model.factor(Parts(own + instrument2, nothing, nothing, own), model.group) * np.sqrt(own + instrument2)
         half = np.where(np.isfinite(model.log_hardness), half, np.nan)
         return Hardness(value, value[:, None] * np.exp(half[:, None] * np.array([-1.0, 1.0])))
 
@@ -119,9 +119,9 @@ def hardness_of_all_readings(
 
     The variance of ln(F/M) is s² + (u_F/F)² + (k_M u_e/e)².
     """
-    logs, known, touching = _log_ratios(readings, definition, uncertainty)
-    scatter2 = scatter_variance(readings, logs, known, touching)
-    mean = _weighted_mean(readings, logs, scatter2[readings.series] + known, touching)
+    logs, instrument2, touching = _log_ratios(readings, definition, uncertainty)
+    scatter2 = scatter_variance(readings, logs, instrument2, touching)
+    mean = _weighted_mean(readings, logs, scatter2[readings.series] + instrument2, touching)
     return np.exp(mean), np.sqrt(scatter2)
 
 
@@ -145,15 +145,15 @@ def _weighted_mean(readings: Readings, logs: FloatArray, variance: FloatArray, t
 
 
 def known_variance(readings: Readings, definition: HardnessDefinition, uncertainty: ReadingUncertainty) -> FloatArray:
-    """Variance of ln(F/M) of each reading from the gauge and the load alone; 0 where the tool does not touch."""
+    """Variance of ln(F/M) of each reading from gauge and load; 0 where the tool does not touch."""
     M = definition.measure(readings)
     touching = (M > 0) & (readings.penetration_depth > 0)
     slope = np.divide(definition.growth(readings), M, out=np.zeros_like(M), where=touching)
-    known: FloatArray = (uncertainty.load / readings.load) ** 2 + (slope * uncertainty.depth) ** 2
-    return known
+    variance: FloatArray = (uncertainty.load / readings.load) ** 2 + (slope * uncertainty.depth) ** 2
+    return variance
 
 
-def scatter_variance(readings: Readings, logs: FloatArray, known: FloatArray, touching: BoolArray) -> FloatArray:
+def scatter_variance(readings: Readings, logs: FloatArray, instrument2: FloatArray, touching: BoolArray) -> FloatArray:
     """Between-reading variance s² of each series beyond the known one: Paule and Mandel (1982).
 
     Solves Σ (x - x̄)²/(s² + v) = n - 1 for s² ≥ 0 in each series at once; 0 where the known variance already explains
@@ -163,7 +163,7 @@ def scatter_variance(readings: Readings, logs: FloatArray, known: FloatArray, to
     use = touching.astype(float)
 
     def excess(s2: FloatArray) -> tuple[FloatArray, FloatArray]:
-        weight = use * _reciprocal(s2[readings.series] + known)
+        weight = use * _reciprocal(s2[readings.series] + instrument2)
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = readings.sums(weight * logs) / readings.sums(weight)
         deviation2 = (logs - mean[readings.series]) ** 2

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 SEATING_SD: Final = 0.1 * MM
-"""Offsets of the depth zero that are put down to seating when layering is looked for; more bends the curve too far."""
+"""Offsets of the depth zero that count as seating in a test for layering; more bends the curve too far."""
 _PRIOR: Final = SEATING_SD**-2
 SHOWS: Final = 0.99
 """Layering is flagged where this interval of g leaves out 1: one series in a hundred of even snow."""
@@ -46,7 +46,7 @@ _MINIMUM_DETERMINANT: Final = 1e-14
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(2)
 """Exact where V grows as e or e², on flat and edged tools; 0.3 % off on a cylinder."""
 _SETTLED: Final = 1e-3
-"""Change of ln H, γ, depths and relative one of the scatter at the end: less than a hundredth of what is left open."""
+"""Change of ln H, γ, depths and relative one of the scatter at the end: less than a hundredth of the standard error."""
 _LITTLE_SCATTER: Final = 1e-6
 """Scatter of 0.1 %, squared: where it is less, its own changes do not count."""
 _LIMITS: Final = (-0.9, 20.0)
@@ -62,7 +62,7 @@ class Layering:
     load_exponent, load_exponent_error
         g of V ~ F^g, 1 for even snow, and its standard error; κ = 2/g - 2.
     degrees_of_freedom
-        Of the standard error.
+        Degrees of freedom of the standard error.
     """
 
     load_exponent: FloatArray
@@ -73,15 +73,15 @@ class Layering:
 def layered(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> BoolArray:
     """Mask of the series that show layering, with offsets of the depth zero of some `SEATING_SD` allowed."""
     enough = readings.sums(np.ones(readings.n)) >= FEWEST_READINGS
-    known = enough & np.isfinite(hardness) & (hardness > 0)
-    found = np.zeros(readings.n_series, dtype=np.bool_)
-    if not known.any():
-        return found
-    fit = layering(readings.of(known), hardness[known], uncertainty)
+    usable = enough & np.isfinite(hardness) & (hardness > 0)
+    flagged = np.zeros(readings.n_series, dtype=np.bool_)
+    if not usable.any():
+        return flagged
+    fit = layering(readings.of(usable), hardness[usable], uncertainty)
     with np.errstate(invalid="ignore"):
         far = expanded_factor(fit.degrees_of_freedom, SHOWS) * fit.load_exponent_error
-        found[known] = np.abs(fit.load_exponent - 1.0) > far
-    return found
+        flagged[usable] = np.abs(fit.load_exponent - 1.0) > far
+    return flagged
 
 
 def layering(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> Layering:
@@ -216,13 +216,13 @@ def growing_hardness(readings: Readings, hardness: FloatArray, uncertainty: Read
     m = readings.n_series
     H_0, growth, error = np.full((3, m), np.nan)
     enough = readings.sums(np.ones(readings.n)) >= FEWEST_READINGS
-    known = enough & np.isfinite(hardness) & (hardness > 0)
-    if known.any():
-        fit = _GrowthFit(readings.of(known), hardness[known], uncertainty)
-        H_0[known], growth[known], error[known] = fit.solve()
+    usable = enough & np.isfinite(hardness) & (hardness > 0)
+    if usable.any():
+        fit = _GrowthFit(readings.of(usable), hardness[usable], uncertainty)
+        H_0[usable], growth[usable], error[usable] = fit.solve()
     with np.errstate(invalid="ignore"):
         log, error = np.log1p(growth), error / (1.0 + growth)
-        dof = np.where(known, _degrees_of_freedom(readings), np.nan)
+        dof = np.where(usable, _degrees_of_freedom(readings), np.nan)
         half = expanded_factor(dof, CONFIDENCE) * error
         interval = np.expm1(np.stack((log - half, log + half), axis=-1))
     return GrowingHardness(H_0, growth, interval)

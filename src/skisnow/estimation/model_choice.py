@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from .readings import Readings
 
 MINIMUM_DETERMINANT: Final = 1e-12
-"""Of a normal matrix of columns of length one: below it, some combination of coefficients is free but for rounding."""
+"""Smallest determinant of a normal matrix of columns of length one: below it, rounding alone determines some
+combination of coefficients."""
 EQUAL_PERCENT: Final = 1e-9
 """Rows whose rmse differ by no more (in percent) are equal."""
 MOST_UNITS: Final = 5000
@@ -78,7 +79,7 @@ def bootstrap_intervals(
 ) -> dict[Model, FloatArray]:
     """95 % percentile intervals (4, 2) of a0, a1, b0, b1 of each row, drawing whole experiments.
 
-    Each experiment enters by its 4 × 4 cross products alone, so a resample costs a few hundred operations. The same
+    Each experiment enters only by its 4 × 4 cross products, so a resample costs a few hundred operations. The same
     draws serve all rows. Above ``MOST_UNITS`` experiments, random groups of them are drawn in their place: experiments
     are independent, so groups are too, and their number still is large.
     """

@@ -201,10 +201,10 @@ def fit_model(readings: Readings, basis: EndBasis, model: Model, of_load: Conden
     projection, ends = basis.projection(model), basis.offset(model)
     bound, n_parameters = np.zeros(4, dtype=bool), 0
     if model.n_parameters:
-        found = of_load.solved(projection, ends)
-        bound = (projection @ (found.coefficients == 0.0)) > 0
-        ends = ends + projection @ found.coefficients
-        n_parameters = found.rank if basis.flat else model.n_parameters
+        solution = of_load.solved(projection, ends)
+        bound = (projection @ (solution.coefficients == 0.0)) > 0
+        ends = ends + projection @ solution.coefficients
+        n_parameters = solution.rank if basis.flat else model.n_parameters
     residual = basis.columns @ ends - readings.load
     return _row(readings, basis, model, ends, bound, n_parameters, residual)
 
@@ -273,7 +273,7 @@ def fit_models(readings: Readings, hardnesses: dict[str, FloatArray]) -> tuple[M
 FEWEST_SERIES: Final = 4
 """Fewer series do not tell one law from another (modelling assumption)."""
 FEWEST_ANGLES: Final = 2
-"""At one edge angle a and b stand for one number each, and rows repeat each other."""
+"""At one edge angle a and b are one number each, and rows repeat each other."""
 
 
 def why_no_choice(readings: Readings) -> str:
@@ -294,7 +294,7 @@ def why_no_choice(readings: Readings) -> str:
 def select_model(fits: tuple[ModelFit, ...], *, tolerance: float = 0.05) -> ModelFit:
     """Pick the simplest row whose rmse is within a share of the best: fewest parameters, smaller rmse, fewer terms.
 
-    Where rows repeat each other, because the edge angle does not vary, the nominally simpler one stands for both.
+    Where rows repeat each other, because the edge angle does not vary, the nominally simpler one is chosen.
     """
     best = min(fit.rmse for fit in fits)
     near = [fit for fit in fits if fit.rmse <= best * (1.0 + tolerance)]

@@ -124,17 +124,17 @@ class Readings(ShownFields):
     @cached_property
     def _alike(self) -> tuple[tuple[Tool, FloatArray, IntArray], ...]:
         """A tool, its edge angle, the readings that have both; with many angles, a tool and the angle of each."""
-        found: list[tuple[Tool, FloatArray, IntArray]] = []
+        groups: list[tuple[Tool, FloatArray, IntArray]] = []
         for index, tool in enumerate(self.tools):
             mine = self.tool == index
             angles = np.unique(self.edge_angle[mine])
             if len(angles) <= _FEW_ANGLES:
-                each = ((angle, mine & (self.edge_angle == angle)) for angle in angles)
-                found += [(tool, angle, np.flatnonzero(series[self.series])) for angle, series in each]
+                masks = ((angle, mine & (self.edge_angle == angle)) for angle in angles)
+                groups += [(tool, angle, np.flatnonzero(series[self.series])) for angle, series in masks]
             else:
                 readings = np.flatnonzero(mine[self.series])
-                found.append((tool, self.angle_of_reading[readings], readings))
-        return tuple(found)
+                groups.append((tool, self.angle_of_reading[readings], readings))
+        return tuple(groups)
 
     def _by_tool(self, form: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray) -> FloatArray:
         result = np.empty(self.n)

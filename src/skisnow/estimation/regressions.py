@@ -117,7 +117,7 @@ def _by_spot(data: Observations, values: FloatArray) -> dict[tuple[str, str], fl
     for site, spot, value in zip(data.site, data.spot, values.tolist(), strict=True):
         if spot:
             collected.setdefault((site, spot), []).append(value)
-    return {key: float(np.mean(found)) for key, found in collected.items()}
+    return {key: float(np.mean(items)) for key, items in collected.items()}
 
 
 def _nothing(*keys: str) -> Observations:
@@ -179,7 +179,7 @@ class Regression(ShownFields):
 
     @property
     def withheld(self) -> str | None:
-        """Why the F test of a slope is not given; None where it is, or where there is no slope."""
+        """Why the F test of a slope is not given; None where it is, or without a slope."""
         if self.fit is None or self.predictor_values >= FEWEST_VALUES:
             return None
         return Message(
@@ -192,21 +192,21 @@ class Regression(ShownFields):
 
 def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression, ...]:
     """All planned regressions: sites first where planned, then all together."""
-    found: list[Regression] = []
+    rows: list[Regression] = []
     of_recordings = [plan for plan in RECORDING_PLANS if plan.predictor in observations[plan.source].columns]
     for plan in (*PLANS, *of_recordings):
         data = observations[plan.source]
         x, y = data.columns[plan.predictor], data.columns[plan.response]
-        known = np.isfinite(x) & np.isfinite(y)
-        x, y = x[known], y[known]
-        names, site_of = index_names([data.site[index] for index in np.flatnonzero(known).tolist()])
+        finite = np.isfinite(x) & np.isfinite(y)
+        x, y = x[finite], y[finite]
+        names, site_of = index_names([data.site[index] for index in np.flatnonzero(finite).tolist()])
         for index, name in enumerate(names if plan.by_site else []):
             mine = site_of == index
             n_values = len(np.unique(x[mine]))
             if mine.sum() >= FEWEST_TESTS and n_values >= FEWEST_ANGLES:
-                found.append(Regression(plan, name, int(mine.sum()), n_values, _fit(y[mine], x[mine]), None))
-        found.append(_pooled(plan, x, y, site_of))
-    return tuple(found)
+                rows.append(Regression(plan, name, int(mine.sum()), n_values, _fit(y[mine], x[mine]), None))
+        rows.append(_pooled(plan, x, y, site_of))
+    return tuple(rows)
 
 
 def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: npt.NDArray[np.int64]) -> Regression:

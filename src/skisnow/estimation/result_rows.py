@@ -134,15 +134,15 @@ def penetration_experiments(
     return column_rows(columns | _unloading_columns(estimates.unloading))
 
 
-def _unloading_columns(found: Unloading) -> dict[str, list[Any]]:
+def _unloading_columns(unloading: Unloading) -> dict[str, list[Any]]:
     return {
-        "n_unloading": found.n_readings.tolist(),
-        "unloading_ratio": finite_or_none(found.unloading_ratio),
-        "unloading_ratio_interval": finite_or_none(found.unloading_ratio_interval),
-        "rebound_ratio": finite_or_none(found.rebound_ratio),
-        "rebound_ratio_interval": finite_or_none(found.rebound_ratio_interval),
-        "k_u_N_per_mm3": finite_or_none(found.unloading_stiffness / N_PER_MM3),
-        "k_u_interval_N_per_mm3": finite_or_none(found.unloading_stiffness_interval / N_PER_MM3),
+        "n_unloading": unloading.n_readings.tolist(),
+        "unloading_ratio": finite_or_none(unloading.unloading_ratio),
+        "unloading_ratio_interval": finite_or_none(unloading.unloading_ratio_interval),
+        "rebound_ratio": finite_or_none(unloading.rebound_ratio),
+        "rebound_ratio_interval": finite_or_none(unloading.rebound_ratio_interval),
+        "k_u_N_per_mm3": finite_or_none(unloading.unloading_stiffness / N_PER_MM3),
+        "k_u_interval_N_per_mm3": finite_or_none(unloading.unloading_stiffness_interval / N_PER_MM3),
     }
 
 

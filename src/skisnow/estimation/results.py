@@ -106,8 +106,8 @@ def _campaign(analysis: Analysis) -> Json:
 
 
 def _penetration(analysis: Analysis) -> Json:
-    found, tests = analysis.penetration, analysis.campaign.penetration
-    if found is None or tests is None:
+    estimates, tests = analysis.penetration, analysis.campaign.penetration
+    if estimates is None or tests is None:
         return {
             "experiments": [],
             "models": model_rows(None),
@@ -122,26 +122,26 @@ def _penetration(analysis: Analysis) -> Json:
             "growing_hardness": {"experiments": [], "sites": []},
         }
     return {
-        "experiments": penetration_experiments(tests, found.screened, found),
-        "models": model_rows(found.table),
-        "tests": [nested_row(row) for row in found.nested],
-        "selected": selected_model(found),
-        "warnings": list(found.warnings),
-        "volume_factor": _volume_factor(found.volume_factor),
-        "campaign_model": campaign_model_results(found.model, found.unloading),
-        "seating": _seating(tests.experiment, found),
+        "experiments": penetration_experiments(tests, estimates.screened, estimates),
+        "models": model_rows(estimates.table),
+        "tests": [nested_row(row) for row in estimates.nested],
+        "selected": selected_model(estimates),
+        "warnings": list(estimates.warnings),
+        "volume_factor": _volume_factor(estimates.volume_factor),
+        "campaign_model": campaign_model_results(estimates.model, estimates.unloading),
+        "seating": _seating(tests.experiment, estimates),
         "errors_in_depth": {
-            "models": model_rows(found.errors_in_depth),
-            "experiments": _fitted_hardness(tests.experiment, found),
+            "models": model_rows(estimates.errors_in_depth),
+            "experiments": _fitted_hardness(tests.experiment, estimates),
         },
-        "unloading": [_site_unloading(row) for row in found.site_unloading],
+        "unloading": [_site_unloading(row) for row in estimates.site_unloading],
         "growing_hardness": {
             "experiments": column_rows(
                 {
                     "experiment": list(tests.experiment),
-                    "H_0_N_per_mm3": finite_or_none(found.growing.surface_hardness / N_PER_MM3),
-                    "growth_percent": finite_or_none(100.0 * found.growing.growth),
-                    "growth_interval_percent": finite_or_none(100.0 * found.growing.growth_interval),
+                    "H_0_N_per_mm3": finite_or_none(estimates.growing.surface_hardness / N_PER_MM3),
+                    "growth_percent": finite_or_none(100.0 * estimates.growing.growth),
+                    "growth_interval_percent": finite_or_none(100.0 * estimates.growing.growth_interval),
                 }
             ),
             "sites": [
@@ -151,21 +151,21 @@ def _penetration(analysis: Analysis) -> Json:
                     "growth_percent": 100.0 * row.value,
                     "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
                 }
-                for row in found.site_growth
+                for row in estimates.site_growth
             ],
         },
     }
 
 
-def _volume_factor(found: VolumeFactor | None) -> Json | None:
-    if found is None:
+def _volume_factor(factor: VolumeFactor | None) -> Json | None:
+    if factor is None:
         return None
     return {
-        "n_series": found.n,
-        "b_raw": found.raw,
-        "b_raw_expected": found.expected_raw,
-        "b": found.value,
-        "b_interval": [found.low, found.high],
+        "n_series": factor.n,
+        "b_raw": factor.raw,
+        "b_raw_expected": factor.expected_raw,
+        "b": factor.value,
+        "b_interval": [factor.low, factor.high],
     }
 
 

@@ -49,11 +49,11 @@ class Screened(ShownFields):
 
     def codes(self) -> list[list[str]]:
         """Codes of the flags of each experiment, in the order of `QUALITY_FLAGS`."""
-        found: list[list[str]] = [[] for _ in range(len(self.used))]
+        codes_of: list[list[str]] = [[] for _ in range(len(self.used))]
         for code, mask in self.flags.items():
             for index in np.flatnonzero(mask).tolist():
-                found[index].append(code)
-        return found
+                codes_of[index].append(code)
+        return codes_of
 
 
 def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Screened:

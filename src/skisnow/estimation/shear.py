@@ -5,7 +5,7 @@ simulations (`skisnow.forces.shear`), the force grows in proportion to the displ
 at u_y. At a plate on the lever arm r the displacement is r φ, so the moment is M_f (φ - φ₀)/φ_y up to the largest
 moment M_f, and u_y = r φ_y. φ over M is a straight line over the rising part. Its intercept φ₀ takes slack and the zero
 of the angle; its slope times M_f r is u_y. A pole that twists by M/k between gauge and plate takes 1/k of the slope.
-u_y is our modelling assumption: the paper records the largest moment alone.
+u_y is our modelling assumption: the paper records only the largest moment.
 """
 
 from __future__ import annotations

@@ -82,20 +82,20 @@ def site_snow(
     """The means over the used experiments of a site, as `skisnow.read_snow` reads them from results.json."""
     pressed, sheared = _pressed(penetration, campaign), _sheared(shear, campaign)
     site = site_of_campaign(campaign, site)
-    hardness, stress = (_of(site, *known) for known in (pressed, sheared))
+    hardness, stress = (_of(site, *pair) for pair in (pressed, sheared))
     name = campaign.name
     if not hardness.size:
-        sites = sorted({str(each) for each in pressed[1]})
+        sites = sorted({str(row) for row in pressed[1]})
         raise no_used_experiment(name, site, sites)
     source = f"{name}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
     snow = mean_snow(hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name)
-    turned = next((each for each in shear.site_displacement if each.site == site), None) if shear else None
+    turned = next((row for row in shear.site_displacement if row.site == site), None) if shear else None
     if turned is not None:
         snow = with_measured_displacement(snow, turned.value / MM, (turned.low / MM, turned.high / MM))
     if unloading_ratio is not None:
         return replace(snow, unloading_ratio=unloading_ratio)
-    found = () if penetration is None else penetration.site_unloading
-    ratio = next((each for each in found if each.site == site and each.is_resolved), None)
+    ratios = () if penetration is None else penetration.site_unloading
+    ratio = next((row for row in ratios if row.site == site and row.is_resolved), None)
     return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
 
 
@@ -149,7 +149,7 @@ def _described(campaign: Campaign) -> dict[str, set[str]]:
 
 
 def _alike(campaign: Campaign) -> Iterator[str]:
-    """Names that differ by capitals and spaces alone."""
+    """Names that differ only by capitals and spaces."""
     names: dict[str, set[str]] = {}
     for site in _tested(campaign).union(*_described(campaign).values()):
         names.setdefault("".join(site.split()).casefold(), set()).add(site)

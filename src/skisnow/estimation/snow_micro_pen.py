@@ -39,7 +39,7 @@ Json: TypeAlias = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class WindowMeans:
-    """Of the windows of one relation between the two depths: medians of the shot noise, means of what follows from it.
+    """Medians of the shot noise of the windows between the two depths, means of density and surface area.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class EvaluatedRecording:
     Attributes
     ----------
     flags
-        Codes of `FLAGS`; it is used where there is none.
+        Codes of `FLAGS`; a recording without flags is used.
     surface
         Depth of the snow surface from where the recording began (m).
     reach
@@ -105,25 +105,27 @@ class SnowMicroPenAnalysis(Shown):
     evaluated: tuple[EvaluatedRecording, ...]
 
     def _facts(self) -> Facts:
-        used = sum(each.is_used for each in self.evaluated)
+        used = sum(recording.is_used for recording in self.evaluated)
         return Facts(f"{used} of {len(self.evaluated)} recordings used")
 
     @property
     def mean_force(self) -> FloatArray:
-        """Of each recording (N), NaN where it is not used."""
-        return np.array([each.mean_force if each.is_used else math.nan for each in self.evaluated])
+        """Mean force of each recording (N), NaN where it is not used."""
+        return np.array([recording.mean_force if recording.is_used else math.nan for recording in self.evaluated])
 
     @property
     def snow_density(self) -> FloatArray:
-        """Of each recording by the campaign's relation (kg/m³), NaN where it is not used."""
+        """Density of each recording by the campaign's relation (kg/m³), NaN where it is not used."""
         name = self.recordings.settings.relation
-        return np.array([each.windows[name].snow_density if each.is_used else math.nan for each in self.evaluated])
+        return np.array(
+            [recording.windows[name].snow_density if recording.is_used else math.nan for recording in self.evaluated]
+        )
 
     def at(self, sites: tuple[str, ...], spots: tuple[str, ...], values: FloatArray) -> FloatArray:
         """The mean of the values at each place: of the recordings at its spot, else of those at its site, else NaN."""
-        known = np.isfinite(values)
-        of_spot = _means(zip(self.recordings.site, self.recordings.spot, strict=True), values, known)
-        of_site = _means(((site, "") for site in self.recordings.site), values, known)
+        finite = np.isfinite(values)
+        of_spot = _means(zip(self.recordings.site, self.recordings.spot, strict=True), values, finite)
+        of_site = _means(((site, "") for site in self.recordings.site), values, finite)
         return np.array(
             [
                 of_spot[site, spot] if spot and (site, spot) in of_spot else of_site.get((site, ""), math.nan)
@@ -132,12 +134,12 @@ class SnowMicroPenAnalysis(Shown):
         )
 
 
-def _means(places: Iterable[tuple[str, str]], values: FloatArray, known: BoolArray) -> dict[tuple[str, str], float]:
+def _means(places: Iterable[tuple[str, str]], values: FloatArray, usable: BoolArray) -> dict[tuple[str, str], float]:
     collected: dict[tuple[str, str], list[float]] = {}
-    for place, value, use in zip(places, values.tolist(), known.tolist(), strict=True):
+    for place, value, use in zip(places, values.tolist(), usable.tolist(), strict=True):
         if use:
             collected.setdefault(place, []).append(value)
-    return {place: math.fsum(found) / len(found) for place, found in collected.items()}
+    return {place: math.fsum(items) / len(items) for place, items in collected.items()}
 
 
 def evaluate_recordings(recordings: SnowMicroPenRecordings) -> SnowMicroPenAnalysis:
@@ -168,9 +170,9 @@ def evaluate_profile(
     profile
         Force against depth.
     settings
-        Between which depths, by which relation, how the surface is looked for.
+        Between which depths, by which relation, how the surface is estimated.
     surface
-        Where the snow begins (m from the first sample); NaN: it is looked for.
+        Where the snow begins (m from the first sample); NaN: it is estimated.
     is_cancelled
         Whether its row says so.
 
@@ -178,26 +180,26 @@ def evaluate_profile(
     ----------
     The page docs/methods/snow-micro-pen.md.
     """
-    found = _surface(profile, settings, surface)
+    top = _surface(profile, settings, surface)
     flags = [CANCELLED] if is_cancelled else []
-    if found is None:
+    if top is None:
         return _nothing((*flags, NO_SURFACE))
-    reach = float(profile.depth[-1]) - found.depth
+    reach = float(profile.depth[-1]) - top.depth
     if reach < settings.to_depth:
-        return _nothing((*flags, TOO_SHORT), found, reach)
-    force = profile.force - found.air_force if settings.subtract_air_force else profile.force
+        return _nothing((*flags, TOO_SHORT), top, reach)
+    force = profile.force - top.air_force if settings.subtract_air_force else profile.force
     first, last = (
-        round((found.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
+        round((top.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
     )
     part = force[first:last]
     area = _cone_area(profile)
     windows = {name: _windows(part, profile.sample_distance, area, name) for name in PENETROMETER_RELATIONS}
     mean, median = float(part.mean()), float(np.median(part))
-    return EvaluatedRecording(tuple(flags), found.depth, reach, found.air_force, mean, median, mean / area, windows)
+    return EvaluatedRecording(tuple(flags), top.depth, reach, top.air_force, mean, median, mean / area, windows)
 
 
 def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, stated: float) -> SnowSurface | None:
-    """As stated, with the median of what was before it as the air's force; else looked for."""
+    """The stated surface with the median of the force before it; otherwise the estimated one."""
     if not math.isnan(stated):
         air = profile.force[: round(stated / profile.sample_distance)]
         return SnowSurface(stated, float(np.median(air)) if len(air) else 0.0)
@@ -236,10 +238,10 @@ def depth_profile(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, 
     air = profile.force[: round(surface / profile.sample_distance)]
     taken_off = float(np.median(air)) if settings.subtract_air_force and len(air) else 0.0
     force = profile.force[len(air) :] - taken_off
-    found = _values_of_windows(force, profile.sample_distance, _cone_area(profile), settings.relation)
-    step = found.step * profile.sample_distance
-    depth: FloatArray = np.arange(len(found.median)) * np.float64(step) + 0.5 * found.size * profile.sample_distance
-    return DepthProfile(depth, found.median, found.snow_density, found.specific_surface_area)
+    windows = _values_of_windows(force, profile.sample_distance, _cone_area(profile), settings.relation)
+    step = windows.step * profile.sample_distance
+    depth: FloatArray = np.arange(len(windows.median)) * np.float64(step) + 0.5 * windows.size * profile.sample_distance
+    return DepthProfile(depth, windows.median, windows.snow_density, windows.specific_surface_area)
 
 
 def _cone_area(profile: SnowMicroPenProfile) -> float:
@@ -275,16 +277,16 @@ def _values_of_windows(force: FloatArray, sample_distance: float, area: float, n
 
 
 def _windows(force: FloatArray, sample_distance: float, area: float, name: str) -> WindowMeans:
-    found = _values_of_windows(force, sample_distance, area, name)
-    usable = np.isfinite(found.element_size)
+    values = _values_of_windows(force, sample_distance, area, name)
+    usable = np.isfinite(values.element_size)
     if not usable.any():
         return WindowMeans(*(math.nan,) * 5, n=0)
     return WindowMeans(
-        rupture_force=float(np.median(found.noise.rupture_force[usable])),
-        deflection=float(np.median(found.noise.deflection[usable])),
-        element_size=float(np.median(found.element_size[usable])),
-        snow_density=float(found.snow_density[usable].mean()),
-        specific_surface_area=float(found.specific_surface_area[usable].mean()),
+        rupture_force=float(np.median(values.noise.rupture_force[usable])),
+        deflection=float(np.median(values.noise.deflection[usable])),
+        element_size=float(np.median(values.element_size[usable])),
+        snow_density=float(values.snow_density[usable].mean()),
+        specific_surface_area=float(values.specific_surface_area[usable].mean()),
         n=int(usable.sum()),
     )
 
@@ -297,8 +299,8 @@ def snow_micro_pen_results(analysis: SnowMicroPenAnalysis) -> Json:
         **values_of(recordings.settings),
         "recordings": [
             dict(zip(("recording", "site", "spot", "file"), own, strict=True))
-            | _row(each, each.windows[recordings.settings.relation])
-            for own, each in zip(names, analysis.evaluated, strict=True)
+            | _row(recording, recording.windows[recordings.settings.relation])
+            for own, recording in zip(names, analysis.evaluated, strict=True)
         ],
     }
 

@@ -101,11 +101,11 @@ def fit_in_groups(
 
 def spread_tests(model: CampaignModel, index: IntArray) -> tuple[SpreadTest, SpreadTest]:
     """Tests of the scatter s and of the seating τ between the groups of ``index`` (m,), of a model with one group."""
-    known = model.counts & np.isfinite(model.log_hardness)
+    usable = model.counts & np.isfinite(model.log_hardness)
     squares, degrees, _ = _offset_squares(model)
     return (
-        _bartlett(model.misfit[known], model.free[known], index[known]),
-        _bartlett(squares[known], degrees[known], index[known]),
+        _bartlett(model.misfit[usable], model.free[usable], index[usable]),
+        _bartlett(squares[usable], degrees[usable], index[usable]),
     )
 
 
@@ -125,21 +125,21 @@ def noisier_series(model: CampaignModel) -> BoolArray | None:
     ``model`` has one group. The sum of squared residuals of a series is its scale times chi-squared, and so is δ².
     Of two classes with their own scales and shares, each series belongs to the more probable one.
     """
-    known = model.counts & np.isfinite(model.log_hardness) & (model.free > 1.0)
-    squares, degrees = model.misfit[known], model.free[known]
-    if known.sum() < 2 * FEWEST_DEGREES or squares.min() <= 0.0:
+    usable = model.counts & np.isfinite(model.log_hardness) & (model.free > 1.0)
+    squares, degrees = model.misfit[usable], model.free[usable]
+    if usable.sum() < 2 * FEWEST_DEGREES or squares.min() <= 0.0:
         return None
     scaled = squares * degrees.sum() / squares.sum()
     if np.mean((scaled - degrees) ** 2 / (2.0 * degrees)) < OVERDISPERSED:
         return None
-    of_offset, free_offset, share = (values[known] for values in _offset_squares(model))
+    of_offset, free_offset, share = (values[usable] for values in _offset_squares(model))
     seen = (share > LEAST_SHARE) & (of_offset > 0.0)
     sums = [(squares, degrees), (np.where(seen, of_offset, 0.0), np.where(seen, free_offset, 0.0))]
     probability, gain, factor = _two_classes(sums)
     if gain < LIKELIHOOD_GAIN or factor < CLEAR_FACTOR or not SMALLEST_CLASS < probability.mean() < 1 - SMALLEST_CLASS:
         return None
-    noisier = np.zeros(len(known), dtype=np.bool_)
-    noisier[known] = probability > 0.5
+    noisier = np.zeros(len(usable), dtype=np.bool_)
+    noisier[usable] = probability > 0.5
     return noisier
 
 
@@ -187,9 +187,9 @@ def _log_density(sums: Sequence[tuple[FloatArray, FloatArray]], scales: Sequence
     """Logarithm of the density of the sums of squares, scale times chi-squared."""
     density = np.zeros(len(sums[0][0]))
     for (squares, degrees), scale in zip(sums, scales, strict=True):
-        known = degrees > 0.0
-        half, y = 0.5 * degrees[known], squares[known] / (2.0 * max(scale, 1e-300))
-        density[known] += (half - 1.0) * np.log(y) - y - gammaln(half) - np.log(2.0 * max(scale, 1e-300))
+        present = degrees > 0.0
+        half, y = 0.5 * degrees[present], squares[present] / (2.0 * max(scale, 1e-300))
+        density[present] += (half - 1.0) * np.log(y) - y - gammaln(half) - np.log(2.0 * max(scale, 1e-300))
     return density
 
 

@@ -47,11 +47,11 @@ NOT_FALLING: Final = "unloading_not_falling"
 _FITTED: Final = 2
 """e_0 and s."""
 _ROUNDING: Final = 1e-9
-"""Relative error of a depth that stands for none: rounding of double precision."""
+"""Relative error of an exact depth: rounding of double precision."""
 _ITERATIONS: Final = 60
 _SETTLED: Final = 1e-4
 _LARGEST_SHARE: Final = 0.9
-"""Of the largest depth that an offset can be."""
+"""Largest offset as a share of the largest depth."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -141,7 +141,7 @@ def unloading(
     hardness
         H_V of each series.
     model
-        Of the campaign, for the depth zeros.
+        Model of the campaign, for the depth zeros.
     bad
         Mask over the series: those that are omitted, because their loads do not fall.
     """
@@ -195,7 +195,7 @@ class _Branch(NamedTuple):
 
     g: FloatArray
     g_by_offset: FloatArray
-    known: FloatArray
+    known_variance: FloatArray
     rebound2: FloatArray
 
 
@@ -207,7 +207,7 @@ def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[Flo
     )
     scatter2, freedom = _scatter(branch, law, model, group, model.counts[chosen])
     of_rebound = scatter2[group][series] * law.rebound2
-    weight = 1.0 / (law.known + of_rebound)
+    weight = 1.0 / (law.known_variance + of_rebound)
     s, spread, residual = _line(branch, law.g, weight)
     dg = _centred(branch, law.g, weight)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -258,7 +258,7 @@ def _scatter(
     free, readings = total(np.maximum(n - _FITTED, 0.0)), total(branch.sums((law.rebound2 > 0).astype(float)))
     scatter2 = np.full(n_groups, priors.rebound**2)
     for _ in range(_ITERATIONS):
-        weight = 1.0 / (law.known + scatter2[group][branch.series] * law.rebound2)
+        weight = 1.0 / (law.known_variance + scatter2[group][branch.series] * law.rebound2)
         _, _, residual = _line(branch, law.g, weight)
         prior = priors.readings * priors.rebound**2 / scatter2
         Q = total(branch.sums(weight * residual**2)) + prior
@@ -289,8 +289,8 @@ def _line(branch: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArr
 def _reciprocal(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
     """1/s where that is above 0, and its interval where both ends are."""
     ratio = np.divide(1.0, s, out=np.full(s.shape, np.nan), where=s > 0)
-    known = (ends[..., 0] > 0)[..., None]
-    turned = np.divide(1.0, ends[..., ::-1], out=np.full(ends.shape, np.nan), where=known & (ends > 0))
+    positive = (ends[..., 0] > 0)[..., None]
+    turned = np.divide(1.0, ends[..., ::-1], out=np.full(ends.shape, np.nan), where=positive & (ends > 0))
     return ratio, turned
 
 
@@ -301,31 +301,34 @@ def _of_product(first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, 
         return np.asarray((first[0] * second[0])[:, None] * np.exp(half * np.array([-1.0, 1.0])))
 
 
-def site_unloading(found: Unloading, used: BoolArray, site: Sequence[str]) -> tuple[SiteUnloading, ...]:
+def site_unloading(series: Unloading, used: BoolArray, site: Sequence[str]) -> tuple[SiteUnloading, ...]:
     """The mean of each site in alphabetical order, then of all together; empty without a used series."""
-    counts = used & np.isfinite(found.rebound_ratio)
+    counts = used & np.isfinite(series.rebound_ratio)
     names = np.array(site, dtype=object)
     if not counts.any():
         return ()
     sites = sorted(set(names[counts].tolist()))
-    return (*(_mean(found, counts & (names == name), names, name) for name in sites), _mean(found, counts, names, None))
+    return (
+        *(_mean(series, counts & (names == name), names, name) for name in sites),
+        _mean(series, counts, names, None),
+    )
 
 
-def _mean(found: Unloading, chosen: BoolArray, names: npt.NDArray[np.object_], site: str | None) -> SiteUnloading:
-    """Of the series with a standard error; where none has one, the plain mean without an interval."""
-    known = chosen & np.isfinite(found.rebound_ratio_error)
+def _mean(series: Unloading, chosen: BoolArray, names: npt.NDArray[np.object_], site: str | None) -> SiteUnloading:
+    """Mean of the series with a standard error; without such a series the plain mean without an interval."""
+    with_error = chosen & np.isfinite(series.rebound_ratio_error)
     low, high = np.nan, np.nan
-    if not known.any():
-        s = float(found.rebound_ratio[chosen].mean())
-    elif known.sum() == 1:
-        s = float(found.rebound_ratio[known][0])
-        low, high = found.rebound_ratio_interval[known][0].tolist()
+    if not with_error.any():
+        s = float(series.rebound_ratio[chosen].mean())
+    elif with_error.sum() == 1:
+        s = float(series.rebound_ratio[with_error][0])
+        low, high = series.rebound_ratio_interval[with_error][0].tolist()
     else:
-        s, low, high, _ = random_effects_mean(found.rebound_ratio[known], found.rebound_ratio_error[known])
+        s, low, high, _ = random_effects_mean(series.rebound_ratio[with_error], series.rebound_ratio_error[with_error])
     ratio, ends = _reciprocal(np.array([s]), np.array([[low, high]]))
-    back = chosen & np.isfinite(found.unloading_stiffness)
-    own = own_mean(found.unloading_stiffness[back], names[back].tolist(), geometric=True)
-    n = int(known.sum() or chosen.sum())
+    back = chosen & np.isfinite(series.unloading_stiffness)
+    own = own_mean(series.unloading_stiffness[back], names[back].tolist(), geometric=True)
+    n = int(with_error.sum() or chosen.sum())
     return SiteUnloading(
         site=site,
         n=n,

@@ -46,17 +46,17 @@ class WeatherAtTests(Shown):
     quantities: Mapping[str, FloatArray]
 
     def _facts(self) -> Facts:
-        known = int(np.isfinite(np.stack(list(self.quantities.values()))).any(axis=0).sum())
-        return Facts(f"at {known} of {len(self.experiment)} experiments")
+        count = int(np.isfinite(np.stack(list(self.quantities.values()))).any(axis=0).sum())
+        return Facts(f"at {count} of {len(self.experiment)} experiments")
 
     def site_means(self) -> Iterator[tuple[str, int, dict[str, float]]]:
         """Each site with the number of its experiments whose weather is known, and their means."""
         names, site_of = index_names(self.site)
         for index, name in enumerate(names):
             mine = {key: values[site_of == index] for key, values in self.quantities.items()}
-            known = {key: values[np.isfinite(values)] for key, values in mine.items()}
-            means = {key: float(values.mean()) if len(values) else math.nan for key, values in known.items()}
-            yield name, max(map(len, known.values())), means
+            finite = {key: values[np.isfinite(values)] for key, values in mine.items()}
+            means = {key: float(values.mean()) if len(values) else math.nan for key, values in finite.items()}
+            yield name, max(map(len, finite.values())), means
 
 
 def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
@@ -76,12 +76,12 @@ def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
     rows = list(_experiments(campaign))
     moments = np.array([_moment(time, weather.utc_offset) for *_, time in rows], dtype=float)
     gap = weather.settings.longest_gap_h * HOUR
-    found = {
+    quantities = {
         key: weather.series.at(moments, name, longest_gap=gap) * factor + offset
         for key, (name, factor, offset) in QUANTITIES.items()
     }
     kinds, experiments, sites, times = (tuple(column) for column in zip(*rows, strict=True)) if rows else ((),) * 4
-    return WeatherAtTests(kinds, experiments, sites, times, found)
+    return WeatherAtTests(kinds, experiments, sites, times, quantities)
 
 
 def _experiments(campaign: Campaign) -> Iterator[tuple[str, str, str, str]]:
@@ -103,23 +103,23 @@ def _first(cells: Sequence[str]) -> str:
 
 
 def _moment(text: str, utc_offset: float) -> float:
-    """Seconds since 1970, UTC; NaN where the text is no day with a time of day."""
+    """Seconds since 1970, UTC; NaN unless the text is a day with a time of day."""
     if "T" not in text and " " not in text:
         return math.nan
     try:
-        found = datetime.fromisoformat(text)
+        moment = datetime.fromisoformat(text)
     except ValueError:
         return math.nan
     zone = timezone(timedelta(hours=utc_offset))
-    return (found if found.tzinfo else found.replace(tzinfo=zone)).timestamp()
+    return (moment if moment.tzinfo else moment.replace(tzinfo=zone)).timestamp()
 
 
-def weather_results(weather: CampaignWeather, found: WeatherAtTests) -> Json:
+def weather_results(weather: CampaignWeather, at_tests: WeatherAtTests) -> Json:
     """The station, a row for each experiment and one for each site; NaN stands where nothing is known."""
     series = weather.series
-    columns = {"kind": found.kind, "experiment": found.experiment, "site": found.site, "time": found.time}
+    columns = {"kind": at_tests.kind, "experiment": at_tests.experiment, "site": at_tests.site, "time": at_tests.time}
     rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*columns.values(), strict=True)]
-    for key, values in found.quantities.items():
+    for key, values in at_tests.quantities.items():
         for row, value in zip(rows, values.tolist(), strict=True):
             row[key] = value
     return {
@@ -131,5 +131,5 @@ def weather_results(weather: CampaignWeather, found: WeatherAtTests) -> Json:
         "utc_offset_h": weather.utc_offset,
         "longest_gap_h": weather.settings.longest_gap_h,
         "experiments": rows,
-        "sites": [{"site": site, "n": n, **means} for site, n, means in found.site_means()],
+        "sites": [{"site": site, "n": n, **means} for site, n, means in at_tests.site_means()],
     }

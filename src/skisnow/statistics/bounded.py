@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 MOST_COEFFICIENTS = 6
 _KKT_TOLERANCE = 1e-12
-"""Of the gradient, for columns of length one: some thousand roundings."""
+"""Share of the gradient, for columns of length one: some thousand roundings."""
 _DEPENDENT = 1e-13
 """A pivot of a scaled Gram matrix not above this is zero but for rounding."""
 
@@ -46,7 +46,7 @@ class NonNegativeFit:
     residuals
         Observed minus fitted, shape (n,), not weighted.
     rank
-        Of the (weighted) design, bounds left aside.
+        Rank of the (weighted) design without bounds.
     """
 
     coefficients: FloatArray
@@ -102,10 +102,10 @@ def non_negative_fit(
     A = as_predictors(design, len(y))
     few = condensed(A, y, weights=weights)
     warn_if_ill_conditioned(few.design)
-    found = few.solved()
-    residuals = y - A @ found.coefficients
+    solution = few.solved()
+    residuals = y - A @ solution.coefficients
     sse = float(np.sum((_root_weights(weights, len(y)) * residuals) ** 2))
-    return NonNegativeFit(found.coefficients, found.coefficients == 0.0, sse, residuals, found.rank)
+    return NonNegativeFit(solution.coefficients, solution.coefficients == 0.0, sse, residuals, solution.rank)
 
 
 class Solved(NamedTuple):
@@ -151,8 +151,8 @@ class Condensed:
         A = A if projection is None else A @ projection
         _require_few(A.shape[1])
         unit = _lengths(A)
-        found = _best_support(A / unit, z, self.n)
-        return Solved(found.coefficients / unit, found.rank)
+        best = _best_support(A / unit, z, self.n)
+        return Solved(best.coefficients / unit, best.rank)
 
 
 def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None) -> Condensed:
@@ -175,7 +175,7 @@ def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.Ar
 
 
 def _lengths(A: FloatArray) -> FloatArray:
-    """Of the columns, 1 where it is zero."""
+    """Lengths of the columns, 1 where a length is zero."""
     length = np.linalg.norm(A, axis=0)
     return np.where(length > 0, length, 1.0)
 
@@ -283,16 +283,16 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
         )
         raise ParameterError(message, code="wrong_shape")
     _require_few(m.shape[1])
-    known = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))
+    finite = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))
     result = np.full(m.shape, np.nan)
-    if not np.any(known):
+    if not np.any(finite):
         return result
     # the batch goes last: each step below is then one pass over contiguous memory
-    G, m = np.moveaxis(G[known], 0, -1), m[known].T
+    G, m = np.moveaxis(G[finite], 0, -1), m[finite].T
     scale = np.sqrt(np.maximum(np.einsum("iib->ib", G), 0.0))
     unit = np.where(scale > 0, scale, 1.0)
     G = np.ascontiguousarray(G / (unit[:, None] * unit[None, :]))
-    result[known] = (_batch(G, m / unit) / unit).T
+    result[finite] = (_batch(G, m / unit) / unit).T
     return result
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 _WHOLLY = 1e-9
-"""A direction of which a cluster holds all but this share is known from that cluster alone."""
+"""A direction of which a cluster holds all but this share is known only from that cluster."""
 
 
 @dataclass(frozen=True)

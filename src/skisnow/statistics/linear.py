@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 _CHEBYSHEV_LIMIT: Final = 1e5
-"""Of the condition number of Chebyshev polynomials: at 3·10⁴ the coefficients of the powers keep 9 digits."""
+"""Limit of the condition number of Chebyshev polynomials: at 3·10⁴ the coefficients of the powers keep 9 digits."""
 Polynomial = list[Fraction]
 """Coefficients in ascending powers."""
 

@@ -33,7 +33,7 @@ Model: TypeAlias = Callable[..., Any]
 
 _MOST_STEPS = 50
 _SETTLED = 1e-6
-"""A last step above this share of parameter and standard error together is no solution."""
+"""A last step above this share of parameter and standard error together is not a solution."""
 _PARAMETER_DIGITS = 1e-8
 _ERROR_DIGITS = 1e-6
 """Relative uncertainty of parameters and of standard errors from which on a warning is given."""
@@ -42,13 +42,13 @@ _EXACT = 10.0
 _EPS = float(np.finfo(float).eps)
 Values: TypeAlias = "Callable[[FloatArray], FloatArray]"
 _COARSE_STEP: Final = float(np.finfo(float).eps) ** (1.0 / 3.0)
-"""Of a plain central difference: its truncation h² equals the rounding eps/h."""
+"""Step of a plain central difference: its truncation h² equals the rounding eps/h."""
 _FIRST_STEP: Final = 0.1
 """The longest step of the ladder, as a share of the parameter, or of what changes the model by its own size."""
 _RUNGS: Final = 9
 _WORSE: Final = 4.0
 _AT_ZERO: Final = 1e-6
-"""A parameter not above this share of its scale lies at zero: the scale sets its step."""
+"""A parameter not above this share of its scale counts as zero: the scale sets its step."""
 
 
 @dataclass(frozen=True)
@@ -154,20 +154,20 @@ def nonlinear_fit(
 
     def values(parameters: FloatArray) -> FloatArray:
         with np.errstate(all="ignore"):  # trial steps may leave the model's domain; they are judged by their residuals
-            found = np.asarray(model(x, *parameters), dtype=float)
-        if found.shape != (n,):
+            fitted = np.asarray(model(x, *parameters), dtype=float)
+        if fitted.shape != (n,):
             message = Message(
                 "the model returned shape {shape}; one value is needed for each of {n} responses",
-                shape=str(found.shape),
+                shape=str(fitted.shape),
                 n=n,
             )
             raise ParameterError(message, code="wrong_shape")
-        return found
+        return fitted
 
     require_finite("model at the start", values(b))
     b = _searched(values, observed, b, scale)
-    b, design, known = _polished(values, observed, b, scale, labels)
-    _warn(known, n > p)
+    b, design, uncertainty = _polished(values, observed, b, scale, labels)
+    _warn(uncertainty, n > p)
     return NonlinearFit(**spread(b, observed - values(b), design, confidence), names=labels)
 
 
@@ -183,7 +183,7 @@ def _searched(values: Values, observed: FloatArray, start: FloatArray, scale: Fl
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            found = least_squares(
+            result = least_squares(
                 missed,
                 start,
                 jac=slopes,
@@ -198,12 +198,12 @@ def _searched(values: Values, observed: FloatArray, start: FloatArray, scale: Fl
                 Message("the search broke off: {error}; start nearer to the solution", error=error),
                 code="not_converged",
             ) from error
-    if found.status <= 0 or not np.all(np.isfinite(found.x)):
+    if result.status <= 0 or not np.all(np.isfinite(result.x)):
         raise FitError(
             Message("the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter"),
             code="not_converged",
         )
-    return np.asarray(found.x, dtype=float)
+    return np.asarray(result.x, dtype=float)
 
 
 def _polished(
@@ -234,7 +234,7 @@ def _polished(
 
 @dataclass(frozen=True)
 class _Known:
-    """Relative uncertainty of the parameters and of the standard errors by rounding and derivatives alone."""
+    """Relative uncertainty of the parameters and of the standard errors by rounding and derivatives."""
 
     parameters: float
     standard_errors: float
@@ -277,10 +277,10 @@ _FEW_DIGITS_OF_ERRORS: Final = template(
 )
 
 
-def _warn(known: _Known, errors_exist: bool) -> None:
+def _warn(uncertainty: _Known, errors_exist: bool) -> None:
     checks = (
-        (_FEW_DIGITS_OF_PARAMETERS, known.parameters, _PARAMETER_DIGITS),
-        (_FEW_DIGITS_OF_ERRORS, known.standard_errors, _ERROR_DIGITS),
+        (_FEW_DIGITS_OF_PARAMETERS, uncertainty.parameters, _PARAMETER_DIGITS),
+        (_FEW_DIGITS_OF_ERRORS, uncertainty.standard_errors, _ERROR_DIGITS),
     )
     for few_digits, share, allowed in checks[: 2 if errors_exist else 1]:
         if not share <= allowed:
@@ -314,7 +314,7 @@ def jacobian(values: Values, b: FloatArray, scale: FloatArray) -> Jacobian:
     b
         The parameters, shape (p,).
     scale
-        Above 0, shape (p,): the size of a parameter that lies at 0.
+        Above 0, shape (p,): the size of a parameter at 0.
     """
     here = float(np.linalg.norm(values(b)))
     coarse = np.linalg.norm(coarse_jacobian(values, b, scale), axis=0)

@@ -152,22 +152,22 @@ def _factorised(design: FloatArray) -> Factorisation:
         columns = Columns(inner.scaled, back, inner.names)
     else:
         columns = standardised(design, intercept=False)
-    kept = independent_columns(columns.scaled)
-    if not kept:
+    used = independent_columns(columns.scaled)
+    if not used:
         raise FitError(Message("X is zero throughout; it determines no coefficient"), code="no_data")
-    if len(kept) < design.shape[1]:
+    if len(used) < design.shape[1]:
         warnings.warn(
             FitWarning(
                 Message(
                     "X has {count} columns but rank {rank}: coefficients that are not determined are set to 0",
                     count=design.shape[1],
-                    rank=len(kept),
+                    rank=len(used),
                 ),
                 code="rank_deficient",
             ),
             stacklevel=3,
         )
-    part = Columns(columns.scaled[:, kept], columns.back[:, kept], tuple(columns.names[j] for j in kept))
+    part = Columns(columns.scaled[:, used], columns.back[:, used], tuple(columns.names[j] for j in used))
     warn_if_ill_conditioned(part.scaled)
     return factorise(part)
 
@@ -194,15 +194,15 @@ def _residual_intervals(fit: Factorisation, residuals: FloatArray, alpha: float)
     n, p = fit.orthogonal.shape
     nu = n - p
     free = 1.0 - np.sum(fit.orthogonal**2, axis=1)
-    known = free > np.sqrt(np.finfo(float).eps)  # an observation that alone fixes a coefficient has no interval
+    determined = free > np.sqrt(np.finfo(float).eps)  # an observation that alone fixes a coefficient has no interval
     if nu == 0:
         return np.full((n, 2), np.nan)
     squares = np.full(n, residuals @ residuals / nu)
     if nu > 1:
-        without = residuals @ residuals - residuals**2 / np.where(known, free, 1.0)
+        without = residuals @ residuals - residuals**2 / np.where(determined, free, 1.0)
         squares = np.maximum(without, 0.0) / (nu - 1)
     width = expanded_factor(float(max(nu - 1, 1)), 1.0 - alpha) * np.sqrt(squares * np.maximum(free, 0.0))
-    width = np.where(known, width, np.inf)
+    width = np.where(determined, width, np.inf)
     return np.stack((residuals - width, residuals + width), axis=-1)
 
 

@@ -39,7 +39,7 @@ def resampling_counts(
     n_resamples
         Resamples in all, ≥ 0.
     rng
-        Source of random numbers; the counts depend on its state alone, not on ``chunk``.
+        Source of random numbers; the counts depend only on its state, not on ``chunk``.
     chunk
         Resamples in each array; left out, as many as make some MB.
 

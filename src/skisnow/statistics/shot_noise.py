@@ -70,8 +70,8 @@ def shot_noise(force: FloatArray, sample_distance: float) -> ShotNoise:
         deflection = 1.5 * at_zero / (at_zero - next_to_it) * sample_distance
         rupture_force = 1.5 * variance / mean
         intensity = 4.0 / 3.0 * mean**2 / (variance * deflection)
-    known = (mean > 0.0) & np.isfinite(rupture_force) & np.isfinite(deflection) & np.isfinite(intensity)
-    return ShotNoise(*(np.where(known, each, np.nan) for each in (rupture_force, deflection, intensity)))
+    determined = (mean > 0.0) & np.isfinite(rupture_force) & np.isfinite(deflection) & np.isfinite(intensity)
+    return ShotNoise(*(np.where(determined, parts, np.nan) for parts in (rupture_force, deflection, intensity)))
 
 
 def _without_line(force: FloatArray) -> FloatArray:

@@ -35,8 +35,8 @@ def holm_corrected(p: npt.ArrayLike) -> FloatArray:
     """
     values = np.asarray(p, dtype=float)
     corrected = np.full(values.shape, np.nan)
-    known = np.flatnonzero(np.isfinite(values))
-    order = known[np.argsort(values[known], kind="stable")]
+    finite = np.flatnonzero(np.isfinite(values))
+    order = finite[np.argsort(values[finite], kind="stable")]
     factors = np.arange(len(order), 0, -1)
     corrected[order] = np.minimum(np.maximum.accumulate(values[order] * factors), 1.0)
     return corrected
@@ -87,7 +87,7 @@ def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, al
     sd_log
         Standard deviation of the natural logarithms within a group, > 0.
     ratio
-        Ratio of the geometric means to be told from 1, > 0, not 1.
+        Ratio of the geometric means that is to differ from 1, > 0, not 1.
     power
         Chance that the test finds it, between alpha and 1.
     alpha
