@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -40,11 +39,6 @@ def test_dataset_has_the_numbers_and_units_of_both_kinds(analysis: Analysis) -> 
     assert dataset["penetration_H_V_low_N_per_mm3"].units == "N/mm³"
 
 
-def test_figure_of_the_report(analysis: Analysis) -> None:
-    axes = analysis.plot("model_rmse").axes[0]
-    assert len(axes.patches) + len(axes.collections) + len(axes.lines) > 0
-
-
 @pytest.mark.parametrize("what", ["model_rsme", "hardness_mean_force"])
 def test_unknown_figure(analysis: Analysis, what: str) -> None:
     with pytest.raises(ParameterError) as caught:
@@ -64,14 +58,6 @@ def test_unknown_kind_of_experiment(analysis: Analysis) -> None:
     with pytest.raises(ParameterError) as caught:
         analysis.to_dataframe("shera")
     assert caught.value.code == "unknown_kind"
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_report(analysis: Analysis, tmp_path: Path) -> None:
-    page = analysis.report(tmp_path)
-    assert page == tmp_path / "report.html"
-    assert page.is_file()
-    assert (tmp_path / "results.json").is_file()
 
 
 def test_notebook_table_has_values(analysis: Analysis) -> None:

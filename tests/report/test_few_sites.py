@@ -9,7 +9,6 @@ import pytest
 
 from skisnow.campaign import Campaign
 from skisnow.report.campaign.data import ReportData
-from skisnow.report.campaign.findings import caveats, regression_sentences
 from skisnow.report.campaign.key_results import key_results
 from skisnow.report.formatting import interval, significant
 
@@ -41,25 +40,6 @@ def test_one_site_has_an_interval_over_its_experiments(campaign: Campaign) -> No
     own = next(row for row in results["comparisons"] if row["quantity"] == "H_V_N_per_mm3")
     assert f"{significant(own['own'])} N/mm³ (95 % interval {interval(own['own_interval'])}" in hardness
     assert "30 of 30 penetration" in hardness
-
-
-def test_no_slope_on_two_densities_is_called_significant(data: ReportData) -> None:
-    relations = plain(key_results(data)[-1])
-    assert relations.count("none") == 2
-    density = next(text for text in map(plain, regression_sentences(data)) if text.startswith("HV on snow density"))
-    assert "2 different values" in density
-    assert "significant" not in density
-
-
-def test_warnings_of_fits_come_first_among_the_caveats(data: ReportData) -> None:
-    told = replace_warnings(data, ["The rmse of H_e (15647 N) is high."])
-    assert plain(caveats(told)[0]).startswith("The rmse of He")
-
-
-def replace_warnings(data: ReportData, warnings: list[str]) -> ReportData:
-    found = data.analysis.penetration
-    assert found is not None
-    return ReportData(replace(data.analysis, penetration=replace(found, warnings=tuple(warnings))))
 
 
 def test_relations_stand_where_their_p_value_puts_them(reference: Reported) -> None:

@@ -125,19 +125,6 @@ def test_the_page_has_its_sections_and_the_table_every_measured_number(found: Id
     assert names == {f"{name}.{kind}" for name in ("residuals_photo_cells", "profiles") for kind in FORMS}
 
 
-@pytest.mark.usefixtures("undrawn")
-def test_one_parameter_has_no_correlations_and_an_earlier_figure_goes(found: Identification, tmp_path: Path) -> None:
-    write_identify_report(found, identification_dict(found), tmp_path)
-    one = replace(
-        found, parameters=found.parameters[:1], correlation=np.eye(1), profiles=(), warnings=(),
-        fits=(along_a_track("gps"),),
-    )  # fmt: skip
-    text = write_identify_report(one, identification_dict(one), tmp_path).read_text(encoding="utf-8")
-    assert not any(f" {heading}</h2>" in text for heading in ("Correlations", "Profiles", "Warnings"))
-    names = {path.stem for path in (tmp_path / "figures").iterdir()}
-    assert names == {"tracks", "residuals_track"}
-
-
 def test_profiles_are_drawn_with_what_the_curvature_foretells(found: Identification) -> None:
     """Here the profile is the parabola itself: both curves are the same, over the whole width."""
     with journal_style():
@@ -171,14 +158,6 @@ def test_residuals_are_measured_minus_identified_in_a_band_of_two_deviations(fou
     assert (band.x0, band.x1, band.y0, band.y1) == pytest.approx((20.0, 60.0, -0.008, 0.008))
     assert axes.get_xlabel().endswith("(m)") and axes.get_ylabel().endswith("(s)")
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a", "b"]
-
-
-def test_a_quantity_that_nobody_measured_has_no_panel() -> None:
-    with journal_style():
-        figure = draw_residuals([along_a_track("gps")])
-    assert [axes.get_ylabel().partition("\n")[0] for axes in figure.axes] == ["x", "y"]
-    assert figure.axes[-1].get_xlabel() == "time (s)"
-    assert np.asarray(figure.axes[1].lines[0].get_ydata()) == pytest.approx(np.full(11, -0.2))
 
 
 def test_tracks_are_seen_from_above_with_the_measured_points() -> None:

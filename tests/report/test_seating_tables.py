@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
 import pytest
 
 from skisnow.report.campaign.data import ReportData
@@ -12,7 +9,6 @@ from skisnow.report.campaign.series_tables import (
     count_resolved_offsets,
     seating_largest_table,
     seating_quantiles_table,
-    seating_table,
 )
 
 from .conftest import Reported, altered
@@ -63,25 +59,6 @@ def test_the_largest_are_in_the_order_of_their_factor(data: ReportData) -> None:
         ("depth_offset_mm", "estimate"),
         ("H_V_change_percent", "number"),
     ]
-
-
-def test_of_many_series_twelve_stand_there(reference: Reported) -> None:
-    table = seating_largest_table(ReportData(reference.analysis))
-    assert len(table.rows) == 12
-    factors = [abs(math.log(1.0 + row[5] / 100.0)) for row in table.rows]
-    assert factors == sorted(factors, reverse=True)
-    every = [row["H_V_change_percent"] for row in ReportData(reference.analysis).seating]
-    known = np.log(1.0 + np.array([change for change in every if change is not None]) / 100.0)
-    assert factors[0] == pytest.approx(np.abs(known).max())
-
-
-def test_every_series_has_a_row(data: ReportData) -> None:
-    table = seating_table(data)
-    assert [row[2:] for row in table.rows] == [
-        (used, (offset, ends), change)
-        for used, offset, ends, change in zip([True] * 4 + [False], OFFSETS, ENDS, CHANGES, strict=True)
-    ]
-    assert [row[:2] for row in table.rows] == [(row["experiment"], row["site"]) for row in data.penetration]
 
 
 def test_an_offset_shows_where_its_interval_leaves_zero_out() -> None:

@@ -58,11 +58,6 @@ def test_lines_end_as_rfc_4180_has_it() -> None:
     assert text.split("\r\n")[0].split(",")[:5] == ["site", "n", "used", "flags", "H_V_N_per_mm3"]
 
 
-def test_a_table_without_rows_is_its_header() -> None:
-    empty = Table("test", "A table.", TABLE.columns, [])
-    assert table_csv(empty).count("\r\n") == 1
-
-
 def test_the_report_s_experiments_equal_the_results(reference: Reported) -> None:
     path = reference.folder / "tables" / "penetration_experiments_synthetic.csv"
     with path.open(encoding="utf-8", newline="") as file:

@@ -26,20 +26,6 @@ def test_special_letters_never_reach_latex_bare() -> None:
     assert not set(bare) & set("&%$#_{}~^\\[*<>")
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("a & b_c", r"a \& b\_c"),
-        ("100 %", r"100 \%"),
-        ("\\x", r"\textbackslash{}x"),
-        ("a\nb", "a b"),
-        ("Mössner", "Mössner"),
-    ],
-)
-def test_escapes(text: str, expected: str) -> None:
-    assert latex_escaped(text) == expected
-
-
 def _table(rows: list[tuple[object, ...]], synthetic: bool = False) -> str:
     columns = (Column("site", "Site", "text"), Column("H", "H_V", "estimate", "N/mm³"), Column("p", "p", "p"))
     return table_latex(Table("test", "Values of H_V in 5 %.", columns, rows, synthetic=synthetic))
@@ -123,11 +109,6 @@ def test_every_table_prints_within_its_page(reference: Reported, tmp_path: Path)
     assert len(places) > 15
     labels = (tmp_path / "paper.aux").read_text(encoding="utf-8", errors="replace")
     assert labels.count(r"\newlabel{tab:") >= len(places)
-
-
-def test_synthetic_stands_in_the_caption() -> None:
-    assert "Synthetic data." in _table([], synthetic=True)
-    assert "ynthetic" not in _table([])
 
 
 def test_braces_and_environments_balance_in_every_table(reference: Reported) -> None:

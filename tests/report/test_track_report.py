@@ -2,7 +2,6 @@
 
 import math
 import re
-from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pytest
 
 from skisnow.report.figures.style import journal_style
 from skisnow.report.track.exports import track_gpx, turn_rows
-from skisnow.report.track.figures import drawn_points, named_radii, switch_times, track_along, track_map
+from skisnow.report.track.figures import named_radii, switch_times, track_along, track_map
 from skisnow.report.track.report import write_track_report
 from skisnow.report.track.summary import track_text, track_verdict
 from skisnow.track.projection import GeodeticPoint
@@ -60,26 +59,12 @@ def test_named_radii_lie_inside_and_apart(reach: float) -> None:
     assert np.all(np.diff(places) < -0.17)
 
 
-def test_height_has_a_panel_only_where_it_is() -> None:
-    made = track(circle(15.0, 8.0))
-    with journal_style():
-        assert len(track_along(track_summary(made)).axes) == 2
-        made.place[:, 2] = -0.2 * np.arange(len(made))
-        assert len(track_along(track_summary(made)).axes) == 3
-
-
 def test_gap_is_a_hole_in_the_line() -> None:
     made = track(circle(15.0, 8.0))
     made.time[40:] += 20.0
     with journal_style():
         axes = track_map(track_summary(made)).axes[0]
     assert np.isnan(np.asarray(axes.lines[0].get_xdata(), dtype=float)).sum() == 1
-
-
-def test_long_lines_are_thinned_with_both_ends() -> None:
-    numbers = drawn_points(7, 1_000_006)
-    assert (numbers[0], numbers[-1], len(numbers)) == (7, 1_000_006, 10_000)
-    assert drawn_points(3, 5).tolist() == [3, 4, 5]
 
 
 def test_files_are_written_and_the_same_each_time(tmp_path: Path) -> None:
@@ -93,13 +78,6 @@ def test_files_are_written_and_the_same_each_time(tmp_path: Path) -> None:
     assert len(names) == 19
     for name in names:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
-
-
-def test_name_with_markup_is_text(tmp_path: Path) -> None:
-    summary = slalom()
-    named = replace(summary, track=replace(summary.track, name="a $b_c <i>.csv"))
-    write_track_report(named, tmp_path)
-    assert track_text(summary_dict(named)).startswith("a $b_c <i>.csv\n")
 
 
 def test_text_counts_and_defines() -> None:

@@ -26,12 +26,11 @@ from skisnow.report.turn.numbers import (
 from skisnow.report.turn.page import (
     FIGURES,
     contacts_table,
-    ensemble_table,
     parameters_table,
     shares_table,
     write_turn_report,
 )
-from skisnow.report.turn.sentences import contrast, ensemble_sentence, key_sentences, meaning
+from skisnow.report.turn.sentences import contrast, key_sentences, meaning
 from skisnow.scenario.identify_section import Prior, measured_of
 from skisnow.simulation.run import Run
 from skisnow.snow import SnowProperties
@@ -193,17 +192,6 @@ def test_who_draws_more_on_the_snow_and_who_slides(first: float, other: float, c
     assert compared in words and sliding in words
 
 
-@pytest.mark.parametrize(("first", "other", "told"), [(0.8, 0.3, "smaller: 0.300"), (0.3, 0.8, "larger: 0.800")])
-def test_whose_afterbody_lies_deeper(first: float, other: float, told: str) -> None:
-    assert told in words_of(with_afterbody(circle_run(), first), with_afterbody(circle_run(), other))
-
-
-def test_what_would_bring_back_the_edges_is_said_where_they_slide(chain: TurnChain) -> None:
-    held, slides = (replace(chain, runs={**chain.runs, "elastic": with_grip(circle_run(), of)}) for of in (0.6, 1.0))
-    assert "a slower start" not in " ".join(meaning(held))
-    assert "a slower start" in " ".join(meaning(slides))
-
-
 def test_distance_of_paths_and_width_of_a_band() -> None:
     run = circle_run()
     aside = replace(run, place=run.place + np.array([0.0, 0.0, 0.7]))
@@ -259,18 +247,7 @@ def test_few_runs_tell_no_shares(chain: TurnChain) -> None:
     assert band_shares(middle_track(chain.nominal), chain.ensemble) is None  # the draws are unknown
 
 
-def test_runs_beyond_their_grip_are_counted(chain: TurnChain) -> None:
-    runs = [replace(run, slips=0.3 if number < 2 else 0.01) for number, run in enumerate(chain.ensemble)]
-    assert "in 2 of them" in ensemble_sentence(replace(chain, ensemble=runs))
-
-
 def test_too_little_to_compare_is_refused(chain: TurnChain, tmp_path: Path) -> None:
     with raises(ParameterError, "too_few_runs", contacts=2, runs=2):
         write_turn_report(replace(chain, ensemble=chain.ensemble[:2]), tmp_path)
     assert not list(tmp_path.iterdir())
-
-
-def test_outcomes_are_counted(chain: TurnChain) -> None:
-    rows = ensemble_table(chain.ensemble).rows
-    assert [(row[0], row[1]) for row in rows] == [("finished", 8), ("tipped over", 1)]
-    assert rows[0][2] == pytest.approx((0.2, 0.2))

@@ -56,18 +56,6 @@ def test_results_json_is_that_of_the_estimates(reference: Reported) -> None:
     assert json.loads(text) == json.loads(json.dumps(reference.results))
 
 
-@pytest.mark.slow
-def test_every_form_of_every_figure_is_written(reference: Reported, tmp_path: Path) -> None:
-    write_report(reference.analysis, tmp_path)
-    begins = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF", "eps": b"%!PS-Adobe-3.0 EPSF"}
-    for name in FIGURES:
-        for form in FORMS:
-            content = (tmp_path / "figures" / f"{name}.{form}").read_bytes()
-            assert content.startswith(begins[form]), (name, form)
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert page.count("<source media=") == page.count("<figure id=") - page.count('"><picture><img') > 0
-
-
 def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
     reference: Reported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from skisnow.dynamics import Ended
 from skisnow.scenario import Plane, load_scenario
 from skisnow.simulation.moving_boots import StrengthDrive
-from skisnow.simulation.run_record import Record, _at_boot
+from skisnow.simulation.run_record import Record
 from skisnow.simulation.run_setup import Setup, set_up
 
 
@@ -39,20 +39,6 @@ def test_moments_are_kept_replaced_and_dropped() -> None:
     assert record.histories()["time"].tolist() == [0.0]
 
 
-@pytest.mark.parametrize(
-    ("node", "at_boot"),
-    [
-        ([0.9, 0.5, 0.1, -0.3], 1.5),  # a quarter of the way from 2 to 0
-        ([0.9, 0.3, -0.1, -0.3], 2.25),  # three quarters of the way from 3 to 2
-        ([0.9, 0.5, 0.0, -0.3], 2.0),
-        ([0.3, -0.1, -0.5, -0.9], 3.25),
-    ],
-)
-def test_what_is_under_the_boot_lies_between_its_neighbours(node: list[float], at_boot: float) -> None:
-    values = np.array([[4.0, 3.0, 2.0, 0.0], [8.0, 6.0, 4.0, 0.0]])
-    assert _at_boot(np.array(node), values) == pytest.approx([at_boot, 2.0 * at_boot], rel=1e-12)
-
-
 def test_stored_and_lost_energies_are_separate() -> None:
     """Stored: kinetic, potential, skis, snow with what sticks, delayed depth; then losses and energies given."""
     dynamics: Any = SimpleNamespace(
@@ -75,18 +61,6 @@ def test_forces_of_friction_are_sums_over_the_sections() -> None:
         sums = [float(force.sum()) for force in (sections.push, sections.push_across, sections.push_off)]
         assert sums[0] < -10.0
         assert pushes == pytest.approx(sums, rel=1e-12)
-
-
-def test_steps_that_cannot_go_on_are_an_outcome() -> None:
-    record = Record(set_up(load_scenario("carved-46m")))
-    for ended, outcome in ((Ended.STEP_TOO_SMALL, "step_too_small"), (Ended.NOT_FINITE, "not_finite")):
-        record.setup = replace_advance(record.setup, ended)
-        assert record.advance(0.1) == outcome
-
-
-def replace_advance(setup: Any, ended: Ended) -> Any:
-    names = ("dynamics", "place", "attitude", "velocity")
-    return SimpleNamespace(advance=lambda *_, **__: ended, **{name: getattr(setup, name) for name in names})
 
 
 def test_what_is_told_of_the_skis_is_what_the_beams_and_boots_have() -> None:

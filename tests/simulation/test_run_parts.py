@@ -16,10 +16,10 @@ from skisnow.geometry.boot_axes import axes_of
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
-from skisnow.simulation.run_record import Record, _arc, _heading, at_nodes, turn_radius
+from skisnow.simulation.run_record import Record, _heading, turn_radius
 from skisnow.simulation.run_setup import Setup
 from skisnow.simulation.run_summary import GatesAhead, energies_dict, racer_parts, run_gates, summary_dict
-from skisnow.simulation.verification import Refinement, limit_sentences, verify
+from skisnow.simulation.verification import limit_sentences, verify
 from skisnow.track.course import Course, Gate
 
 from .straight_run import STRAIGHT, straight_run
@@ -59,18 +59,6 @@ def test_what_is_straight_or_stands_has_no_radius() -> None:
     assert turn_radius(time[:2], turning[:2], up[:2]) == pytest.approx(np.ones(2), rel=1e-2)
 
 
-def test_the_length_of_an_arc() -> None:
-    """A radian of 5 m is 5 m, to the fourth order; where the direction is unknown or reversed it is the chord."""
-    at = [
-        stub(place=5.0 * np.array([np.cos(a), np.sin(a), 0.0]), velocity=v * np.array([-np.sin(a), np.cos(a), 0.0]))
-        for a, v in ((0.1, 2.0), (0.3, 6.0), (0.1, 0.0), (2.9, 3.0))
-    ]
-    assert _arc(at[0], at[1]) == pytest.approx(1.0, rel=2e-5)
-    assert _arc(at[0], at[1]) > math.dist(at[0].place, at[1].place)
-    assert _arc(at[2], at[1]) == _arc(at[1], at[2]) == math.dist(at[1].place, at[2].place)
-    assert _arc(at[0], at[3]) == math.dist(at[0].place, at[3].place)
-
-
 def test_the_heading_goes_on_beyond_half_a_turn() -> None:
     """From where x points, seen from above, on a slope that falls to the left as well."""
     normal = np.array([0.3, 0.4, 1.0]) / math.sqrt(1.25)
@@ -79,13 +67,6 @@ def test_the_heading_goes_on_beyond_half_a_turn() -> None:
     ahead = np.cos(angle)[:, None] * down + np.sin(angle)[:, None] * np.cross(normal, down)
     attitude = np.stack([ahead, ahead, ahead], axis=2)
     assert _heading(attitude, np.broadcast_to(normal, ahead.shape)) == pytest.approx(angle)
-
-
-def test_what_is_held_does_not_move() -> None:
-    dofs = np.arange(12.0).reshape(1, 2, 6)
-    found = at_nodes(dofs, np.array([0.0, -1.0, 3.0]))
-    assert found.shape == (1, 2, 3, 3)
-    assert found[0, 1].tolist() == [[6.0, 7.0, 8.0], [0.0, 0.0, 0.0], [9.0, 10.0, 11.0]]
 
 
 @pytest.mark.parametrize(
@@ -117,33 +98,6 @@ def test_energy_out_of_nothing(first: tuple[float, ...], last: tuple[float, ...]
 def level_grid() -> Terrain:
     """From 0 to 10 m, and 2 m to either side."""
     return Terrain(np.linspace(0.0, 10.0, 5), np.linspace(-2.0, 2.0, 5), np.zeros((5, 5)))
-
-
-@pytest.mark.parametrize(
-    ("x", "y", "heading", "past"),
-    [
-        (5.0, 0.0, 0.0, False),
-        (9.2, 0.0, 0.0, False),  # tips 0.8 m ahead reach the end at 10
-        (9.3, 0.0, 0.0, True),
-        (9.3, 0.0, math.pi, False),
-        (0.7, 0.0, math.pi, True),
-        (5.0, 1.1, math.pi / 2.0, False),
-        (5.0, 1.3, math.pi / 2.0, True),
-        (5.0, 2.09, -math.pi / 2.0, False),  # boots aside by a decimetre settle there
-        (5.0, 2.11, -math.pi / 2.0, True),
-        (5.0, -2.11, math.pi / 2.0, True),
-        (-0.09, 0.0, 0.0, False),
-        (-0.11, 0.0, 0.0, True),
-    ],
-)
-def test_tips_and_boots_end_at_the_borders_of_a_grid(x: float, y: float, heading: float, past: bool) -> None:
-    ahead = [math.cos(heading), math.sin(heading), 0.0]
-    for slope, expected in ((level_grid(), past), (Plane(0.1), False)):
-        setup = stub(
-            scenario=stub(slope=slope), place=np.array([x, y, 0.3]), node=np.array([0.8, 0.0, -0.8]),
-            attitude=np.array([ahead, ahead, ahead]).T,
-        )  # fmt: skip
-        assert cast("Any", Setup.past_end).fget(setup) is expected
 
 
 def test_lean_and_height_are_against_the_slope_under_the_boots() -> None:
@@ -298,17 +252,3 @@ def test_of_more_and_less_of_an_input_what_moves_the_end_farther_counts() -> Non
     assert limit_sentences({"start.speed_m_per_s": 0.1, "solver.elements": 9.0}, 20.0) == ()
     (first, *_) = limit_sentences({"start.speed_m_per_s": 0.1001, "snow.H_V_N_per_mm3": 0.05}, 20.0)
     assert "0.1 m" in first and "start.speed_m_per_s" in first
-
-
-def test_an_interrupted_repetition_of_an_input_is_the_last() -> None:
-    run = straight_run(PLAIN)
-    count = 0
-
-    def interrupted(scenario: Any) -> Run:
-        nonlocal count
-        count += 1
-        return straight_run(scenario, outcome="interrupted" if count == 7 else "finished")
-
-    found: tuple[Refinement, ...] = verify(run, interrupted)
-    assert [each.key for each in found][4:] == ["snow.shear_displacement_mm"]
-    assert count == 7

@@ -12,7 +12,7 @@ import pytest
 
 import skisnow
 from skisnow import BootMoment, BootPose
-from skisnow._support.errors import ParameterError, SolverError
+from skisnow._support.errors import ParameterError
 from skisnow.contact import Laws
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Plane, load_scenario
@@ -33,48 +33,6 @@ def test_snow_that_does_not_bear_a_ski_a_decimetre_deep(load: float, sinks: bool
     snow = SimpleNamespace(contact=contact, start=SimpleNamespace(x=0.0, y=0.0), ski=ski)
     stub = cast("Any", SimpleNamespace(scenario=snow, numbers={"load_N": load}))
     assert cast("Any", Setup.sinks).fget(stub) is sinks
-
-
-@pytest.mark.parametrize(
-    ("height", "residual", "sinks", "outcome"),
-    [
-        (0.0, 0.0, False, "looped"),
-        (0.0, run_setup.AT_REST, True, "looped"),
-        (-1.01 * simulated_run.SINKING_DEPTH, 0.0, False, "sunk"),
-        (-0.99 * simulated_run.SINKING_DEPTH, 0.0, False, "looped"),
-        (0.0, 2.0 * run_setup.AT_REST, True, "sunk"),
-        (0.0, math.nan, True, "sunk"),
-        (0.0, 2.0 * run_setup.AT_REST, False, "cannot stand"),
-        (0.0, math.nan, False, "cannot stand"),
-    ],
-)
-def test_a_run_begins_where_its_sledge_stands(
-    height: float, residual: float, sinks: bool, outcome: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """At rest by its own estimate and no deeper than the model goes; else it sinks, or is refused with the reason."""
-    compiled = SimpleNamespace(unseen_track=lambda: (0.0, 0.0))
-    contact = SimpleNamespace(require_finite_laws=lambda: None, compiled=compiled)
-    stub = SimpleNamespace(
-        height=height, static_residual=residual, sinks=sinks, dynamics=SimpleNamespace(contact=contact)
-    )
-    fakes: dict[str, Any] = {
-        "set_up": lambda *_, **__: stub,
-        "Record": lambda _: None,
-        "_loop": lambda *_: "looped",
-        "computed_run": lambda _setup, _record, said, _wall: said,
-        "replace": lambda said, **_: said,
-        "why_no_start": lambda _: "cannot stand",
-        "model_limits": lambda *_, **__: {},
-        "_warn_of_zero_friction": lambda _: None,
-    }
-    for name, fake in fakes.items():
-        monkeypatch.setattr(simulated_run, name, fake)
-    try:
-        scenario = SimpleNamespace(sledge=SimpleNamespace(edge_angle=0.0), ski=None, controlled=True)
-        found = cast("Any", simulated_run.simulate)(scenario)
-    except SolverError as error:
-        found = str(error)
-    assert found == outcome
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from .conftest import Served, follow, ready, settled
 from .replay.test_lab_page import kept
 from .test_day import create, enter_series
 from .test_kept import imported
-from .test_studies import TURNS
+from .test_values import TURNS
 
 if importlib.util.find_spec("axe_playwright_python") is None:
     pytest.skip("axe-core is not installed: pip install axe-playwright-python", allow_module_level=True)
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 DOCS = Path(__file__).parents[2] / "docs"
 WIDTHS = (1280, 390)
-WIDE_PAGES = "methods/simulated-turn.md", "files/scenario.md"
-"""Wide equations, wide tables and blocks of code: what the pages have of each kind."""
 
 
 def barred(page: Page) -> list[str]:
@@ -69,23 +67,6 @@ def plain(chromium: Browser) -> Iterator[Page]:
 def test_it_finds_what_bars_people(plain: Page) -> None:
     plain.set_content('<html lang="en"><title>t</title><main><h1>t</h1><img src="data:,"><input></main></html>')
     assert {each.split(":")[0] for each in barred(plain)} == {"image-alt", "label"}
-
-
-@pytest.mark.slow
-def test_nobody_is_barred_from_correcting(page: Page, served: Served) -> None:
-    """The page of a test, while its reason is asked."""
-    imported(page, served)
-    follow(page, "Correct")
-    page.get_by_role("heading", name="Tests").wait_for()
-    page.goto(f"{page.url}?table=penetration.csv&test=1")
-    page.get_by_label("Depth (mm), row 3", exact=True).fill("2,15")
-    page.keyboard.press("Enter")
-    page.get_by_label("Why", exact=True).wait_for()
-    for width in WIDTHS:
-        page.set_viewport_size({"width": width, "height": 844})
-        settled(page)
-        assert barred(page) == [], width
-        assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
 def test_nobody_is_barred_from_where_the_token_is_asked(plain: Page) -> None:
@@ -173,18 +154,6 @@ def test_nobody_is_barred_from_a_report(plain: Page, tmp_path: Path) -> None:
 def built(folder: Path, html: Path) -> None:
     build = [sys.executable, "-m", "sphinx", "-q", "-b", "html", str(folder), str(html)]
     subprocess.run(build, check=True, capture_output=True)
-
-
-@pytest.mark.slow
-def test_nobody_is_barred_from_wide_pages_of_the_documentation(plain: Page, tmp_path: Path) -> None:
-    """Two of them, built separately; links to others lead nowhere."""
-    docs = tmp_path / "docs"
-    for name in (*WIDE_PAGES, "conf.py", "_static/skisnow.js", "_static/skisnow.css", "../pyproject.toml"):
-        (docs / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(DOCS / name, docs / name)
-    (docs / "index.md").write_text("# All\n\n```{toctree}\n" + "\n".join(WIDE_PAGES) + "\n```\n", encoding="utf-8")
-    built(docs, tmp_path / "html")
-    assert barred_in(plain, [(tmp_path / "html" / each).with_suffix(".html") for each in WIDE_PAGES]) == {}
 
 
 @pytest.mark.slow

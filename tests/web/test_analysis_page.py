@@ -102,24 +102,6 @@ def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Pat
         assert seen["x"] >= 0 and seen["x"] + seen["width"] <= 390
 
 
-def test_what_is_wrong_in_the_files_stands_line_by_line(page: Page, served: Served, tmp_path: Path) -> None:
-    """The mapping that is proposed can be copied as it is from a German page: only the words around it are German."""
-    (tmp_path / "campaign.toml").write_text('name = "Hang"\n[[plate]]\nname = "Platte"\nlength_mm = 100\n', "utf-8")
-    headings = "Versuch;Ort;Platte;Kantwinkel [°];Tiefe [mm];Hebelarm [mm];Drehmoment [Nm]"
-    (tmp_path / "shear.csv").write_text(f"{headings}\nS1;Süd;Platte;90;4,5;250;15,4\n", "utf-8")
-    with Store.open(served.store) as store:
-        id_ = store.add(tmp_path).id
-    page.set_extra_http_headers({"Accept-Language": "de"})
-    page.goto(f"{served.address}analysis/kept/{id_}")
-    page.get_by_text("Was in ihren Dateien falsch ist").wait_for()
-    lines = page.locator("ul.errors li")
-    assert lines.count() == 1
-    assert '"Platte" = "plate", "Kantwinkel [°]" = "edge_angle_deg", "Tiefe [mm]" = "depth_mm"' in lines.inner_text()
-    assert "columns.shear = {" in lines.inner_text()
-    page.goto(f"{served.address}correct/{id_}")
-    page.get_by_text("keine Tabelle dieser Kampagne lässt sich lesen").first.wait_for()
-
-
 def test_the_numbers_are_there_with_the_page_until_something_is_entered(
     page: Page, served_with_figures: Served
 ) -> None:

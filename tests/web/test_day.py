@@ -15,10 +15,7 @@ from PIL import Image
 
 from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
-from skisnow.carving.answer import answer_dict, answered
-from skisnow.carving.question import carve_question
 from skisnow.cli import main
-from skisnow.report.formatting import significant
 
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
 
@@ -120,20 +117,6 @@ def enter_shear(page: Page) -> None:
     page.get_by_text("Stored: test 2.").wait_for()
 
 
-def carve(page: Page, served: Served) -> None:
-    """The radius beside the sliders is the library's."""
-    page.goto(f"{served.address}carve")
-    headline = page.get_by_role("region", name="Carved radius")
-    headline.get_by_text("carved radius").wait_for()
-    ready(page)
-    slider = page.get_by_role("slider", name="Edge angle (°)")
-    slider.focus()
-    page.keyboard.press("ArrowRight")
-    asked = {"ski": "carver", "edge_angle_deg": 46.0, "load_N": 800.0, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
-    answer = answer_dict(answered(carve_question({**asked, "unloading_ratio": 10.0})))
-    headline.get_by_text(f"carver: carved radius {significant(answer['turn_radius_boot_m'])} m", exact=True).wait_for()
-
-
 def simulate(page: Page, served: Served) -> dict[str, Any]:
     """A tenth of a second on the snow of the campaign; the run's summary."""
     page.goto(f"{served.address}simulate")
@@ -200,7 +183,6 @@ def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.Captur
     page.get_by_text("3 penetration experiments, 2 used; 2 shear experiments, 2 used.").wait_for()
     by_lab = downloaded_results(page)
 
-    carve(page, served)
     summary = simulate(page, served)
     watch(page)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from skisnow.campaign.store import Journals, Store, replay_journal
 
-from .conftest import Served, fill, has_text, ready
+from .conftest import Served, has_text, ready
 from .test_day import create, enter_series, next_series
 
 if TYPE_CHECKING:
@@ -32,56 +32,6 @@ def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
     left, top = zip(*(map(float, each.removesuffix("h0").split()) for each in own.split("M")[1:]), strict=True)
     assert sorted(left) == list(left)  # deeper and deeper
     assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
-
-
-def test_a_series_on_a_phone_from_its_first_reading_to_the_last(page: Page, served: Served) -> None:
-    """High on the page; no word of too few loads before it is left; a refused last reading is typed over at once."""
-    page.set_viewport_size({"width": 390, "height": 844})
-    create(page, served)
-    fill(page, {"Name of the test": "1", "Site": "A", "Edge angle (°)": "30"})
-    page.keyboard.press("Enter")
-    first = page.get_by_label("Depth under 20 N (mm)")
-    first.and_(page.locator(":focus")).wait_for()
-    box, head = first.bounding_box(), page.locator(".lab-head").bounding_box()
-    assert box is not None and box["y"] < 300
-    assert head is not None and head["height"] < 60  # one row of links as high as a glove needs
-    page.keyboard.type("1.5\n2.15\n")
-    page.locator(".beside .value", has_text="H_V = ").wait_for()
-    marks = page.locator(".beside .marks")
-    assert marks.inner_text() == ""
-    page.get_by_label("Depth under 80 N (mm)").fill("3,o")
-    page.keyboard.press("Enter")
-    page.locator(".reading.refused").wait_for()
-    marked = "document.activeElement.value?.slice(document.activeElement.selectionStart) === '3,o'"
-    page.wait_for_function(marked)
-    assert page.locator(":focus").get_attribute("aria-label") == "Depth under 80 N (mm)"
-    ready(page)
-    page.get_by_label("Depth under 80 N (mm)").fill("")
-    press(page, "button", "Next series")
-    page.get_by_role("heading", name="New series").wait_for()
-    marks.get_by_text("The series has fewer than 3 load steps.").wait_for()
-
-
-def test_a_refused_last_reading_that_is_put_right_is_no_correction(page: Page, served: Served) -> None:
-    """What is stored is the number that was typed, though it is there with a comma: no reason is requested."""
-    page.set_viewport_size({"width": 390, "height": 844})
-    create(page, served)
-    fill(page, {"Name of the test": "1", "Site": "A", "Edge angle (°)": "30"})
-    page.keyboard.press("Enter")
-    page.get_by_label("Depth under 20 N (mm)").and_(page.locator(":focus")).wait_for()
-    page.get_by_label("Depth under 80 N (mm)").fill("3,o")
-    page.keyboard.press("Enter")
-    page.locator(".reading.refused").wait_for()
-    page.wait_for_function("document.activeElement.value?.slice(document.activeElement.selectionStart) === '3,o'")
-    ready(page)
-    page.keyboard.type("3,1\n")
-    page.locator(".reading[data-load='80'] .stored", has_text="stored").wait_for()
-    page.get_by_label("Depth under 20 N (mm)").focus()
-    ready(page)
-    page.get_by_label("Depth under 20 N (mm)").fill("1,2")
-    page.keyboard.press("Enter")
-    page.locator(".reading[data-load='20'] .stored", has_text="stored").wait_for()
-    assert page.get_by_label("Why", exact=True).count() == 0
 
 
 def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None:

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import math
-import tempfile
 from base64 import b64decode
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import skisnow
-from skisnow._support.errors import ParameterError, StoreError
-from skisnow.campaign import QUALITY_FLAGS, read_campaign
-from skisnow.campaign.problems import Problem
+from skisnow._support.errors import StoreError
+from skisnow.campaign import read_campaign
 from skisnow.campaign.store import Journals, NewEntry, Store, export_corrected
 from skisnow.estimation import analyse
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.formatting import significant
-from skisnow.snow import snow_from_results
-from skisnow.web.analysis_cache import AnalysisCache, CampaignSource
+from skisnow.web.analysis_cache import CampaignSource
 from skisnow.web.campaign_analysis import Choice, Numbers, analyse_files, figure
-from skisnow.web.edit_session import CorrectionSession, EditSession, _flag_sentences
+from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
 from skisnow.web.transfer import entry_files, kept_files, write_entry
@@ -31,10 +27,9 @@ from tests.coded import raises
 from ..campaign.recordings import plain_snow
 from ..support.user_files.test_workbook import packed
 from .campaign_texts import DESK
-from .finished import finished
 
 if TYPE_CHECKING:
-    from skisnow.web.subprocesses import Worker
+    pass
 
 TOML = DESK
 ROWS = [("20", "1.5"), ("40", "2.1"), ("60", "2.6")]
@@ -46,17 +41,6 @@ PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n" + "".join(
 @pytest.fixture
 def lab(tmp_path: Path) -> Lab:
     return Lab(Store.open(tmp_path / "store.sqlite3"), tmp_path / "runs")
-
-
-@pytest.fixture
-def no_folder(monkeypatch: pytest.MonkeyPatch, lab: Lab) -> None:
-    """Forbid temporary folders."""
-
-    def refused(*_: object, **__: object) -> None:
-        raise AssertionError("a temporary folder was made")
-
-    assert lab.store.list() == ()
-    monkeypatch.setattr(tempfile, "mkdtemp", refused)
 
 
 SMET = "SMET 1.1 ASCII\n[HEADER]\nstation_id = S\nnodata = -999\nfields = timestamp TA\n[DATA]\n2026-02-03T08:00 263\n"
@@ -91,16 +75,6 @@ def correct(lab: Lab, id_: str) -> None:
 
 def experiments(results: dict[str, Any]) -> Any:
     return results["penetration"]["experiments"]
-
-
-@pytest.mark.usefixtures("no_folder")
-def test_tests_at_the_desk_say_at_once_what_the_analysis_says(lab: Lab) -> None:
-    id_ = entered(lab)
-    (row,) = EditSession(lab, id_).quick_results("A").experiments.values()
-    found = analyse_files(entry_files(lab, id_), Choice())
-    assert isinstance(found, Numbers)
-    assert experiments(found.results) == [row]
-    assert row["H_V_N_per_mm3"] is not None
 
 
 def test_a_campaign_being_entered_is_analysed_as_its_export(lab: Lab, tmp_path: Path) -> None:
@@ -150,24 +124,6 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
         CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "1"]
         == experiments(found.results)[0]
     )
-
-
-@pytest.mark.usefixtures("no_folder")
-def test_the_snow_of_a_campaign_is_that_of_its_results(lab: Lab, tmp_path: Path) -> None:
-    """Two series by hand, the wedge at 30°: H_V = F/V with V = L e²/(2 tan ϑ), the geometric mean of equal ones."""
-    id_ = kept_id(lab, tmp_path / "kept")
-    changes = {"snow.site": "A", "snow.S_f_N_per_mm2": "0.3"}  # the campaign has no shear test
-    analysis = campaign_snow(lab, f"kept-{id_}")
-    results, words = results_and_snow_words(analysis, "carved-46m", changes)
-    by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
-    assert words.startswith(f"H_V = {significant(by_hand)} N/mm³, [")
-    assert "; S_f = 0.300 N/mm²" in words
-    (tmp_path / "results.json").write_bytes(results)
-    assert snow_from_results(tmp_path / "results.json", site="A").snow_hardness == pytest.approx(
-        by_hand * 1e9, rel=1e-9
-    )
-    with raises(ParameterError, "no_data", site="Z"):
-        results_and_snow_words(analysis, "carved-46m", {"snow.site": "Z"})
 
 
 def test_a_campaign_that_measured_the_unloading_gives_its_ratio_to_the_run_unless_one_is_typed(
@@ -247,29 +203,6 @@ def test_a_workbook_is_imported_analysed_and_corrected(lab: Lab, tmp_path: Path)
     assert corrected.analysis.results["penetration"] == again != theirs
 
 
-def test_a_workbook_that_cannot_be_gone_on_with_is_said(lab: Lab, tmp_path: Path) -> None:
-    columns = ["file", "experiment", "row", "column", "old", "new", "who", "when", "why"]
-    id_ = uploaded(lab, tmp_path / "upload", workbook(corrections=[columns]))
-    with raises(StoreError, "in_a_workbook"):
-        correct(lab, id_)
-    with raises(ParameterError, "no_campaign"):
-        uploaded(lab, tmp_path / "undescribed", packed(penetration=[["experiment"], ["1"]]))
-    with raises(ParameterError, "no_campaign"):
-        uploaded(lab, tmp_path / "broken", b"no workbook")
-
-
-def test_flags_of_experiments_say_what_was_found_where_there_is_something() -> None:
-    code = sorted(QUALITY_FLAGS)[0]
-    problems = [
-        Problem("mark", code, "penetration.csv", None, None, name, value, "0.1 or less", "Look at it.")
-        for name, value in (("1", "0.3"), ("2", None))
-    ]
-    told = _flag_sentences(problems)
-    words = [told["penetration.csv", name][code].removeprefix(QUALITY_FLAGS[code].sentence) for name in "12"]
-    assert "0.3" in words[0] and "0.1 or less" in words[0]
-    assert words[1] == " Look at it."
-
-
 @pytest.mark.usefixtures("svg_alone")
 def test_a_figure_is_drawn_where_there_are_data_for_it(tmp_path: Path) -> None:
     """For a campaign with only a few loads: force over depth in the page's language, none of shear stress."""
@@ -291,31 +224,3 @@ def test_reports_lie_in_a_folder_that_goes_with_who_holds_it(lab: Lab, tmp_path:
     assert subject.place == place
     del subject
     assert not place.exists()
-
-
-def test_a_test_of_a_session_is_that_of_its_file_and_name(lab: Lab) -> None:
-    session = EditSession(lab, entered(lab))
-    found = session.test("penetration.csv", "1")
-    assert [row.cells["load_N"] for row in found.rows] == [load for load, _ in ROWS]
-    assert not session.test("penetration.csv", "2").rows
-    assert session.tests_of_site("A") == [found]
-    assert session.tests_of_site("B") == []
-
-
-def test_a_campaign_that_was_looked_at_is_known_until_something_is_entered(lab: Lab, tmp_path: Path) -> None:
-    analyses = AnalysisCache(lab, cast("Worker", None))
-    kept, entry = kept_id(lab, tmp_path / "kept"), entered(lab)
-
-    async def looked_at() -> None:
-        for kind, id_ in (("kept", kept), ("entry", entry)):
-            assert analyses.cached(kind, id_) is None
-            subject = await analyses.subject(kind, id_)
-            assert analyses.cached(kind, id_) is subject
-            assert await analyses.subject(kind, id_) is subject
-        correct(lab, kept)
-        assert analyses.cached("kept", kept) is None
-        assert analyses.cached("entry", entry) is not None
-
-    finished(looked_at())
-    with pytest.raises(StoreError):
-        analyses.cached("kept", "0" * 12)

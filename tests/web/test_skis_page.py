@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from skisnow._support.errors import ParameterError
 from skisnow.ski import read_ski, ski_named
-from skisnow.web.lab_skis import LabSkis, ski_of_texts
-from tests.coded import raises
+from skisnow.web.lab_skis import LabSkis
 
 from .conftest import Served, has_text
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
 
 CARVER = ski_named("carver")
 TEXT = LabSkis(Path("nowhere")).texts("carver")[0]
@@ -83,29 +81,45 @@ def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: 
     assert len({words.split("carved radius")[1] for words in told.all_inner_texts()}) == 2
 
 
-def test_a_ski_is_saved_with_its_table_and_read_by_its_word(tmp_path: Path) -> None:
-    skis = LabSkis(tmp_path)
-    assert (skis.word("carver"), skis.saved()) == ("carver", [])
-    skis.save_ski("Mine 2", replace(CARVER, name="Mine 2"))
-    assert skis.saved() == ["Mine 2"]
-    assert skis.names()[-1] == "Mine 2"
-    back = read_ski(skis.word("Mine 2"))
-    assert back.name == "Mine 2"
-    assert back.width == pytest.approx(CARVER.width)
-    text, table = skis.texts("Mine 2")
-    assert 'name = "Mine 2"' in text
-    assert table.count("\n") == len(CARVER.station) + 1
-    with raises(ParameterError, "already_there", name="MINE 2"):
-        skis.save_ski("MINE 2", CARVER)
-    with raises(ParameterError, "unknown_ski", name="other"):
-        skis.word("other")
-    assert [place.name for place in (tmp_path / "skis").iterdir()] == ["Mine 2"]
+pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 
-def test_a_text_names_no_file_of_the_machine(tmp_path: Path) -> None:
-    secret = tmp_path / "secret.csv"
-    secret.write_text("word\n", encoding="utf-8")
-    for line in (f'table = "{secret.as_posix()}"', 'table = "../secret.csv"', 'shape = "x.json"'):
-        with pytest.raises(ParameterError) as refused:
-            ski_of_texts(f"{TEXT}\n{line}\n", "")
-        assert "word" not in str(refused.value)
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+TYPED = {
+    "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
+    "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
+    "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
+}  # fmt: skip
+DESIGN = {
+    "board": {
+        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
+        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
+        "nose width": "12 cm",
+        "edge shape": {"type": "Basic Arc"},
+    }
+}  # fmt: skip
+TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
+WITH_TABLE = """name = "my slalom"
+running_length_mm = 1396
+sidecut_length_mm = 1458
+mass_kg = 2.231
+GJ_N_m2 = [60, 140, 175, 140, 60]
+table = "rows.csv"
+"""
+
+
+def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page: Page, served: Served) -> None:
+    """On a phone the name of the axis stands above the words at its ends, where one row is too short for all."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.set_extra_http_headers({"Accept-Language": "de"})
+    page.goto(f"{served.address}skis")
+    chart = page.locator("svg[role=img]").first
+    chart.get_by_text("−0,5", exact=True).wait_for()
+    assert chart.get_by_text("0.5").count() == 0
+    boxes = [chart.get_by_text(words).bounding_box() for words in ("◂ Ende", "Stelle (m), Schuh = 0", "Schaufel ▸")]
+    tail, name, tip = (box for box in boxes if box is not None)
+    assert name["y"] + name["height"] <= tail["y"] + 2 and tail["x"] + tail["width"] < tip["x"]
+    field = page.get_by_label("Breite (mm) bei 0,268 m", exact=True)
+    assert "," in field.input_value() and "." not in field.input_value()

@@ -164,39 +164,6 @@ def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seconds", [2.0, 8.0, 20.0, STALL_S])
-@pytest.mark.parametrize(
-    ("file", "typed", "columns", "found"),
-    [
-        (
-            "shear.csv",
-            ("A\n90\n6\n250\n30\n8\n36\n", "7\n33\n"),
-            ("depth_mm", "lever_arm_mm", "moment_Nm"),
-            [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]],
-        ),
-        ("density.csv", ("A\n310\n320\n", "330\n"), ("snow_density_kg_per_m3",), [["310"], ["320"], ["330"]]),
-        ("drop_cone.csv", ("A\n31\n32\n", "33\n"), ("drop_cone_depth_mm",), [["31"], ["32"], ["33"]]),
-    ],
-)
-def test_single_tests_while_the_lab_stands_still(
-    page: Page,
-    served: Served,
-    seconds: float,
-    file: str,
-    typed: tuple[str, str],
-    columns: tuple[str, ...],
-    found: list[list[str]],
-) -> None:
-    opened(page, served, f"?table={file}")
-    with stopped(served, seconds):
-        page.keyboard.type(typed[0])
-    page.keyboard.type(typed[1])
-    page.get_by_text("Stored: test ").wait_for()
-    page.wait_for_function("() => document.querySelectorAll('.so-far li').length === 3")
-    assert rows(served, file, *columns) == found
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [8.0, STALL_S])
 def test_a_browser_that_stands_still(page: Page, served: Served, seconds: float) -> None:
     opened(page, served)
@@ -283,27 +250,6 @@ def test_a_half_typed_correction_stays_with_its_row(page: Page, served: Served) 
     page.get_by_role("heading", name="Correct a test").wait_for()
     has_text(page.get_by_label("Moment (N m)", exact=True), "36")
     has_text(page.get_by_label("Depth (mm)", exact=True), "6")
-
-
-@pytest.mark.slow
-def test_a_campaign_that_is_described_while_the_lab_is_killed_is_begun_once(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}describe")
-    fill(page, {"Name of the campaign": "one", "Name of plate 1": "plate", "Length (mm) of plate 1": "100"})
-    page.keyboard.press("Tab")
-    with stopped(served, 0.0):
-        page.get_by_role("button", name="Store and enter tests").click()
-        killed_while(page, served, "")
-    has_text(page.get_by_label("Name of plate 1", exact=True), "plate")
-    page.get_by_label("Name of the campaign", exact=True).press("End")
-    page.keyboard.type("!")
-    page.get_by_role("button", name="Store and enter tests").click()
-    page.get_by_role("heading", name="New series").wait_for()
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        assert replay_journal(Journals(store).entries(head.id)).description.startswith('name = "one!"')
-    page.goto(f"{served.address}describe")
-    ready(page)
-    has_text(page.get_by_label("Name of the campaign", exact=True), "")
 
 
 @pytest.mark.parametrize("was_stored", [pytest.param(False, marks=pytest.mark.slow), True])

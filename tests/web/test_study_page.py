@@ -13,12 +13,20 @@ import pytest
 from skisnow.studies import read_study, run_study
 
 from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready, settled
-from .test_runs import choose
+
+pytest.importorskip("nicegui", reason="the web lab is not installed: pip install 'skisnow[web]'")
+from fastapi import FastAPI
+
+from skisnow.web.replay_addresses import RunFolders, add_addresses
+
+from ..track.course.test_gates_table import folder_of
+from .replay.test_addresses import Client
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Locator, Page
+
 
 LONG_MS = 4 * PATIENCE_MS
 FIRST, SECOND = "First input", "Second input"
@@ -87,35 +95,6 @@ def test_a_study_of_runs_is_cancelled_goes_on_and_outlives_its_server(
     assert (folder / "table.csv").read_bytes() == found
 
 
-@pytest.mark.slow
-def test_a_study_in_german(chromium: Browser, served: Served) -> None:
-    context = chromium.new_context(locale="de-DE", viewport={"width": 390, "height": 844})
-    context.set_default_timeout(PATIENCE_MS)
-    page = context.new_page()
-    page.goto(f"{served.address}study")
-    page.get_by_text("13 Punkte. Dauert etwa").wait_for()
-    ready(page)
-    fill(page, {"Erste Eingabe: Anzahl der Werte": "2"})
-    choose(page, "Zweite Eingabe", "Last (N)")
-    page.get_by_label("Zweite Eingabe: von", exact=True).wait_for()
-    page.get_by_role("button", name="Studie starten").click()
-    page.get_by_text("Nicht begonnen: Last (N): beide Enden des Bereichs eintippen").wait_for()
-    values = {"Zweite Eingabe: von": "600,123", "Zweite Eingabe: bis": "800", "Zweite Eingabe: Anzahl der Werte": "2"}
-    fill(page, values)
-    page.get_by_text("4 Punkte. Dauert etwa").wait_for()
-    page.get_by_role("button", name="Studie starten").click()
-    page.get_by_text("; Last (N): 600,123 bis 800, 2 Werte").wait_for()
-    page.get_by_text("4 Punkte: Gleichgewicht 4.").wait_for(timeout=LONG_MS)
-    page.get_by_role("link", name="Tabelle und Bild").click()
-    page.get_by_role("columnheader", name="Gecarvter Radius (m)").wait_for()
-    page.get_by_role("cell", name="10,0", exact=True).first.wait_for()
-    page.get_by_text("Schneehärte H_V (N/mm³): 0,2; Scherfestigkeit S_f (N/mm²): 0,5").wait_for()
-    page.get_by_text("Last (N): 600,1", exact=True).wait_for()
-    assert page.get_by_text("auf Englisch").count() == 0  # nor is the map
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    context.close()
-
-
 @pytest.fixture
 def with_scheduler(tmp_path: Path) -> Iterator[tuple[Served, list[str]]]:
     """A lab that sends its studies to a Dask scheduler, and the log of its worker."""
@@ -152,3 +131,82 @@ def test_a_scheduler_computes_the_studies_of_the_lab(
     assert (tmp_path / "table.csv").read_bytes() == found
     log = (tmp_path / "dask_scheduler.log").read_text(encoding="utf-8")
     assert "Receive client connection: Client-skisnow" in log
+
+
+@pytest.mark.slow
+def test_a_run_that_the_server_was_killed_in_is_begun_again(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}simulate")
+    page.get_by_label("Ends after (s)", exact=True).fill("0.2")
+    page.get_by_role("button", name="Simulate").click()
+    page.get_by_text("is in the queue.").wait_for()
+    page.get_by_text("running").first.wait_for()
+    killed_and_started_again(page, served)
+    page.get_by_text("finished: ").wait_for(timeout=LONG_MS)
+    page.get_by_role("link", name="Watch").wait_for()
+    (place,) = (served.store.parent / "lab").glob("*/summary.json")
+    summary = json.loads(place.read_text(encoding="utf-8"))
+    assert summary["outcome"] == "finished"
+    assert summary["scenario"]["run"]["duration_s"] == 0.2
+
+
+def choose(page: Page, label: str, option: str) -> None:
+    page.get_by_label(label, exact=True).click()
+    page.get_by_role("option", name=option).click()
+
+
+def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
+    """The finger goes down, the progress is shown again, the finger goes up; the keyboard's focus stays."""
+    told = "document.querySelector('.card .progress:not(.hidden)').innerText"
+    button.hover()
+    page.mouse.down()
+    page.wait_for_function(f"before => {told} !== before", arg=page.evaluate(told))
+    button.and_(page.locator(":focus")).wait_for()
+    page.mouse.up()
+
+
+@pytest.mark.slow
+def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}simulate")
+    page.get_by_label("Ends after (s)", exact=True).fill("60")
+    page.get_by_label("Ends after a way of (m)", exact=True).fill("900")
+    page.locator("summary", has_text="Expert inputs").click()  # long to compute, and few rows to write
+    page.get_by_label("Distance of the snow lines (mm)", exact=True).fill("2")
+    page.get_by_label("Time between outputs (ms)", exact=True).fill("100")
+    for _ in range(2):
+        page.get_by_role("button", name="Simulate").click()
+        page.get_by_text("is in the queue.").wait_for()
+    page.get_by_text("times real time").wait_for(timeout=LONG_MS)
+    waiting = page.get_by_role("button", name="Cancel").first  # the newest is on top
+    waiting.click()
+    page.get_by_text("cancelled · It had not begun.").wait_for()
+    pressed_while_it_goes_on(page, page.get_by_role("button", name="Cancel"))
+    page.get_by_text("The results so far are kept.").wait_for(timeout=LONG_MS)
+    (place,) = (served.store.parent / "lab").glob("*/summary.json")
+    summary = json.loads(place.read_text(encoding="utf-8"))
+    assert summary["outcome"] == "interrupted"
+    assert 0.0 < summary["simulated_s"] < 60.0
+    assert {"run.nc", "track.csv", "report.html"} <= {each.name for each in place.parent.iterdir()}
+    page.get_by_role("link", name="Watch").click()
+    page.wait_for_function("window.skisnowReplay")
+    assert page.evaluate("skisnowReplay.run.arrays.time.values.at(-1)") == pytest.approx(
+        summary["simulated_s"], abs=0.11
+    )
+
+
+if TYPE_CHECKING:
+    pass
+
+
+@pytest.mark.slow
+def test_times_at_gates_of_two_runs_are_a_page(tmp_path: Path) -> None:
+    for name, times in (("mine", [1.5, 3.25]), ("theirs", [1.5, 3.0])):
+        (folder_of(tmp_path / name, list(times)) / "run.nc").touch()
+    app = FastAPI()
+    add_addresses(app, RunFolders(tmp_path))
+    answer = Client(app).get("/replay/gates", {"run": "mine", "ghost": "theirs"})
+    assert answer.status_code == 200
+    assert "0.25 s behind" in answer.text
+    (tmp_path / "theirs" / "gates.csv").unlink()
+    refused = Client(app).get("/replay/gates", {"run": "mine", "ghost": "theirs"})
+    assert (refused.status_code, "same gates" in refused.text) == (404, True)
+    assert Client(app).get("/replay/gates", {"run": "mine", "ghost": "../etc"}).status_code == 404

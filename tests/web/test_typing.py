@@ -9,11 +9,11 @@ import pytest
 from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
 
-from .conftest import Served, has_text, ready
-from .held_answers import HeldAnswers
+from .conftest import Served, fill, has_text, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, WebSocketRoute
+
 
 LOADS = (20.0, 40.0, 60.0)
 TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
@@ -209,3 +209,99 @@ LEFT_LATE = """(() => {
   window.setTimeout = (act, ...rest) => (rest.length ? soon(act, ...rest) : waiting.push(act));
   window.addEventListener("click", () => waiting.splice(0).forEach((act) => act()));
 })()"""
+
+
+def described(page: Page, served: Served) -> str:
+    """Go to the description of the one campaign; its id."""
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+    page.goto(f"{served.address}describe?entry={head.id}")
+    return head.id
+
+
+def send(page: Page) -> None:
+    ready(page)
+    page.get_by_role("button", name="Store and enter tests").press("Enter")
+
+
+@pytest.mark.slow
+def test_pressed_twice_is_done_once(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}describe")
+    fill(page, {"Name of the campaign": "one", "Name of plate 1": "plate", "Length (mm) of plate 1": "100"})
+    page.get_by_role("button", name="Store and enter tests").dblclick()
+    page.get_by_role("heading", name="New series").wait_for()
+    with Store.open(served.store) as store:
+        assert len(Journals(store).list()) == 1
+    page.goto(f"{served.address}skis")
+    page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()
+    fill(page, {"New name": "mine"})
+    page.get_by_role("button", name="Save in the lab").dblclick()
+    page.get_by_role("columnheader", name="mine").wait_for()
+    page.get_by_text("Saved: mine.").wait_for()
+    page.goto(f"{served.address}simulate")
+    ready(page)
+    page.get_by_role("button", name="Simulate").dblclick()
+    page.get_by_text("is in the queue.").wait_for()
+    page.get_by_role("button", name="Cancel").click()
+    page.locator(".card", has_text="cancelled").wait_for()
+    assert page.locator(".card").count() == 1
+
+
+def test_a_value_that_is_being_typed_is_not_drawn_over(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}skis")
+    page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()
+    page.get_by_role("row", name="EI at the boot").wait_for()  # the last of the page's own first drawing
+    ready(page)
+    page.get_by_label("EI (N m²) at 0.000 m", exact=True).fill("500")
+    page.get_by_label("GJ (N m²) at 0.000 m", exact=True).select_text()  # leaves the other, which is drawn now
+    page.keyboard.type("18")
+    page.get_by_role("cell", name="500 N m²").wait_for()
+    page.keyboard.type("0")
+    page.keyboard.press("Tab")
+    page.get_by_role("cell", name="180 N m²").wait_for()
+    has_text(page.get_by_label("GJ (N m²) at 0.000 m", exact=True), "180")
+
+
+def test_what_is_typed_for_a_run_is_neither_lost_nor_passed_over(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}simulate")
+    duration = page.get_by_label("Ends after (s)", exact=True)
+    duration.fill("500")
+    page.get_by_text("Will take about 8 min.").wait_for()  # no run has told how long it takes: as long as it simulates
+    duration.fill("")
+    page.get_by_role("button", name="Simulate").click()
+    page.get_by_text("Not begun: Ends after (s) is empty; the scenario has 5").wait_for()
+    duration.fill("0,05")
+    page.get_by_label("Scenario", exact=True).click()
+    page.get_by_role("option").nth(1).click()
+    page.wait_for_function("document.querySelector('[aria-label=\"Ends after (s)\"]')?.value === '0.05'")
+    page.get_by_role("button", name="Simulate").click()
+    page.get_by_text("Ends after (s): 0.05").wait_for()
+    assert page.locator(".card").count() == 1  # the refused one was not begun
+    page.get_by_role("button", name="Cancel").click()
+
+
+class HeldAnswers:
+    """Answers of the lab to a page, which may be held back."""
+
+    def __init__(self, page: Page) -> None:
+        self._held: list[tuple[WebSocketRoute, str | bytes]] | None = None
+        page.route_web_socket("**/*", self._pass_on)
+
+    def _pass_on(self, socket: WebSocketRoute) -> None:
+        def answer(message: str | bytes) -> None:
+            if self._held is None:
+                socket.send(message)
+            else:
+                self._held.append((socket, message))
+
+        lab = socket.connect_to_server()
+        socket.on_message(lab.send)
+        lab.on_message(answer)
+
+    def hold(self) -> None:
+        self._held = []
+
+    def let_go(self) -> None:
+        held, self._held = self._held or [], None
+        for socket, message in held:
+            socket.send(message)

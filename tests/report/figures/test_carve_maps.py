@@ -55,18 +55,6 @@ def test_curves_are_the_numbers(found: dict[str, Any]) -> None:
     assert top < 0 < bottom  # depth grows downwards and the undisturbed surface is in the picture
 
 
-def test_what_was_asked_stands_above(found: dict[str, Any]) -> None:
-    with journal_style():
-        title = carved_skis(found).get_suptitle()
-        first = found["skis"][0]
-        rest = first | {"inputs": first["inputs"] | {"at_rest": True, "S_f_N_per_mm2": None}}
-        at_rest = carved_skis({"skis": [rest]}).get_suptitle()
-    # race piste: 2A/cos² 55° of the publication
-    hard, strong = "$H_V$ = 0.207 N/mm³", "$S_f$ = 0.522 N/mm²"
-    assert title == f"Steady carve: ϑ = 45°, load 800 N, {hard}, {strong}, $k_u/H_V$ = 10.0"
-    assert at_rest == f"At rest: ϑ = 45°, load 800 N, {hard}"
-
-
 def test_circles_have_the_radii_of_the_answer(found: dict[str, Any]) -> None:
     """Edge line and contact ends are read off 1 cm stations: the radii agree to half a per cent."""
     for answer in found["skis"]:
@@ -79,15 +67,6 @@ def test_circles_have_the_radii_of_the_answer(found: dict[str, Any]) -> None:
             curvature = np.gradient(slope, x) / (1.0 + slope**2) ** 1.5
             assert float(np.median(curvature)) == pytest.approx(1.0 / answer[key], rel=5e-3)
             assert y[[0, -1]] == pytest.approx(np.interp(ends, station, line), abs=1e-12)
-
-
-def test_swallowed_ski_leaves_its_place_empty() -> None:
-    soft = {"edge_angle_deg": 45, "load_N": 800, "H_V_N_per_mm3": 1e-5, "S_f_N_per_mm2": 0.3, "unloading_ratio": 10}
-    found = answers_dict([answered(carve_question(soft | {"ski": "slalom"}))])
-    with journal_style():
-        figure = carved_skis(found)
-    (legend,) = figure.legends
-    assert legend.get_texts()[0].get_text() == "slalom (sinks)"
 
 
 def test_angle_lies_along_the_axis_load_as_lines_and_the_rest_as_panels() -> None:
@@ -158,19 +137,6 @@ def test_points_that_could_not_be_asked_stand_neither_in_map_nor_in_legend() -> 
         radius_map(StudyTable(whole.columns, [row | {"outcome": "error"} for row in rows], whole.varied))
 
 
-def test_maps_say_what_is_fixed_and_which_radius() -> None:
-    whole = made_up(load_N=LOADS, edge_angle_deg=ANGLES)
-    fixed = {"ski": "slalom", "published": "race-piste", "H_V_N_per_mm3": 0.2067, "unloading_ratio": 10.0}
-    table = StudyTable(whole.columns, [row | fixed | {"twist": True} for row in whole.rows], whole.varied)
-    for draw in (radius_map, grip_map):
-        with journal_style():
-            figure = draw(table)
-        assert all(word in figure.get_suptitle() for word in ("slalom", "0.2067", "race-piste", "= 10"))
-        assert "twist" not in figure.get_suptitle()  # the default
-    with journal_style():
-        assert "±0.4 m" in radius_map(table).axes[0].get_ylabel()
-
-
 def test_skis_stand_under_their_own_names_where_these_tell_them_apart(found: dict[str, Any]) -> None:
     def titles(*names: str) -> list[str]:
         whole = made_up(ski=["one.toml", "two.toml"], edge_angle_deg=ANGLES)
@@ -187,18 +153,6 @@ def test_skis_stand_under_their_own_names_where_these_tell_them_apart(found: dic
     with journal_style():
         figure = carved_skis(renamed)
     assert [text.get_text() for text in figure.legends[0].get_texts()][:2] == ["My own", "giant-slalom"]
-
-
-def test_sample_is_drawn_as_points() -> None:
-    whole = made_up(load_N=LOADS, edge_angle_deg=ANGLES, S_f_N_per_mm2=[0.1, 0.2, 0.3])
-    table = StudyTable(whole.columns, whole.rows[::5], whole.varied)
-    layout = map_layout(table, second_is_number=True)
-    assert layout.sampled
-    assert layout.panels == ()
-    for draw in (radius_map, grip_map):
-        with journal_style():
-            figure = draw(table)
-        assert figure.axes
 
 
 def test_maps_that_cannot_be_drawn_say_why() -> None:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from skisnow.report.figures.drawing import FORMS, Drawing, Picture, letter_panels, make_opaque, render
+from skisnow.report.figures.drawing import FORMS, Drawing, Picture, make_opaque, render
 from skisnow.report.figures.style import DOUBLE_MM, journal_style, legend_below, new_figure
 
 
@@ -47,20 +47,6 @@ def two_panels() -> Figure:
     twin.plot([0, 1], [0, 1], alpha=0.5, color="#ff0000")
     legend_below(figure, [band])
     return figure
-
-
-def test_panels_have_letters_and_scales_of_colour_have_none() -> None:
-    with journal_style():
-        figure = two_panels()
-        letter_panels(figure)
-        left, right, *others = figure.axes
-        single = new_figure()
-        single.subplots()
-        letter_panels(single)
-    assert left.get_title(loc="left").startswith("(a) a title")
-    assert right.get_title(loc="left") == "(b)"
-    assert [axes.get_title(loc="left") for axes in others] == ["", ""]
-    assert single.axes[0].get_title(loc="left") == ""
 
 
 def test_eps_has_no_transparency_but_its_colour_on_white() -> None:

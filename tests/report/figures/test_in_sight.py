@@ -15,15 +15,11 @@ from skisnow.comparison import compare_tracks
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.model_figures import model_rmse
 from skisnow.report.campaign.page import DRAWERS
-from skisnow.report.campaign.penetration_figures import seating_offsets
-from skisnow.report.campaign.shear_figures import shear_force_depth
 from skisnow.report.figures.drawing import Drawing
 from skisnow.report.figures.style import journal_style, site_styles
-from skisnow.report.run.time_figures import run_motion
 from skisnow.report.study_maps import grip_map, radius_map
 
 from ..conftest import Reported, altered
-from ..runs import SPEED, circle_run
 from .test_carve_maps import ANGLES, LOADS, made_up
 from .test_track_comparison import drawn, track_of, winding
 
@@ -106,14 +102,6 @@ def test_distances_of_which_one_would_hide_another_are_drawn_by_their_logarithm(
     assert along.get_ylim() == pytest.approx((0.01 * min(largest), 2.0 * max(largest)))
 
 
-def test_motion_begins_at_no_speed_and_marks_the_fall_line_and_the_straight() -> None:
-    with journal_style():
-        speed, heading, radius = run_motion(circle_run()).axes
-    assert speed.get_ylim() == pytest.approx((0.0, 1.12 * SPEED))
-    for axes in (heading, radius):
-        assert np.asarray(axes.lines[1].get_ydata()).tolist() == [0.0, 0.0]
-
-
 def with_rmse(data: ReportData, values: list[float]) -> ReportData:
     penetration = data.results["penetration"]
     models = [row | {"rmse_N": value} for row, value in zip(penetration["models"], values, strict=True)]
@@ -130,20 +118,3 @@ def test_rmse_of_another_size_are_drawn_by_their_logarithm(data: ReportData, val
     assert axes.get_xscale() == scale
     if scale == "linear":
         assert axes.get_xlim() == pytest.approx((0.0, 1.06 * max(207.0, value)))
-
-
-def test_a_force_of_nothing_has_an_axis(data: ReportData) -> None:
-    """A moment of 0 at every test: a force of 0, which a range of no width would not show."""
-    results = data.results
-    shear = results["shear"] | {"experiments": [row | {"F_t_N": 0.0} for row in results["shear"]["experiments"]]}
-    nothing = ReportData(altered(data.analysis, results | {"shear": shear}))
-    with journal_style():
-        drawing = shear_force_depth(nothing, site_styles(nothing))
-    assert isinstance(drawing, Drawing)
-    assert drawing.figure.axes[0].get_ylim() == (0.0, 1.0)
-
-
-def test_offsets_are_drawn_beside_a_line_of_none(data: ReportData) -> None:
-    with journal_style():
-        (axes,) = seating_offsets(data, site_styles(data)).figure.axes  # type: ignore[union-attr]
-    assert [0.0, 0.0] in [np.asarray(line.get_ydata()).tolist() for line in axes.lines]

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from skisnow.comparison import Comparison, compare_tracks
 from skisnow.report.figures.style import journal_style
-from skisnow.report.track.report import MOST_DRAWN, track_comparison
+from skisnow.report.track.report import track_comparison
 from skisnow.track.track import Track
 
 FloatArray = npt.NDArray[np.float64]
@@ -47,19 +47,6 @@ def test_curves_begin_at_the_start_and_show_the_largest() -> None:
     assert not plan.texts  # the fall line is unknown
     slope = drawn(replace(found, axes="slope"))[0]
     assert "fall line" in slope.get_xlabel()
-
-
-@pytest.mark.slow
-def test_long_curves_are_thinned_and_keep_their_largest() -> None:
-    place = winding(50_000)
-    other = place.copy()
-    other[31_234, 1] += 2.0  # a single point
-    found = compare_tracks(track_of(other), track_of(place))
-    assert found.time.numbers is not None
-    _, along = drawn(found)
-    curve = along.lines[4]
-    assert len(np.asarray(curve.get_xdata())) <= 1.6 * MOST_DRAWN
-    assert np.nanmax(np.asarray(curve.get_ydata())) == pytest.approx(found.time.numbers.max)
 
 
 def test_a_fit_shows_the_track_before_it_and_a_missing_distance_is_none() -> None:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import io
-from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 
 from skisnow._support.messages import in_language
@@ -21,8 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.text import Text
-
-    from skisnow.simulation.run import Run
 
 
 def words_of(axes: Axes) -> list[Text]:
@@ -52,23 +48,3 @@ def test_a_run_from_above(radius: float, duration: float, language: str) -> None
         local_axes(figure)
         letter_panels(figure)
         assert over_one_another(figure) == []
-
-
-def long_run() -> Run:
-    """Over 200 m down the fall line in 32 s, two metres to each side of it twenty times."""
-    run = circle_run()
-    time = np.linspace(0.0, 32.0, len(run.time))
-    x, phase = 200.0 * time / 32.0, np.pi * time / 1.6
-    place = np.stack([x, 2.0 * np.sin(phase), np.zeros_like(x)], axis=1)
-    track = np.stack([place + np.array([0.0, aside, 0.0]) for aside in (0.25, -0.25)], axis=1)
-    heading = np.arctan(2.0 * np.pi / 10.0 * np.cos(phase))
-    return replace(run, time=time, place=place, heading=heading, skis=replace(run.skis, track=track))
-
-
-def test_a_long_flat_run_has_room_for_its_times() -> None:
-    with journal_style():
-        figure = run_track(long_run())
-        letter_panels(figure)
-        assert over_one_another(figure) == []
-        times = [each.get_text() for each in words_of(figure.axes[0]) if each.get_text().endswith(" s")]
-        assert len([each for each in times if not each.startswith("finished")]) >= 10

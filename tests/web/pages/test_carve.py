@@ -56,8 +56,6 @@ CHARTS = {
     "Twist (°)": "twist_deg",
 }
 DEPTH = next(iter(CHARTS))
-_SOFT = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.2, 1.5, 2)
-_HARD = (2.5, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 90)
 SHEAR = sheared({"a": ("A", 20)})
 
 
@@ -142,29 +140,6 @@ def test_the_menus_name_what_there_is(desk: Desk) -> None:
     assert page.field(RATIO).options == {"1": "1 (elastic)", "10": "10", "100": "100", "inf": "no spring back"}
     assert list(page.field("Snow").options) == ["the sliders", *(f"published-{name}" for name in published_names())]
     page.shows("carver: equilibrium.")
-
-
-@pytest.mark.parametrize(
-    ("name", "stops", "start"),
-    [
-        (ANGLE, [str(angle) for angle in range(86)], "45"),
-        (LOAD, [str(load) for load in range(100, 3050, 50)], "800"),
-        (HARDNESS, [f"{number:g}" for number in (*_SOFT, *_HARD)], "0.2"),
-        (STRESS, [f"{number / 50:g}" for number in range(2, 27)], "0.5"),
-    ],
-)
-def test_a_slider_has_its_stops_in_the_browser(desk: Desk, name: str, stops: list[str], start: str) -> None:
-    page = desk.open("/carve")
-    page.shows("carver: equilibrium.")
-    made = slider(page, name)
-    assert dict(made.props) == {
-        "type": "range", "min": "0", "max": str(len(stops) - 1), "step": "1", "aria-label": name,
-        "aria-valuetext": start, "^value": str(stops.index(start)),
-    }  # fmt: skip
-    (listener,) = made._event_listeners.values()
-    assert listener.type == "input"
-    words = "event.target.setAttribute('aria-valuetext', "
-    assert f"{words}{json.dumps(stops)}[event.target.value]);" in listener.js_handler
 
 
 @pytest.mark.parametrize(
@@ -264,19 +239,6 @@ def test_the_answer_follows_the_menus(desk: Desk) -> None:
     assert [line for line in page.outline() if line.startswith("[value] ")] == [radius(answer("slalom"))]
 
 
-def test_a_table_stays_while_its_skis_do(desk: Desk) -> None:
-    page = desk.open("/carve")
-    page.shows("carver: equilibrium.")
-    (table,) = page.tagged("table")
-    move(page, ANGLE, "50")
-    page.shows(radius(answer(angle=50.0)))
-    assert page.tagged("table") == [table]
-    page.fill("Ski", "slalom")
-    page.shows("slalom: equilibrium.")
-    assert page.tagged("table") != [table]
-    assert len(page.tagged("table")) == 1
-
-
 def test_what_the_snow_cannot_hold_is_said(desk: Desk) -> None:
     page = desk.open("/carve")
     page.shows("carver: equilibrium.")
@@ -348,18 +310,6 @@ def test_the_snow_of_a_campaign_gives_what_was_measured(
     assert [line for line in page.outline() if line.startswith((HARDNESS, STRESS))] == [f"{STRESS}: 0.5" for _ in own]
 
 
-def test_a_campaign_that_gives_no_snow_says_why_and_leaves_the_answer(desk: Desk, tmp_path: Path) -> None:
-    key = f"kept-{desk.kept(tmp_path / 'kept', {'campaign.toml': SHEARED})}"
-    page = desk.open("/carve")
-    page.shows("carver: equilibrium.")
-    page.fill("Snow", key)
-    page.shows("[snow] this campaign gives no snow yet. ")
-    page.fill(RATIO, "1")  # asks with no snow
-    assert told(page) == "carver: equilibrium."
-    page.fill("Snow", "the sliders")
-    page.shows(radius(answer(ratio=1.0)))
-
-
 def test_a_ski_that_cannot_be_read_is_told(desk: Desk) -> None:
     skis = LabSkis(desk.lab.runs)
     skis.save_texts("mine", skis.texts("slalom")[0], "")
@@ -398,16 +348,6 @@ def test_while_an_answer_is_late_it_is_said_and_only_the_last_question_waits(
     page.shows(radius(answer(angle=49.0)))
 
 
-def test_an_answer_to_a_page_that_was_left_is_dropped(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    released, asked = held(monkeypatch)
-    page = desk.open("/carve")
-    page.until(lambda: asked)
-    page.leave()
-    released.set()
-    page.until(lambda: not page.works("carve"))
-    assert page.client.elements == {}
-
-
 def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     page = desk.open("/carve")
     page.shows("[status] carver: equilibrium.")
@@ -417,41 +357,3 @@ def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk, monkeypatch: py
     assert desk.fails() is failure
     page.told("notify ")
     assert "Reference: " in page.scripts[-1]
-
-
-def test_an_answer_that_is_in_time_does_not_flicker(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(carve, "PATIENCE_S", 60.0)
-    page = desk.open("/carve")
-    page.shows("[status] carver: equilibrium.")
-    released, asked = held(monkeypatch)
-    move(page, ANGLE, "49")
-    page.until(lambda: asked)
-    assert told(page) == "carver: equilibrium."
-    released.set()
-    page.shows(radius(answer(angle=49.0)))
-
-
-def test_a_question_names_its_numbers(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = list[Any]()
-
-    def noted(_: Any, questions: Any, snow: Any) -> str:
-        asked.append((questions, snow))
-        return "so"
-
-    monkeypatch.setattr(carve._Solver, "answers", noted)
-    page = desk.open("/carve?other=slalom")
-    page.shows("[status] so")
-    numbers = {"edge_angle_deg": 45.0, "load_N": 800.0, "unloading_ratio": 10.0}
-    assert asked == [([{"ski": ski, **numbers, **FIRST_SNOW} for ski in ("carver", "slalom")], None)]
-    page.fill("Snow", "published-glacier")
-    page.until(lambda: len(asked) == 2)
-    assert asked[1][0] == [{"ski": ski, **numbers, "published": "glacier"} for ski in ("carver", "slalom")]
-    assert asked[1][1].words == "glacier"
-
-
-def test_the_sliders_in_german(desk: Desk) -> None:
-    page = desk.open("/carve", "de")
-    page.shows("carver: Gleichgewicht.")
-    assert slider(page, "Kantwinkel (°)").props["aria-valuetext"] == "45"
-    move(page, "Schneehärte H_V (N/mm³)", "8")
-    page.shows("Schneehärte H_V (N/mm³): 0.25")

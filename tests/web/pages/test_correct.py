@@ -9,7 +9,7 @@ import pytest
 from nicegui import ui
 
 from skisnow import analyse, read_campaign
-from skisnow._support.errors import FieldDataError, StoreError
+from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, NewEntry, export_corrected
 from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.words import hardness_words
@@ -91,16 +91,6 @@ def test_the_tests_of_a_table_are_listed_by_their_sites(desk: Desk, id_: str) ->
     ]
     assert "data-keeps" in page.html
     assert "data-ahead" not in page.html
-
-
-@pytest.mark.parametrize(("n", "is_open"), [(40, True), (41, False)])
-def test_a_few_tests_of_one_site_stand_open(desk: Desk, tmp_path: Path, n: int, is_open: bool) -> None:
-    rows = "".join(f"{number},,350\n" for number in range(n))
-    files = {"campaign.toml": 'name = ""\n', "density.csv": f"sample,site,snow_density_kg_per_m3\n{rows}"}
-    page = desk.open(f"/correct/{kept(desk, tmp_path / 'few', files)}")
-    assert page.outline()[0] == "h1 few"
-    assert f"No site: {n}" in page.outline()
-    assert ["open" in each.props for each in page.tagged("details")] == [is_open]
 
 
 def test_tests_that_were_spoken_of_are_marked(desk: Desk, id_: str) -> None:
@@ -191,26 +181,9 @@ def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:
     assert f"button {CANCEL}" not in page.outline()
 
 
-def test_a_test_without_a_site_can_be_looked_at(desk: Desk, tmp_path: Path) -> None:
-    files = {"campaign.toml": TOML, "density.csv": "sample,snow_density_kg_per_m3\n1,350\n"}
-    page = opened(desk, kept(desk, tmp_path / "siteless", files), table="density.csv")
-    assert values(page.between("h2 Test 1", "button")) == {"Density (kg/m³)": "350"}
-    page.shows("[value] The campaign cannot be used as it is: ")
-
-
 @pytest.mark.parametrize("table", ["density.csv", "campaign.toml"])
 def test_an_address_of_another_table_is_refused(desk: Desk, id_: str, table: str) -> None:
     answer = desk.get(f"/correct/{id_}?table={table}")
-    assert (answer.status_code, desk.code) == (404, "no_table")
-    desk.failures.clear()
-
-
-def test_a_test_that_is_not_there_is_the_list(desk: Desk, id_: str) -> None:
-    assert "h2 Tests" in opened(desk, id_, "9").outline()
-
-
-def test_a_campaign_without_a_readable_table_is_refused(desk: Desk, tmp_path: Path) -> None:
-    answer = desk.get(f"/correct/{kept(desk, tmp_path / 'none', {'campaign.toml': TOML})}")
     assert (answer.status_code, desk.code) == (404, "no_table")
     desk.failures.clear()
 
@@ -319,20 +292,6 @@ def test_a_test_is_cancelled_and_stays_in_its_file(desk: Desk, id_: str) -> None
 # A kept campaign as a page sees it
 
 
-def test_a_test_that_nobody_spoke_of_is_what_its_file_says(desk: Desk, id_: str) -> None:
-    session = CorrectionSession(desk.lab, id_)
-    test = session.test("shear.csv", "1")
-    assert test.rows[0].cells == {
-        f"2/{name}": text
-        for name, text in zip(SHEAR.splitlines()[0].split(","), SHEAR.splitlines()[1].split(","), strict=True)
-    }
-    assert (test.history, test.last, test.rows[0].entered.sequence) == ([], 0, 0)
-    assert (test.file, test.name, test.rows[0].entered.test) == ("shear.csv", "1", "1")
-    assert session.test("shear.csv", "9").rows == []
-    assert session.file_cells("shear.csv", "9") == {}
-    assert set(session.tables) == {"penetration.csv", "shear.csv"}
-
-
 def test_a_session_hears_what_others_corrected(desk: Desk, id_: str) -> None:
     session, other = CorrectionSession(desk.lab, id_), CorrectionSession(desk.lab, id_)
     written = correct(desk, id_, "1", {"3/depth_mm": "2.15"})
@@ -349,18 +308,6 @@ def test_a_session_hears_what_others_corrected(desk: Desk, id_: str) -> None:
     session.write_down(entry, seen=written.sequence)
     assert session.test("penetration.csv", "1").rows[0].corrections == []
     assert session.quick_results("A").experiments["penetration.csv", "1"] == before
-
-
-def test_the_description_is_that_of_the_file(desk: Desk, tmp_path: Path) -> None:
-    sound = CorrectionSession(desk.lab, kept(desk, tmp_path / "sound"))
-    assert (sound.described.name, sound.described.observers) == ("From a drawer", ("Ada", "Bo"))
-    missing = {name: text for name, text in FILES.items() if name != "campaign.toml"}
-    gone = CorrectionSession(desk.lab, kept(desk, tmp_path / "gone", missing))
-    with raises(StoreError, "cannot_read", file="campaign.toml"):
-        _ = gone.described
-    broken = CorrectionSession(desk.lab, kept(desk, tmp_path / "broken", FILES | {"campaign.toml": "name ="}))
-    with pytest.raises(FieldDataError, match=r"campaign\.toml"):
-        _ = broken.described
 
 
 def test_a_workbook_that_corrects_itself_is_corrected_there(desk: Desk, tmp_path: Path) -> None:

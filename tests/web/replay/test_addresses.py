@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import io
+import math
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from skisnow._support.errors import SkisnowError
+from skisnow.replay import replay_of_run
+from skisnow.web.lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, Placing, TrackFolders
 from tests.coded import raises
+
+from ...report.runs import circle_run
 
 pytest.importorskip("fastapi", reason="the web lab is not installed: pip install 'skisnow[web]'")
 pytest.importorskip("httpx", reason="requests of the test need httpx")
@@ -21,10 +28,8 @@ from skisnow.replay import moving_replay_model, replay_model, replay_of_file
 from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
-from skisnow.web.lab_tracks import Placing, TrackFolders
 from skisnow.web.replay_addresses import RunFolders, add_addresses, show_address
 
-from ...report.runs import circle_run
 from ..finished import finished
 
 ODD = 'a "b" <i>&c%2e'
@@ -64,19 +69,6 @@ def client(runs: Path) -> Client:
     app = FastAPI()
     add_addresses(app, RunFolders(runs))
     return Client(app)
-
-
-def test_page_and_run_are_in_the_readers_language(client: Client) -> None:
-    page = client.get("/replay/show", {"run": "older"}, "de-AT").text
-    assert '<html lang="de">' in page and '"Speed of play": "Tempo"' in page
-    assert "Kantwinkel 30°" in client.get("/replay/data/older", language="de").text
-    assert "edge angle 30°" in client.get("/replay/data/older").text
-    assert "words: {}" in client.get("/replay/show", {"run": "older"}).text
-
-
-def test_runs_are_listed_newest_first(runs: Path) -> None:
-    assert RunFolders(runs).names() == [ODD, "older"]
-    assert RunFolders(runs / "not there").names() == []
 
 
 @pytest.mark.parametrize("name", ["../outside", "..", "", ".", "no run", "lab.log", "/etc", "older/../older"])
@@ -135,3 +127,68 @@ def test_files_of_the_program_and_no_others(client: Client) -> None:
     assert client.get("/replay/files/replay.css").status_code == 200
     for name in ("show.html", "..%2Fpage.py", "page.py", "LICENSE-three.txt"):
         assert client.get(f"/replay/files/{name}").status_code == 404
+
+
+EARTH = 6_371_000.0  # m; a sphere is within half a percent of the ellipsoid's radii
+
+
+def gpx(points: list[tuple[float, float]]) -> bytes:
+    """Metres east and north of a point at 47° N, a second apart."""
+    lines = []
+    for second, (east, north) in enumerate(points):
+        latitude = 47.0 + math.degrees(north / EARTH)
+        longitude = 11.0 + math.degrees(east / (EARTH * math.cos(math.radians(47.0))))
+        time = f"2026-02-01T10:00:{second:02d}Z"
+        lines.append(f'<trkpt lat="{latitude:.9f}" lon="{longitude:.9f}"><time>{time}</time></trkpt>')
+    text = f"<trk><trkseg>{''.join(lines)}</trkseg></trk>"
+    return f'<gpx version="1.1" creator="test" xmlns="http://www.topografix.com/GPX/1/1">{text}</gpx>'.encode()
+
+
+def csv(points: list[tuple[float, float, float, float]]) -> bytes:
+    rows = "".join(f"{t},{x},{y},{z}\n" for t, x, y, z in points)
+    return f"time_s,x_m,y_m,z_m\n{rows}".encode()
+
+
+def test_towards_the_fall_line_is_down_and_left_of_it_is_left(tmp_path: Path) -> None:
+    """The slope falls to the east: north is left of who looks down it."""
+    tracks, replay = TrackFolders(tmp_path), replay_of_run(circle_run(count=21))
+    name, count = tracks.keep(io.BytesIO(gpx([(0, 0), (10, 0), (10, 5)])), Placing("Run 1.gpx", 90.0, 0.5))
+    assert count == 3 and name.startswith("Run-1-") and tracks.names() == [name]
+    beside = tracks.beside(name, replay)
+    # without heights the points lie on the plane of 10°: 10 m from above are 10 m / cos 10° along it; sideways to
+    # 0.1 mm: a circle of latitude is not quite straight
+    down = 10.0 / math.cos(replay.tilt)
+    assert replay.tilt == pytest.approx(math.radians(10.0))
+    assert beside.place[:, :2] == pytest.approx(np.array([[0, 0], [down, 0], [down, 5]]), rel=5e-3, abs=1e-4)
+    assert beside.time == pytest.approx([0.5, 1.5, 2.5])
+    assert beside.name == "Run 1.gpx"
+
+
+@pytest.mark.parametrize(
+    ("content", "placing", "code"),
+    [
+        (b"no track at all", Placing("x.gpx"), ""),
+        (b"", Placing("x.csv"), ""),
+        (gpx([(0, 0)]), Placing("x.gpx", 0.0), "too_few_points"),
+        (b" " * (LARGEST_TRACK_BYTES + 1), Placing("x.csv"), "too_large"),
+        (csv([(i, i, 0, 0) for i in range(MOST_POINTS + 1)]), Placing("x.csv"), "too_many_points"),
+    ],
+)
+def test_what_is_no_track_is_refused_and_leaves_nothing(
+    tmp_path: Path, content: bytes, placing: Placing, code: str
+) -> None:
+    tracks = TrackFolders(tmp_path)
+    with pytest.raises(SkisnowError) as refused:
+        tracks.keep(io.BytesIO(content), placing)
+    assert str(tmp_path) not in str(refused.value)
+    assert refused.value.code == code
+    assert tracks.names() == []
+    assert list(tmp_path.glob("tracks/*")) == []
+
+
+def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
+    tracks, replay = TrackFolders(tmp_path), replay_of_run(circle_run(count=21))
+    tracks.keep(io.BytesIO(csv([(0, 0, 0, 0), (1, 1, 1, 0)])), Placing("x.csv"))
+    for name in ("..", "../tracks", "", "nothing"):
+        with raises(SkisnowError, "unknown_track"):
+            tracks.beside(name, replay)

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from skisnow.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_replay
-from skisnow.scenario import Profile
 
 from ...replay.test_terrain_and_boots import X, Y, hills, over, run_with_boots
 from ...report.runs import circle_run
@@ -216,19 +215,6 @@ def test_the_fall_line_points_down_the_slope_and_poles_stand_against_gravity(see
     assert high_z - low_z == pytest.approx(1.5 * np.cos(np.radians(10)), abs=0.03)
 
 
-def test_poles_stand_on_each_tenth_metre_but_not_in_the_way(seen: Watched, replay: Replay) -> None:
-    places = np.array(
-        seen.does(
-            """const poles = replay.stage.space.children.find((each) => each.name === "poles").children[0];
-               const { array } = poles.instanceMatrix;
-               return Array.from({ length: poles.count }, (_, i) => [...array.slice(16 * i + 12, 16 * i + 15)]);"""
-        )
-    )
-    assert len(places) > 8
-    assert np.allclose(places[:, :2] % 10.0, 0.0)
-    assert np.linalg.norm(replay.place[:, None, :2] - places[None, :, :2], axis=2).min() > 1.29
-
-
 def test_gates_stand_where_they_are_red_and_blue_by_turns(seen: Watched) -> None:
     found = seen.does(
         """const gates = replay.stage.space.children.find((each) => each.name === "gates");
@@ -253,50 +239,6 @@ def test_the_groove_is_as_deep_as_the_slider_says(seen: Watched) -> None:
 def test_the_groove_is_deepest_where_the_edge_is(seen: Watched) -> None:
     """An edge angle of 30° to the left: base and wall share the width as cos² and sin², the wall left of the base."""
     assert seen.does("return [...new Set(replay.stage.groove.mesh.geometry.attributes.lowest.array)]") == [0.5]
-
-
-@pytest.mark.slow
-def test_metre_marks_are_told_and_can_be_taken_away(seen: Watched) -> None:
-    """Squares, lines and the path, whose dashes begin each metre."""
-    found = seen.does(
-        """const at = replay.stage.path.geometry.attributes.position.array, middles = [];
-           for (let i = 0; i < 5; i++) middles.push([...at.slice(12 * i, 12 * i + 3)]);
-           return middles;"""
-    )
-    apart = np.linalg.norm(np.diff(np.array(found), axis=0), axis=1)
-    assert apart == pytest.approx(1.0, abs=0.01)  # on a circle of 12 m straight across
-    legend, box = seen.page.locator(".replay-legend"), seen.page.get_by_label("Metre marks")
-    assert "Squares 1 m" in legend.inner_text()
-    before = seen.picture()
-    box.uncheck()
-    assert "Squares 1 m" not in legend.inner_text()
-    assert (np.abs(seen.picture() - before).max(axis=2) > 8).mean() > 0.05
-    seen.page.keyboard.press("m")
-    assert box.is_checked()
-
-
-@pytest.mark.slow
-def test_the_word_at_the_fall_line_does_not_cover_its_arrow(seen: Watched) -> None:
-    """In the views from outside, wherever the arrow's tail is in the picture."""
-    looked = 0
-    for view in ("chase", "boot", "above"):
-        for time in (0.5, 1.0, 2.0, 3.0, 3.5):
-            along, (left, right, low, high) = seen.does(
-                f"""replay.look("{view}"); replay.seek({time});
-                   const {{ group }} = replay.stage.fallLine, {{ camera }} = replay.stage.follower;
-                   const [arrow, word] = group.children, place = camera.position.clone();
-                   const at = (x) => arrow.localToWorld(place.set(x, 0, 0)).project(camera).toArray().slice(0, 2);
-                   const [x, y] = at(0), [wide, , , , , tall] = camera.projectionMatrix.elements;
-                   const [width, height] = [word.scale.x * wide, word.scale.y * tall];
-                   return [[0, 0.1, 0.3, 0.6, 1].map(at), [x - word.center.x * width, x + (1 - word.center.x) * width,
-                       y - word.center.y * height, y + (1 - word.center.y) * height]];"""
-            )
-            if np.abs(along[0]).max() > 0.95:
-                continue
-            looked += 1
-            assert left > -1.0 and right < 1.0, (view, time)
-            assert not any(left < x < right and low < y < high for x, y in along), (view, time)
-    assert looked > 5
 
 
 def test_forces_are_arrows_and_numbers_on_demand(seen: Watched, replay: Replay) -> None:
@@ -327,14 +269,6 @@ def test_effects_step_down_where_the_machine_is_slow_and_stay_where_it_was_chose
     assert seen.does(quick + read) == [0.5, 0]
 
 
-def test_it_steps_up_when_it_has_kept_up_for_long(seen: Watched) -> None:
-    """Where drawing is another process, the first pictures of a level seem quick before it falls behind."""
-    quick = "for (let i = 0; i < {}; i++) replay.sharpness.took(5); return replay.sharpness.place;"
-    seen.does("replay.drawAs('auto')")
-    assert seen.does(quick.format(89)) == 4
-    assert seen.does(quick.format(1)) == 5
-
-
 def test_the_time_runs_from_the_first_picture_on(seen: Watched) -> None:
     """However long the browser takes to draw it."""
     found = seen.does("""return (async () => {
@@ -352,33 +286,6 @@ def test_the_time_runs_from_the_first_picture_on(seen: Watched) -> None:
         return [before, replay.time > 0];
     })()""")
     assert found == [0, True]
-
-
-def test_played_twice_it_is_drawn_once_a_picture(seen: Watched) -> None:
-    drawn = seen.does("""return (async () => {
-        const picture = () => new Promise(requestAnimationFrame);
-        replay.rate = 0.1;
-        replay.seek(0); replay.play(); await replay.stage.drawn(); await picture();
-        replay.pause(); replay.play(); await replay.stage.drawn(); await picture();
-        const before = replay.frames;
-        for (let i = 0; i < 10; i++) await picture();
-        replay.pause();
-        replay.rate = 1;
-        return replay.frames - before;
-    })()""")
-    assert 9 <= drawn <= 13  # the last one is drawn finer, and a level may change
-
-
-@pytest.mark.slow
-def test_the_groove_grows_and_can_be_hidden(fresh: Watched) -> None:
-    fresh.does("replay.look('above'); replay.nearer(8); replay.show('ghost', false); replay.show('track', false)")
-    counts = []
-    for time in (0.5, 2.0, 4.0):
-        counts.append(fresh.does(f"replay.seek({time}); return replay.stage.groove.mesh.geometry.drawRange.count"))
-    assert counts == [6 * 2 * 13, 6 * 2 * 51, 6 * 2 * 101]  # a piece each second output, two skis, six corners each
-    with_groove = fresh.picture()
-    fresh.does("replay.show('groove', false)")
-    assert (np.abs(fresh.picture() - with_groove).max(axis=2) > 20).mean() > 3e-4  # two thin lines
 
 
 @pytest.mark.slow
@@ -482,25 +389,6 @@ def test_picture_and_film_are_files(fresh: Watched, tmp_path: Path) -> None:
     content = (tmp_path / "turn.webm").read_bytes()
     assert content[:4] == b"\x1a\x45\xdf\xa3"  # EBML, which WebM is
     assert len(content) > 5000
-
-
-@pytest.mark.slow
-def test_a_measured_slope_is_drawn_as_it_falls(browser: Any, tmp_path: Path) -> None:
-    """A profile of 20 %: the run is on it, and the horizon is level."""
-    x = np.linspace(-30.0, 60.0, 91)
-    run = circle_run()
-    place = run.place - np.array([0.0, 0.0, 0.2]) * run.place[:, :1]
-    groove = replace(run.groove, middle=run.groove.middle - np.array([0.0, 0.0, 0.2]) * run.groove.middle[:, :1])
-    scenario = replace(run.scenario, slope=Profile(x, -0.2 * x))
-    page = write_replay(replace(run, scenario=scenario, place=place, groove=groove), tmp_path / "profile.html")
-    seen = Watched(browser, page.as_uri())
-    try:
-        for view in VIEWS:
-            seen.does(f"replay.seek(2.0); replay.look('{view}')")
-            assert coloured(seen.picture()) > 300, view
-        assert seen.complaints == []
-    finally:
-        seen.close()
 
 
 @pytest.mark.slow

@@ -5,23 +5,20 @@ from __future__ import annotations
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from unittest.mock import Mock
 
 import pytest
 
-from skisnow._support.errors import FieldDataError, ParameterError, StoreError
+from skisnow._support.errors import StoreError
 from skisnow.campaign.reading import FilesInMemory
 from skisnow.campaign.store import Journals
-from skisnow.report.campaign.page import DRAWERS
 from skisnow.web import analysis_cache as analyses_module
-from skisnow.web import campaign_analysis as analysing
-from skisnow.web.analysis_cache import AnalysisCache, CachedAnalysis, CampaignSource
+from skisnow.web.analysis_cache import AnalysisCache, CampaignSource
 from skisnow.web.analysis_view import AnalysisView, OpenAnalysis
-from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, analyse_files, figure
+from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, analyse_files
 from skisnow.web.subprocesses import Worker
 from tests.coded import raises
 
-from .shared import COUNTED, FILES, FLAGS, PENETRATION, TOML, WRONG, Drawing, kept
+from .shared import COUNTED, FILES, FLAGS, TOML, WRONG, Drawing, kept
 
 if TYPE_CHECKING:
     from ..desk import Desk
@@ -47,28 +44,6 @@ class View:
     @property
     def lines(self) -> list[str]:
         return self.sheet.outline()[self.before :]
-
-
-def test_a_page_that_is_closed_shows_nothing_any_more(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
-    view = View(desk, "kept", kept(desk, tmp_path / "kept"))
-    assert (view.page.closed, view.page.settled.is_set(), view.page.refused) == (False, False, "")
-    view.page.closed = True
-    view.compute()
-    assert view.lines == ["[status] Computing …"]
-    assert (view.page.settled.is_set(), drawing.asked) == (False, [])
-
-
-def test_what_went_wrong_is_said_and_settled(desk: Desk, drawing: Drawing) -> None:
-    view = View(desk, "kept", "ffffffffffff")
-    view.compute()
-    assert view.lines == [f"[status] {view.page.refused}"]
-    assert "ffffffffffff" in view.page.refused
-    assert view.page.settled.is_set()
-    late = View(desk, "kept", "ffffffffffff")
-    late.page.closed = True
-    late.compute()
-    assert (late.page.refused, late.page.settled.is_set(), late.lines) == ("", False, ["[status] Computing …"])
-    assert drawing.asked == []
 
 
 def test_a_refusal_takes_away_what_was_shown_before(
@@ -103,12 +78,6 @@ def test_a_refusal_takes_away_what_was_shown_before(
     assert drawing.asked
 
 
-def test_a_page_without_a_campaign_in_memory_shows_nothing_at_first(desk: Desk) -> None:
-    view = View(desk, "kept", "ffffffffffff")
-    view.view.show_cached()
-    assert view.lines == ["[status] Computing …"]
-
-
 def looked_at(desk: Desk, analyses: AnalysisCache, *campaigns: tuple[str, str]) -> list[CampaignSource]:
     async def done() -> list[CampaignSource]:
         return [await analyses.subject(*each) for each in campaigns]
@@ -133,21 +102,6 @@ def test_the_campaigns_that_were_looked_at_last_are_known(
         analyses.cached("entry", "ffffffffffff")
     assert set(three.files.contents) == set(FILES)
     assert set(one.files.contents) == {"campaign.toml"}
-
-
-def test_the_choices_that_were_made_last_are_known(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analyses_module, "MOST_CHOICES", 2)
-    subject = CampaignSource(desk.lab, "kept", kept(desk, tmp_path / "kept"))
-    choices = [Choice(left_out=frozenset({("penetration.csv", name)})) for name in "123"]
-
-    async def done() -> list[Any]:
-        return [await subject.analysed(each) for each in (*choices, choices[2])]
-
-    found = desk.wait(done())
-    assert [subject.cached(each) for each in choices] == [None, *found[1:3]]
-    assert found[3] is found[2]
-    assert len({each.key for each in found}) == 3
-    assert {len(each.key) for each in found} == {16}
 
 
 def test_a_lab_that_is_about_to_end_says_so(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -195,13 +149,6 @@ def test_what_is_left_out_is_that_of_its_file_and_keeps_its_reason() -> None:
     assert flags(sheared)["1"] == []
 
 
-def test_tables_are_those_of_the_page_that_have_rows() -> None:
-    found = numbers(Choice())
-    assert list(found.tables["de"]) == ["sites", "regressions", "penetration_experiments", "shear_experiments"]
-    alone = numbers(Choice(), {"campaign.toml": TOML, "penetration.csv": PENETRATION})
-    assert list(alone.tables["en"]) == ["sites", "regressions", "penetration_experiments"]
-
-
 def test_only_errors_are_listed_in_a_refusal() -> None:
     """A mark of quality beside them is not an error."""
     files = {name: text.encode() for name, text in WRONG.items()}
@@ -210,32 +157,6 @@ def test_only_errors_are_listed_in_a_refusal() -> None:
     assert len(found.errors) == 1
     assert "-40" in found.errors[0]
     assert "-40" in found.said
-
-
-def test_a_campaign_without_tests_is_refused_without_a_list(monkeypatch: pytest.MonkeyPatch) -> None:
-    files = FilesInMemory({name: text.encode() for name, text in FILES.items()})
-    for error in (ParameterError("it is so"), FieldDataError(["it is so"])):
-        monkeypatch.setattr(analysing, "analyse", Mock(side_effect=error))
-        assert analyse_files(files, Choice()) == Refusal("it is so")
-
-
-def test_the_report_of_the_page_is_that_of_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    given: list[Any] = []
-    monkeypatch.setattr(analysing, "write_report", lambda *what, **named: given.append((what, named)))
-    found = numbers(Choice())
-    analysing.write_whole_report(found.analysis, str(tmp_path), "de")
-    assert given == [((found.analysis, tmp_path), {"language": "de"})]
-
-
-def test_a_figure_has_its_images_and_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analysing, "drawing_svg", lambda drawn: drawn.name)
-    monkeypatch.setattr(analysing, "data_uri", str.upper)
-    analysis = numbers(Choice()).analysis
-    number = [drawer.__name__ for drawer in DRAWERS].index("force_depth")
-    found = figure(analysis, number, "en")
-    assert found is not None
-    assert (found.name, found.image, found.wide) == ("fig05_force_depth", "FIG05_FORCE_DEPTH", False)
-    assert found.alt and found.caption
 
 
 def test_the_worker_does_one_thing_after_another_in_a_process_of_its_own(desk: Desk) -> None:
@@ -253,8 +174,3 @@ def test_the_worker_does_one_thing_after_another_in_a_process_of_its_own(desk: D
     assert process == again != os.getpid()
     with pytest.raises(RuntimeError):
         desk.wait(done())
-
-
-def test_two_analyses_of_the_same_numbers_are_two() -> None:
-    found = numbers(Choice())
-    assert CachedAnalysis("a", found) != CachedAnalysis("a", found)

@@ -15,18 +15,15 @@ from nicegui import ui
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
-from skisnow.campaign.reading import FilesInMemory
-from skisnow.campaign.store import Journals
 from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
 from skisnow.report.campaign.verdicts import verdicts
 from skisnow.web import analysis_cache as analyses_module
-from skisnow.web import analysis_view
-from skisnow.web.campaign_analysis import Choice, Refusal, analyse_files
+from skisnow.web.campaign_analysis import analyse_files
 from skisnow.web.pages import analysis as page_module
 
-from .shared import COUNTED, FLAGS, SHEAR, TOML, WRONG, Drawing, kept, status
+from .shared import COUNTED, FLAGS, SHEAR, WRONG, Drawing, kept, status
 
 if TYPE_CHECKING:
     from ..desk import Desk, Sheet
@@ -131,20 +128,6 @@ def test_what_was_computed_is_there_with_the_page(desk: Desk, tmp_path: Path, dr
     assert report_key(page) != report_key(again)
 
 
-def test_tables_of_every_experiment_are_there_once_they_are_opened(
-    desk: Desk, tmp_path: Path, drawing: Drawing
-) -> None:
-    page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
-    finally_says(page, COUNTED)
-    for _ in range(2):
-        opened(page, "Every shear experiment")
-        lines = page.outline()
-        at = lines.index("Every penetration experiment")
-        assert lines[at + 1] == "Every shear experiment"
-        assert lines[at + 2].startswith("html Table 9.")
-    assert drawing.asked
-
-
 def test_an_experiment_that_is_left_out_stays_in_the_tables(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
     page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
     finally_says(page, COUNTED)
@@ -201,27 +184,6 @@ def test_what_is_chosen_meanwhile_is_what_is_shown(desk: Desk, tmp_path: Path, d
     assert figures(page) == [("data:0", "2 points"), ("data:2", "2 points")]
 
 
-def test_nothing_more_is_drawn_for_a_page_that_is_closed(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
-    desk.do(drawing.gate.clear)
-    page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
-    page.until(lambda: ("drawn", 0, "en") in drawing.asked)
-    desk.do(page.client.delete)
-    desk.do(drawing.gate.set)
-    page.until(lambda: drawing.done)
-    assert desk.do(lambda: drawing.done) == 1
-
-
-def test_long_lists_are_cut(desk: Desk, tmp_path: Path, drawing: Drawing, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analysis_view, "MOST_LISTED", 3)
-    page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
-    finally_says(page, COUNTED)
-    opened(page, INCLUDED)
-    at = page.outline().index(INCLUDED)
-    assert page.outline()[at + 1 : at + 4] == EXPERIMENTS[:3]
-    assert page.outline()[at + 5 : at + 8] == EXPERIMENTS[5:]
-    assert drawing.asked
-
-
 def test_what_is_wrong_in_files_is_listed_and_where_it_can_be_put_right(
     desk: Desk, tmp_path: Path, drawing: Drawing
 ) -> None:
@@ -234,18 +196,6 @@ def test_what_is_wrong_in_files_is_listed_and_where_it_can_be_put_right(
     assert answer.status_code == 404
     assert "-40" in answer.text
     assert desk.get(f"/report/{report_key(page)}/analysis.zip").text == answer.text
-    assert drawing.asked == [("load_drawing",)]
-
-
-def test_a_campaign_that_has_nothing_yet_says_so(desk: Desk, drawing: Drawing) -> None:
-    id_ = Journals(desk.lab.store).begin(TOML)
-    page = desk.open(f"/analysis/entry/{id_}")
-    page.until(lambda: status(page) != "Computing …")
-    refusal = analyse_files(FilesInMemory({"campaign.toml": TOML.encode()}), Choice())
-    assert isinstance(refusal, Refusal)
-    (wrong,) = refusal.errors
-    assert wrong in page.outline()
-    assert page.link("Enter tests") == f"/enter/{id_}"
     assert drawing.asked == [("load_drawing",)]
 
 
@@ -311,19 +261,6 @@ def test_a_page_that_is_closed_has_no_report(desk: Desk, tmp_path: Path, drawing
     desk.do(page.client.delete)
     for each in (path, f"/report/nothing/{file}"):
         assert desk.get(each).status_code == 404
-    assert drawing.asked
-
-
-def test_report_and_zip_are_asked_for_after_what_was_chosen(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
-    page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
-    finally_says(page, COUNTED)
-    key, links = report_key(page), {each.text: each for each in page.of(ui.link)}
-    assert links["Open the report"].props["target"] == "_blank"
-    page.fire(links["Open the report"], "click.prevent", {})
-    page.until(lambda: page.scripts[-1] == f"open {{'path': '/report/{key}/report.html', 'new_tab': True}}")
-    page.fire(links["Download everything"], "click.prevent", {})
-    page.told(f"/report/{key}/analysis.zip")
-    assert page.scripts[-1].startswith("download ")
     assert drawing.asked
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import ssl
 from collections.abc import Callable
 from pathlib import Path
@@ -10,9 +9,8 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, cast
 
 import pytest
-import uvicorn
 
-from skisnow._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
+from skisnow._support.errors import ParameterError
 from skisnow.web import server, subprocesses
 from skisnow.web.server import (
     ENCRYPTED,
@@ -27,108 +25,10 @@ from skisnow.web.server import (
 from skisnow.web.subprocesses import Bounds
 from tests.coded import raises
 
-from .shared import greeting, raising
+from .shared import raising
 
 if TYPE_CHECKING:
     from ..desk import Desk
-
-
-class Ends:
-    """Both ends of a pipe to a process, without one."""
-
-    def __init__(self, answer: Any) -> None:
-        self.answer = answer
-        self.done: list[Any] = []
-        self.process: dict[str, Any] = {}
-
-    def get_context(self, kind: str) -> Any:
-        self.done.append(kind)
-
-        def process(**given: Any) -> Any:
-            self.process = given
-            return SimpleNamespace(**{name: self._noted(name) for name in ("start", "kill", "join")})
-
-        return SimpleNamespace(Pipe=self._pipe, Process=process)
-
-    def _pipe(self, *, duplex: bool) -> tuple[Any, Any]:
-        self.done.append(duplex)
-        hears = SimpleNamespace(poll=self._poll, recv=self._recv, close=self._noted("hears closed"))
-        return hears, SimpleNamespace(close=self._noted("tells closed"))
-
-    def _noted(self, name: str) -> Callable[[], None]:
-        return lambda: self.done.append(name)
-
-    def _poll(self, seconds: float) -> bool:
-        self.done.append(seconds)
-        return self.answer is not None
-
-    def _recv(self) -> Any:
-        if isinstance(self.answer, Exception):
-            raise self.answer
-        return self.answer
-
-
-def in_ends(monkeypatch: pytest.MonkeyPatch, answer: Any) -> Ends:
-    ends = Ends(answer)
-    monkeypatch.setattr(subprocesses, "multiprocessing", ends)
-    return ends
-
-
-@pytest.mark.parametrize(
-    ("answer", "error", "code"),
-    [
-        ((7, ""), None, ""),
-        (None, ParameterError, "too_slow"),
-        (EOFError(), ParameterError, "cannot_read"),
-        ((StoreError("s", code="full"), ""), StoreError, "full"),
-        ((ParameterError("p", code="so"), "a trace"), ParameterError, "so"),
-    ],
-)
-def test_what_comes_of_another_process(
-    monkeypatch: pytest.MonkeyPatch, answer: Any, error: type[SkisnowError] | None, code: str
-) -> None:
-    ends, logged, bounds = in_ends(monkeypatch, answer), list[Any](), Bounds(2.5, 3_999_999)
-    monkeypatch.setattr(subprocesses, "_LOG", SimpleNamespace(error=lambda *what: logged.append(what)))
-    if error is None:
-        assert subprocesses.confined(bounds, len, "ab") == 7
-    else:
-        with raises(error, code) as found:
-            subprocesses.confined(bounds, len, "ab")
-        assert type(found.value) is error
-    begun = ["spawn", False, "start", "tells closed", 2.5]
-    assert ends.done == [*begun, "kill", "join", "hears closed"]
-    assert (ends.process["target"], ends.process["daemon"]) == (subprocesses._run_confined, True)
-    assert ends.process["args"][1:] == (bounds, len, ("ab",))
-    traced = isinstance(answer, tuple) and answer[1]
-    assert [what[1:] for what in logged] == ([("a trace",)] if traced else [])
-
-
-class SpecialError(ParameterError):
-    """An error that the other side has no class of."""
-
-
-@pytest.mark.parametrize(
-    ("work", "kind", "code"),
-    [
-        (len, int, ""),
-        (raising(FieldDataError(["a", "b"], code="f")), FieldDataError, "f"),
-        (raising(StoreError("s", code="s")), StoreError, "s"),
-        (raising(OutputError("o", code="o")), OutputError, "o"),
-        (raising(ParameterError("p", code="p")), ParameterError, "p"),
-        (raising(SpecialError("q", code="q")), ParameterError, "q"),
-    ],
-)
-def test_what_another_process_tells(
-    monkeypatch: pytest.MonkeyPatch, work: Callable[..., object], kind: type, code: str
-) -> None:
-    done: list[Any] = []
-    monkeypatch.setattr(subprocesses, "end_with_server", lambda: done.append("watched"))
-    monkeypatch.setattr(subprocesses, "_set_limits", done.append)
-    bounds = Bounds(2.5, 3_000_000)
-    subprocesses._run_confined(cast(Any, SimpleNamespace(send=done.append)), bounds, work, ("ab",))
-    assert done[:2] == ["watched", bounds]
-    answer, trace = done[2]
-    assert (type(answer), getattr(answer, "code", ""), trace) == (kind, code, "")
 
 
 def test_an_unforeseen_error_of_another_process_has_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -141,26 +41,6 @@ def test_an_unforeseen_error_of_another_process_has_a_trace(monkeypatch: pytest.
     assert [(type(error), error.code) for error, _ in told] == [(ParameterError, "cannot_read")] * 2
     assert told[0][1].startswith("Traceback") and told[0][1].endswith("ValueError: x\n")
     assert len(told[1][1]) == 4000 and told[1][1].endswith("xx\n")
-
-
-def test_a_process_is_bound_by_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
-    resource = pytest.importorskip("resource")
-    held: list[Any] = []
-
-    def held_to(kind: int, most: tuple[int, int]) -> None:
-        held.append((kind, most))
-        if kind != resource.RLIMIT_CORE:
-            raise (ValueError if kind == resource.RLIMIT_CPU else OSError)("lower already")
-
-    monkeypatch.setattr(resource, "setrlimit", held_to)
-    subprocesses._set_limits(Bounds(2.5, 3_000_000))
-    assert held == [
-        (resource.RLIMIT_CPU, (3, 3)),
-        (resource.RLIMIT_DATA, (3_000_000, 3_000_000)),
-        (resource.RLIMIT_CORE, (0, 0)),
-    ]
-    bounds = (subprocesses.BOUNDS, subprocesses.SKI_BOUNDS)
-    assert bounds == (Bounds(120.0, 3_000_000_000), Bounds(60.0, 3_000_000_000))
 
 
 def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -256,30 +136,6 @@ def test_whoever_lets_others_in_is_told_how_they_come(
         del told[:5]
     assert told == []
     assert (announced[1].config.ssl_certfile, announced[1].config.ssl_keyfile) == (secure.file, secure.key)
-
-
-def test_the_address_says_which_family_is_listened_on(desk: Desk, announced: list[Any]) -> None:
-    serve(desk.lab, host="127.0.0.1", port=0, token=None, tell=lambda _: None)
-    assert announced[0].family == socket.AF_INET
-    try:
-        serve(desk.lab, host="::1", port=0, token=None, tell=lambda _: None)
-    except OSError:
-        pytest.skip("this machine has no IPv6")
-    assert announced[1].family == socket.AF_INET6
-
-
-@pytest.mark.parametrize("started", [True, False])
-def test_a_server_is_announced_once_it_answers(desk: Desk, monkeypatch: pytest.MonkeyPatch, started: bool) -> None:
-    heard: list[Any] = []
-
-    async def startup(made: Any, sockets: Any = None) -> None:
-        heard.append(sockets)
-        made.started = started
-
-    monkeypatch.setattr(uvicorn.Server, "startup", startup)
-    made = server._AnnouncingServer(uvicorn.Config(greeting), lambda: heard.append("begun"))
-    desk.wait(made.startup([7]))  # type: ignore[list-item]
-    assert heard == ([[7], "begun"] if started else [[7]])
 
 
 def test_a_certificate_is_read_before_anything_is_served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
 from nicegui import ui
 
+from skisnow import samples
 from skisnow.campaign import write_reference
+from skisnow.campaign.importing import RECORD
 from skisnow.campaign.store import Journals, NewEntry
-from skisnow.web.elements import FIRST
+from skisnow.replay.page import MODULES
+from skisnow.web.replay_addresses import FILES, FIRST, FIRST_FILE
 
-from .shared import TOML, add_shear, begun, handlers
+from ..desk import Desk, in_this_process
+from .shared import TOML, add_shear, begun
 
 if TYPE_CHECKING:
     from ..desk import Desk
+
 
 SAMPLE = "Look at a sample campaign"
 
 
 def kept(desk: Desk, folder: Path, text: str = TOML) -> str:
     return desk.kept(folder, {"campaign.toml": text, "density.csv": "sample,site,snow_density_kg_per_m3\n1,A,350\n"})
-
-
-def test_an_empty_lab_offers_a_new_campaign_and_a_sample(desk: Desk) -> None:
-    page = desk.open("/")
-    assert page.link("New campaign") == "/describe"
-    assert handlers(page, SAMPLE) == [FIRST]
 
 
 def test_the_sample_is_the_synthetic_campaign_and_its_analysis_is_shown(desk: Desk, tmp_path: Path) -> None:
@@ -50,11 +51,6 @@ def test_a_draft_leads_to_its_entry_analysis_and_export(desk: Desk) -> None:
     page.shows(" · 2 tests · ")
     links = [page.link(text) for text in ("Enter tests", "Analysis", "Export")]
     assert links == [f"/enter/{id_}", f"/analysis/entry/{id_}", f"/export/entry/{id_}.zip"]
-
-
-def test_a_draft_without_a_name_is_listed(desk: Desk) -> None:
-    begun(desk, 'observers = ["Ada"]\n')
-    assert "h3 (no name)" in desk.open("/").outline()
 
 
 def test_a_damaged_draft_is_listed_without_its_cells_or_a_link(desk: Desk) -> None:
@@ -84,34 +80,46 @@ def test_an_imported_campaign_leads_to_its_pages_and_announces_its_import(desk: 
     assert not any("good" in each.classes for each in desk.open("/").of(ui.label))
 
 
-def test_a_campaign_whose_check_failed_is_not_checked(desk: Desk, tmp_path: Path) -> None:
-    id_ = kept(desk, tmp_path / "one")
-    with desk.lab.store.engine.begin() as connection:
-        connection.exec_driver_sql("UPDATE campaign SET n_errors = NULL, n_warnings = NULL")
-    assert desk.open("/").shows(f"[quiet] {id_} · ").endswith(" · not checked")
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_cards_lead_to_the_three_ways_to_begin(desk: Desk, language: str) -> None:
+    page = desk.open("/", language)
+    ways = [each.props["href"] for each in page.tagged("a") if "way" in each.classes]
+    assert ways == ["/describe", "/carve", "/simulate"]
+    assert all(desk.get(way).status_code == 200 for way in ways)
 
 
-def test_the_last_imported_stands_first(desk: Desk, tmp_path: Path) -> None:
-    for name in ("first", "second"):
-        kept(desk, tmp_path / name, f'name = "{name}"\n')
-    with desk.lab.store.engine.begin() as connection:
-        connection.exec_driver_sql("UPDATE campaign SET added_at = '2001' || substr(added_at, 5) WHERE name = 'first'")
-    outline = desk.open("/").outline()
-    assert outline.index("h3 second") < outline.index("h3 first")
+def test_the_replay_is_small_and_is_a_run_of_several_seconds_with_its_gates(desk: Desk) -> None:
+    assert FIRST_FILE.stat().st_size <= 500_000
+    answer = desk.get(FIRST)
+    assert answer.headers["content-encoding"] == "gzip"
+    content = answer.content  # unpacked by the client
+    assert content[:4] == b"SKRP"
+    header = json.loads(content[8 : 8 + int.from_bytes(content[4:8], "little")])
+    assert header["arrays"]["time"]["shape"][0] * 0.04 > 5.0
+    assert header["arrays"]["gate_place"]["shape"][0] >= 4
+    assert all(desk.get(f"{FILES}/{name}").status_code == 200 for name in MODULES)
 
 
-def test_a_folder_or_files_are_sent_by_plain_forms(desk: Desk) -> None:
-    page = desk.open("/")
-    forms = [each for each in page.of() if each.tag == "form"]
-    for form in forms:
-        assert (form.props["method"], form.props["action"]) == ("post", "/import")
-        assert form.props["enctype"] == "multipart/form-data"
-    inputs = [each.props for each in page.of() if each.tag == "input"]
-    assert [(each["type"], each["name"], each["id"]) for each in inputs] == [
-        ("file", "files", "import-folder"),
-        ("file", "files", "import-files"),
-    ]
-    assert all("multiple" in each and "required" in each for each in inputs)
-    assert ["webkitdirectory" in each for each in inputs] == [True, False]
-    assert [each.props["for"] for each in page.tagged("label")] == ["import-folder", "import-files"]
-    assert [each.props["type"] for each in page.tagged("button")] == ["submit", "submit"]
+WORKBOOK = (Path(samples.__file__).parent / "files" / "two-sites.xlsx").read_bytes()
+
+
+@pytest.mark.parametrize(("language", "store"), [("en", "Store the campaign"), ("de", "Kampagne speichern")])
+def test_workbook_is_proposed_stored_and_taken_back(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, language: str, store: str
+) -> None:
+    in_this_process(monkeypatch, "transfer", "pages.import_file")
+    answer = desk.post("/import", language, files={"files": ("two-sites.xlsx", WORKBOOK)})
+    assert answer.status_code == 303
+    page = desk.open(answer.headers["location"], language)
+    page.shows("1.163")
+    page.press(store)
+    page.told("open ")
+    (stored,) = desk.lab.store.list()
+    assert {file.path for file in stored.files} == {
+        "campaign.toml", "penetration.csv", "shear.csv", "original/two-sites.xlsx", RECORD,
+    }  # fmt: skip
+    assert desk.lab.store.contents(stored.id, {"original/two-sites.xlsx"})[1].popitem()[1] == WORKBOOK
+    assert stored.n_errors == 0
+    desk.do(lambda: desk.lab.store.remove(stored.id))
+    assert desk.lab.store.list() == ()
+    assert desk.lab.store.verify() == ()

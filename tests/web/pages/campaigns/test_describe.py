@@ -176,12 +176,6 @@ def test_the_description_of_a_draft_is_shown_as_it_is(desk: Desk) -> None:
     assert page.focused() is None
 
 
-def test_a_draft_without_tools_has_empty_rows(desk: Desk) -> None:
-    id_ = begun(desk, 'name = "Bare"')
-    page = desk.open(f"/describe?entry={id_}")
-    assert [page.field(name).value for name in (LOADS, "Name of tool 1", "Name of plate 1")] == ["", "", ""]
-
-
 def test_a_description_that_is_changed_is_written_down_and_one_that_is_not_is_not(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/describe?entry={id_}")
@@ -242,17 +236,3 @@ def test_an_address_of_no_campaign_is_not_found(desk: Desk, address: str) -> Non
     assert desk.get(address).status_code == 404
     assert desk.code == "no_campaign"
     desk.failures.clear()
-
-
-def test_several_errors_of_a_description_are_listed(desk: Desk) -> None:
-    page = desk.open("/describe", "de")
-    page.fill("Name der Kampagne", "Nordhang")
-    page.fill("Schritt des Tiefenmessers (mm)", "-1")
-    page.fill("Unsicherheit der Last (N)", "-2")
-    page.press("Speichern und Versuche eingeben")
-    assert [("gauge_resolution_mm" in line, "load_uncertainty_N" in line) for line in page.refusals()] == [
-        (True, False),
-        (False, True),
-    ]
-    assert not any("allowed" in line for line in page.refusals())
-    assert Journals(desk.lab.store).list() == ()

@@ -17,7 +17,6 @@ from .shared import (
     after_waiting,
     begun,
     begun_series,
-    depths,
     history,
     is_open,
     reading_row,
@@ -58,19 +57,6 @@ def test_depths_after_waiting_are_stored_beside_the_first_ones(desk: Desk) -> No
     assert "h2 New series" in page.outline()
 
 
-def test_a_depth_after_waiting_stands_with_the_decimal_mark_of_the_page(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_, language="de")
-    name = "Tiefe nach dem Warten unter 20 N (mm)"
-    page.fill(name, "1,75")
-    page.press("Nach dem Warten Abgelesenes speichern")
-    page.shows("Stored after waiting: ")
-    assert page.field(name).value == "1,75"
-    page.press("Nach dem Warten Abgelesenes speichern")
-    page.shows("Nothing is different.")
-
-
 def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"), ("60", "2.6"), depth_after_mm="2.7")
@@ -99,31 +85,6 @@ def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -
     assert not any("field Why" in line for line in page.outline())
 
 
-def test_a_second_depth_is_left_as_it_was(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), depth_after_mm="1.7")
-    page = series_page(desk, id_)
-    waited(page, "20", "1.8")
-    page.press(STORE_WAITED)
-    page.press("Leave it as it was")
-    assert "field Why" not in " ".join(page.outline())
-    assert page.field(after_waiting("20")).value == "1.7"
-    assert len(history(desk, id_)) == 1
-
-
-def test_new_and_other_second_depths_at_once(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), depth_after_mm="1.7")
-    add_series(desk, id_, "1", ("60", "2.6"))
-    page = series_page(desk, id_)
-    waited(page, "20", "1.8")
-    waited(page, "60", "2.9")
-    page.press(STORE_WAITED)
-    assert page.outcome() == "good"
-    assert page.field("Why").value == "typing error"
-    assert [row.get("depth_after_mm", "") for row in stored(desk, id_, PENETRATION, "1")] == ["1.7", "2.9"]
-
-
 def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_refused(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"))
@@ -139,19 +100,6 @@ def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_refused(des
     assert page.scripts[-1] == "lab.answered(1, false)"
     assert page.field(after_waiting("20")).value == "1.7"
     assert len(history(desk, id_)) == 2
-
-
-def test_a_second_depth_after_somebody_elses_entry_is_not_stored(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_)
-    waited(page, "20", "1.7")
-    add_series(desk, id_, "1", ("60", "2.6"))
-    button = next(each for each in page.of(ui.button) if each.text == STORE_WAITED)
-    page.fire(button, "click", {"number": 1})
-    assert page.scripts[-1] == "lab.answered(1, false)"
-    assert page.outcome() == "bad"
-    assert "depth_after_mm" not in stored(desk, id_, PENETRATION, "1")[0]
 
 
 def record(**further: object) -> dict[str, object]:
@@ -182,18 +130,6 @@ def test_readings_that_the_browser_kept_are_stored_once(desk: Desk) -> None:
     assert resent(page, [back]) == [["b", ""]]
     entry = history(desk, id_)[-1]
     assert (entry.cells["branch"], len(entry.who), entry.position) == ("unloading", 200, 1)
-
-
-def test_a_kept_reading_of_another_series_changes_nothing_that_is_shown(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = desk.open(f"/enter/{id_}")
-    page.fill("Site", "typed")
-    assert resent(page, [record()]) == [["a", ""]]
-    assert page.field("Site").value == "typed"
-    shear = desk.open(f"/enter/{id_}?table=shear.csv")
-    again = record(once="b", cells={**record()["cells"], "load_N": "60", "depth_mm": "3"})  # type: ignore[dict-item]
-    assert resent(shear, [again]) == [["b", ""]]
-    assert depths(desk, id_) == [("20", "1.5"), ("60", "3")]
 
 
 @pytest.mark.parametrize(
@@ -233,15 +169,3 @@ def test_what_is_no_kept_reading_is_refused(desk: Desk, said: object, once: str)
     ((answered, reason),) = resent(begun_series(desk, id_), [said])
     assert (answered, bool(reason)) == (once, True)
     assert history(desk, id_) == []
-
-
-def test_what_is_no_list_of_readings_is_answered_with_nothing(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = begun_series(desk, id_)
-    assert resent(page, {"once": "a"}) == []
-    assert resent(page, [record(once="x" * 200)]) == [["x" * 200, ""]]
-
-
-def test_only_so_many_readings_are_taken_at_once(desk: Desk) -> None:
-    page = begun_series(desk, begun(desk))
-    assert len(resent(page, [0] * 10_001)) == 10_000

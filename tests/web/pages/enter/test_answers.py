@@ -6,10 +6,8 @@ import threading
 from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
-from unittest.mock import Mock
 
 import pytest
-from nicegui import ui
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, NewEntry, Store, sync
@@ -106,54 +104,6 @@ def test_only_the_last_of_several_tests_is_shown(desk: Desk) -> None:
     page.shows("[quiet] Test a")
 
 
-def test_an_answer_to_a_page_that_was_left_is_dropped(desk: Desk) -> None:
-    page = desk.open("/")
-    goes_on = threading.Event()
-
-    def answer(site: str) -> QuickResults:
-        assert goes_on.wait(60)
-        return found(**{site: curve(site)})
-
-    made = beside(page, answer)
-    desk.do(lambda: made.follow("a", "a"), page.client)
-    page.leave()
-    goes_on.set()
-    page.until(lambda: not page.works("beside"))
-    assert page.client.elements == {}
-
-
-def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk) -> None:
-    page = desk.open("/")
-    failure = ZeroDivisionError("division by zero")
-    made = beside(page, Mock(side_effect=failure))
-    desk.do(lambda: made.follow("a", "a"), page.client)
-    assert desk.fails() is failure
-    page.told("notify ")
-    assert "Reference: " in page.scripts[-1]
-
-
-def test_nothing_is_shown_when_the_lab_is_being_closed(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    page = desk.open("/")
-    asked: list[str] = []
-
-    async def nothing(_act: object, site: str) -> None:
-        asked.append(site)
-
-    monkeypatch.setattr("skisnow.web.entry.table_view.run.io_bound", nothing)
-    made = beside(page, lambda _: found())
-    desk.do(lambda: made.follow("a", "A"), page.client)
-    page.until(lambda: asked and not made._working)
-    assert not any("Test" in line or "H_V" in line for line in page.outline())
-
-
-def test_what_follows_a_series_stands_beside_it_and_of_other_tests_above(desk: Desk) -> None:
-    id_ = begun(desk)
-    for table, classes in ((PENETRATION, ["beside"]), (SHEAR, ["beside", "above"])):
-        page = desk.open(f"/enter/{id_}?table={table}")
-        (section,) = (each for each in page.tagged("section") if "beside" in each.classes)
-        assert section.classes == classes
-
-
 def test_what_cannot_be_computed_is_said_and_the_next_one_is_shown(desk: Desk) -> None:
     page = desk.open("/")
 
@@ -234,35 +184,6 @@ def test_an_act_that_fails_is_answered_with_no(desk: Desk) -> None:
         desk.do(done, page.client)
     desk.do(done, page.client)  # is answered, and not done again
     assert page.scripts == ["lab.answered(3, false)"] * 2
-
-
-def test_buttons_and_forms_ask_in_the_browser(desk: Desk) -> None:
-    page = desk.open("/")
-
-    def made() -> list[Any]:
-        with page.content:
-            plain, sending = answering.form(), answering.form("a b", sends=lambda: None)
-            menu = ui.select(["a", "b"], value="a")
-            return [plain, sending, answering.row_button("Row", lambda: None), menu, answering.redrawn_by(menu)]
-
-    plain, sending, row, menu, group = desk.do(made, page.client)
-    by_event = [
-        {each.type: each.js_handler for each in one._event_listeners.values() if each.js_handler}
-        for one in (plain, sending, row, menu)
-    ]
-    assert by_event[:3] == [
-        {"keydown.enter": answering.ONWARD},
-        {"keydown.enter": answering.ENTER},
-        {"click": answering.ASK_FOR_ROW},
-    ]
-    assert answering.DRAW_ANEW in by_event[3].values()
-    assert (plain.classes, sending.classes) == (["fields"], ["a", "b"])
-    assert (row.classes, row.text) == (["act", "adds"], "Row")
-    assert (group.tag, group.classes) == ("fieldset", ["redrawn"])
-    page.fire(menu, "update:modelValue", {"value": 1, "label": "b"})
-    assert page.scripts[-1] == "lab.drawn()"
-    desk.do(lambda: answering.go_on('/a"b'), page.client)
-    assert page.scripts[-1] == 'lab.leave("/a\\"b")'
 
 
 def test_a_session_hears_what_others_wrote_when_it_looks_again(desk: Desk) -> None:

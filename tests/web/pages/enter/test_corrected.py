@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 from nicegui import ui
 
-from skisnow.campaign.store import NewEntry, ReplayedTest
+from skisnow.campaign.store import NewEntry
 from skisnow.report.formatting import significant
 from skisnow.web.edit_session import EditSession
-from skisnow.web.elements import StatusLine
-from skisnow.web.entry.table_view import TableView
 from skisnow.web.words import hardness_words
 
 from ..desk import values
@@ -77,16 +75,6 @@ def test_too_few_loads_are_said_when_the_series_is_left(desk: Desk) -> None:
     page.shows(few)
     enter(page, "Depth under 60 N (mm)", "2.6")
     page.until(lambda: not any(few in line for line in page.outline()))
-
-
-def test_a_reading_of_the_series_that_is_not_the_last_one_is_followed_to_its_end(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    add_series(desk, id_, "2", ("20", "1.5"))
-    page = series_page(desk, id_)
-    enter(page, "Depth under 40.5 N (mm)", "2.15")
-    page.shows("H_V = ")
-    page.shows("The series has fewer than 3 load steps.")
 
 
 def asked_to_correct(desk: Desk, id_: str) -> Sheet:
@@ -274,16 +262,6 @@ def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
     assert any("&site=A" in each for each in page.scripts)
 
 
-def test_nothing_is_undone_where_nothing_was_entered(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = desk.open(f"/enter/{id_}")
-    (status,) = page.of(StatusLine)
-    view = TableView(EditSession(desk.lab, id_), PENETRATION, page.field("Operator"), status)
-    assert not desk.do(lambda: view.undo(ReplayedTest(PENETRATION, "1")), page.client)
-    assert page.outcome() == "bad"
-    assert history(desk, id_) == []
-
-
 def test_what_somebody_else_undid_is_not_undone_again(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"))
@@ -323,16 +301,6 @@ def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
     assert page.field(NAME).value == "1"
 
 
-def test_what_was_typed_in_one_series_does_not_go_into_the_next(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = begun_series(desk, id_)
-    enter(page, "Depth under 20 N (mm)", "1.5")
-    page.press("Next series")
-    page.press("Begin the series")
-    assert page.between("h2 Series 2")[1] == "[quiet] A · ski piece · 30°"
-    assert page.field("Depth under 20 N (mm)").value == ""
-
-
 # What is not confirmed
 
 
@@ -370,16 +338,6 @@ def test_an_unanswered_correction_holds_what_would_lose_it(desk: Desk, act: str)
     assert "h2 New series" in page.outline()
 
 
-def test_a_change_that_is_no_depth_is_not_left_behind(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_)
-    leave(page, "Depth under 20 N (mm)", "")
-    page.press("Next series")
-    assert page.refusals() == page.faults("Depth under 20 N (mm)")
-    assert "h2 Series 1" in page.outline()
-
-
 def test_a_change_outlives_another_reading(desk: Desk) -> None:
     id_ = begun(desk)
     page = asked_to_correct(desk, id_)
@@ -394,17 +352,6 @@ def test_a_change_outlives_another_reading(desk: Desk) -> None:
     assert page.field("Depth under 40.5 N (mm)").value == "22.5"
     assert changed_states(page) == []
     assert depths(desk, id_) == [("20", "1.5"), ("40.5", "22.5"), ("60", "3"), ("80", "4")]
-
-
-def test_a_changed_depth_after_waiting_is_not_shown_as_stored(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), depth_after_mm="1.7")
-    page = series_page(desk, id_)
-    assert changed_states(page) == []
-    page.fill(after_waiting("20"), "1.8")
-    assert len(changed_states(page)) == 1
-    page.fill(after_waiting("20"), "1,7")
-    assert changed_states(page) == []
 
 
 def series_listed(page: Sheet) -> list[str]:

@@ -10,10 +10,8 @@ import numpy as np
 import pytest
 from nicegui import ui
 
-from skisnow.campaign.store import NewEntry
 from skisnow.geometry import SkiPiece
 from skisnow.report.formatting import significant
-from skisnow.web.elements import StatusLine
 from skisnow.web.entry.series import ON_BLUR, ON_ENTER
 
 from ..desk import values
@@ -24,7 +22,6 @@ from .shared import (
     PENETRATION,
     READ_AGAIN,
     SERIES,
-    TOML,
     add_series,
     after_waiting,
     back,
@@ -39,7 +36,6 @@ from .shared import (
     selected,
     series_page,
     undo_button,
-    write,
 )
 
 if TYPE_CHECKING:
@@ -61,17 +57,6 @@ def test_a_page_of_a_campaign_asks_for_its_first_series(desk: Desk) -> None:
         "Penetration",
     ]
     assert page.field("Operator").options == {"Ada": "Ada", "Bo": "Bo", "Cy": "Cy"}
-
-
-def test_who_writes_is_told_to_the_browser(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = desk.open(f"/enter/{id_}")
-    place = next(each for each in page.tagged("div") if "who" in each.classes)
-    assert place.props["data-who"] == "Ada"
-    page.fill("Operator", "Bo")
-    assert place.props["data-who"] == "Bo"
-    (around,) = page.of(StatusLine)
-    assert (around.props["role"], around.props["aria-live"]) == ("status", "polite")
 
 
 def test_without_observers_anybody_may_say_a_name(desk: Desk) -> None:
@@ -123,16 +108,6 @@ def test_a_series_begins_with_its_head_and_asks_for_a_depth_under_each_load(desk
     }
 
 
-def test_enter_in_the_head_begins_the_series_too(desk: Desk) -> None:
-    page = desk.open(f"/enter/{begun(desk)}")
-    page.fill("Site", "A")
-    page.fill("Edge angle (°)", "30")
-    form = page.field("Site").parent_slot.parent
-    page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
-    page.shows("h2 Series 1")
-    assert page.scripts[-1] == "lab.answered(1, true)"
-
-
 def test_what_no_series_can_begin_with_is_said_at_its_fields(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}")
@@ -172,15 +147,6 @@ def test_the_next_series_has_what_it_shares_with_the_last_one(desk: Desk) -> Non
     assert [line.rpartition("=")[2] for line in listed] == ["a", "7"]
 
 
-def test_a_tool_that_the_campaign_has_no_more_is_not_proposed(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), tool="lost")
-    assert desk.open(f"/enter/{id_}").field("Tool").value == "disc"
-    other = begun(desk, 'name = "Bare"')
-    bare = desk.open(f"/enter/{other}")
-    assert (bare.field("Tool").value, bare.field("Tool").options) == (None, {})
-
-
 @pytest.mark.parametrize(
     "head",
     [
@@ -210,26 +176,6 @@ def test_a_series_is_there_again_by_its_address(desk: Desk) -> None:
     ]
     (link,) = (each for each in page.tagged("nicegui-link") if each.text.split(" ·")[0] == "1")
     assert link.props["aria-current"] == "page"
-
-
-def test_an_address_with_a_test_of_another_table_begins_a_test(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = desk.open(f"/enter/{id_}?table=shear.csv&test=1&site=A&tool=disc&edge_angle_deg=0")
-    assert "h2 New test" in page.outline()
-    assert "h3 Series so far" not in page.outline()
-    assert "h2 New series" in series_page(desk, id_, "2").outline()
-
-
-def test_the_last_forty_series_have_links(desk: Desk) -> None:
-    id_ = begun(desk)
-    for number in range(41):
-        add_series(desk, id_, f"n{number}", ("20", "1.5"))
-    write(desk, id_, NewEntry(action="cancel", file=PENETRATION, test="n40", why="slip"))
-    lines = [line for line in desk.open(f"/enter/{id_}").between("h3 Series so far") if line.startswith("link")]
-    assert len(lines) == 40
-    assert lines[0].startswith("link[small] n40 · 30°") and "(cancelled)" in lines[0]
-    assert lines[-1].startswith("link[small] n1 · 30°")
 
 
 def test_the_list_of_a_site_has_angle_result_writer_and_flags(desk: Desk) -> None:
@@ -307,22 +253,6 @@ def test_what_is_no_depth_is_refused_at_its_field_and_said_once(desk: Desk) -> N
     assert all(each.error is None for each in page.of(ui.input))
 
 
-def test_what_is_refused_stays_as_it_was_typed(desk: Desk) -> None:
-    page = begun_series(desk, begun(desk))
-    enter(page, "Depth under 20 N (mm)", " x ")
-    assert page.field("Depth under 20 N (mm)").value == " x "
-
-
-def test_a_refusal_is_answered_where_the_browser_waits(desk: Desk) -> None:
-    page = begun_series(desk, begun(desk))
-    enter(page, "Depth under 20 N (mm)", "x", number=1)
-    assert page.scripts[-1] == "lab.answered(1, false)"
-    enter(page, "Depth under 20 N (mm)", "1", number=2)
-    assert page.scripts[-1] == "lab.answered(2, true)"
-    enter(page, "Depth under 20 N (mm)", "1", number=3)
-    assert page.scripts[-1] == "lab.answered(3, true)"
-
-
 def test_a_text_that_was_lost_on_its_way_is_taken_from_what_is_sent_again(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
@@ -332,15 +262,6 @@ def test_a_text_that_was_lost_on_its_way_is_taken_from_what_is_sent_again(desk: 
     assert depths(desk, id_) == [("20", "1.5")]
     assert made.value == "1.5"
     assert page.scripts.count('lab.told("a")') == 2
-
-
-def test_a_reading_that_was_sent_before_is_stored_once(desk: Desk) -> None:
-    """The page was loaded again meanwhile, and the first answer did not come."""
-    id_ = begun(desk)
-    for _ in range(2):
-        page = begun_series(desk, id_)
-        page.fire(page.field("Depth under 20 N (mm)"), "blur", {"once": "a", "text": "1.5"})
-    assert len(history(desk, id_)) == 1
 
 
 def test_somebody_else_on_the_same_series_is_told_and_shown(desk: Desk) -> None:
@@ -435,20 +356,6 @@ def test_discs_that_are_taken_off_come_after_the_loading(desk: Desk) -> None:
     page.shows("k_u/H_V = ")
     enter(page, name, "2.4")
     page.shows("2.5 mm becomes 2.4 mm")
-
-
-def test_a_whole_loading_puts_the_focus_on_the_next_series(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"), ("60", "2.6"))
-    page = series_page(desk, id_)
-    assert page.focused().text == "Next series"
-    assert not is_open(page, DISCS_OFF)
-
-
-def test_a_campaign_with_one_load_has_no_way_back(desk: Desk) -> None:
-    id_ = begun(desk, TOML.replace("[20, 40.5, 60]", "[20]"))
-    page = begun_series(desk, id_)
-    assert DISCS_OFF not in page.outline()
 
 
 def test_two_rejected_fields_are_listed_in_german_each_by_its_own_sentences(desk: Desk) -> None:

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 from nicegui import ui
-
-from skisnow.campaign.reading.experiments import TURNING
-from skisnow.web.entry.single import SingleForm
-from skisnow.web.entry.table_view import TableView
 
 from ..desk import values
 from .shared import (
@@ -53,23 +48,6 @@ NAMES = {
     "spot": "Measurement point",
     "plate": "Plate",
 }
-
-
-@pytest.mark.parametrize(
-    ("table", "key", "cells"),
-    [(DENSITY, "sample", {KG_PER_M3: "350"}), (DROP_CONE, "test", {"repeat": "1", "drop_cone_depth_mm": "12"})],
-)
-def test_a_test_never_shows_the_result_of_another_table(
-    desk: Desk, table: str, key: str, cells: dict[str, str]
-) -> None:
-    id_ = begun(desk)
-    add_shear(desk, id_, "4")
-    add(desk, id_, table, "4", **{key: "4", "site": "A"}, **cells)
-    page = desk.open(f"/enter/{id_}?table={table}&test=4")
-    page.until(lambda: not page.works("beside"))
-    assert not any("S_f" in line or line == "[quiet] Test 4" for line in page.outline())
-    sheared = desk.open(f"/enter/{id_}?table={SHEAR}&test=4")
-    assert "S_f = " in sheared.shows("S_f")
 
 
 def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
@@ -256,19 +234,6 @@ def test_a_new_test_that_was_begun_is_there_again_after_another_one_was_looked_a
     assert page.field(NAME).value == "4"
 
 
-def test_a_form_without_anything_typed_is_filled_in_anew(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_shear(desk, id_, "1")
-    page = desk.open(f"/enter/{id_}?table=shear.csv")
-    page.press("Correct 1")
-    add_shear(desk, id_, "2", site="B")
-    page.fill("Site", "C")
-    page.press("Correct")
-    page.press("Correct it")
-    page.press("New test")
-    assert (page.field(NAME).value, page.field("Site").value) == ("3", "B")
-
-
 def test_a_cancelled_test_of_one_row_says_so(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
@@ -282,14 +247,6 @@ def test_a_cancelled_test_of_one_row_says_so(desk: Desk) -> None:
     page.press(undo_button(page))
     assert "h2 New test" in page.outline()
     assert "h3 So far" not in page.outline()
-
-
-def test_the_last_thirty_tests_stand_so_far(desk: Desk) -> None:
-    id_ = begun(desk)
-    for number in range(31):
-        add(desk, id_, DENSITY, f"n{number}", sample=f"n{number}", site="A", snow_density_kg_per_m3="350")
-    lines = desk.open(f"/enter/{id_}?table=density.csv").between("h3 So far")[1::2]
-    assert (" n30 " in lines[0], " n1 " in lines[-1], len(lines)) == (True, True, 30)
 
 
 @pytest.mark.parametrize("act", ["New test", "Correct 2", CANCEL, "Undo"])
@@ -326,58 +283,3 @@ def test_each_row_of_a_test_has_an_address(desk: Desk) -> None:
     page.press("New test")
     assert f'history.replaceState({{}}, "", "{address}");' in page.scripts
     assert desk.open(f"{address}&test=1&row=x").field(NAMES["cone"]).value == "20"
-
-
-def test_each_change_is_asked_about_by_itself_in_german(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_shear(desk, id_, "1")
-    page = desk.open(f"/enter/{id_}?table={SHEAR}&test=1", "de")
-    page.fill("Messort", "Density")
-    page.fill("Moment (N m)", "36")
-    page.press("Korrigieren")
-    lines = page.between("Messort: aus A wird Density.")
-    assert lines[1] == "Moment (N m): aus 30 wird 36."
-
-
-ROW = {"site": "A", "plate": "blade", "edge_angle_deg": "30", "lever_arm_mm": "", "spot": "", "depth_mm": "10"}
-
-
-@pytest.mark.parametrize(
-    ("names", "expected"), [([], "1"), (["2", "9", "b"], "10"), (["3", "9" * 4300, "9" * 4301, "-5", "²"], "4")]
-)
-def test_the_next_number_is_above_all_numbers(names: list[str], expected: str) -> None:
-    made: Any = object.__new__(TableView)
-    made.file = "shear.csv"
-    tests = [SimpleNamespace(name=name) for name in names]
-    made.session = SimpleNamespace(campaign=SimpleNamespace(of_file=lambda file: tests if file == made.file else []))
-    assert made.next_name() == expected
-
-
-@pytest.mark.parametrize(
-    ("rows", "cells", "fits"),
-    [
-        ([ROW | {TURNING: "5"}], ROW | {TURNING: "10"}, True),
-        ([], ROW | {TURNING: "10"}, True),
-        ([ROW | {TURNING: "5"}], ROW | {TURNING: "10", "depth_mm": "11"}, False),
-        ([ROW | {TURNING: "5"}, ROW], ROW | {TURNING: "10"}, False),
-        ([ROW], ROW, False),
-        ([{"repeat": "1", "site": "A"}], {"repeat": "1", "site": "A"}, False),
-        ([{"repeat": "1", "site": "A"}], {"repeat": "2", "site": "B"}, False),
-        ([{"repeat": "1", "site": "A"}], {"repeat": "2", "site": "A"}, True),
-    ],
-)
-def test_a_second_row_that_does_not_go_with_the_first(
-    rows: list[dict[str, str]], cells: dict[str, str], fits: bool
-) -> None:
-    form: Any = object.__new__(SingleForm)
-    form._view = SimpleNamespace(form=SimpleNamespace(names=()))
-    form._columns = ("experiment", "site")
-    test: Any = SimpleNamespace(name="t", rows=[SimpleNamespace(cells=each) for each in rows], history=[1])
-    assert (form._second_row_fault(test, cells) == "") is fits
-
-
-def test_the_tests_so_far_are_listed_in_german(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_shear(desk, id_, "S1", depth_mm="4.5")
-    page = desk.open(f"/enter/{id_}?table={SHEAR}", "de")
-    assert any("4,5" in each._text for each in page.of(ui.label))

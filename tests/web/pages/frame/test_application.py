@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -11,16 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 import uvicorn
-from nicegui import app as pages_app
-from nicegui import core
 from uvicorn.server import ServerState
 
 import skisnow.web
 from skisnow._support.language import languages
-from skisnow.web.application import _set_language, set_heartbeat
-from skisnow.web.guard import Tries, answer_to_token, token_page, too_many_tries
+from skisnow.web.application import _set_language
+from skisnow.web.guard import Tries, answer_to_token, token_page
 from skisnow.web.server import TimeLimitedProtocol
-from skisnow.web.settings import RECONNECT_S
 
 from ...finished import finished
 
@@ -42,28 +38,6 @@ def test_own_files_are_asked_for_again(desk: Desk, path: str, kind: str) -> None
     assert answer.headers["content-type"].startswith(kind)
     assert answer.headers["cache-control"] == "no-cache"
     assert answer.content == (HERE / path[1:]).read_bytes()
-
-
-def test_the_framework_is_set_up_for_pages_that_last(desk: Desk) -> None:
-    config = pages_app.config
-    assert config.title == "skisnow"
-    assert config.language == "en-US"
-    assert (config.tailwind, config.show_welcome_message, config.reconnect_timeout) == (False, False, RECONNECT_S)
-    assert config.socket_io_js_transports == ["websocket"]
-    assert config.quasar_config["loadingBar"] == {"skipHijack": True}
-    assert set_heartbeat in pages_app._startup_handlers
-    assert all(hasattr(each, "__wrapped__") for each in core.sio.handlers["/"].values())
-    guard: Any = vars(desk._browser._transport)["app"]
-    access = guard.access
-    assert (access.host, access.token, access.body_bytes) == ("127.0.0.1", None, desk.lab.limits.upload_bytes)
-    files = [each for each in logging.getLogger("skisnow.web").handlers if isinstance(each, logging.FileHandler)]
-    assert str(desk.lab.runs / "lab.log") in [each.baseFilename for each in files]
-
-
-def test_a_language_is_chosen_at_an_address(desk: Desk) -> None:
-    answer = desk.get("/language/xx?back=%2Flab.css")
-    assert [each.headers["location"] for each in answer.history] == ["/lab.css"]
-    assert answer.headers["content-type"].startswith("text/css")
 
 
 @pytest.mark.parametrize(
@@ -146,11 +120,6 @@ def test_a_body_that_is_too_long_for_a_token_is_not_read_on(waits: list[float], 
     assert len(waits) == (1 if status == 403 else 0)
 
 
-def test_who_leaves_gets_nothing(waits: list[float]) -> None:
-    answer = answered(body(b"token=snow+in+may", more=True), {"type": "http.disconnect"})
-    assert (answer.status_code, text_of(answer), waits) == (400, "", [])
-
-
 def test_the_form_of_the_token_in_both_languages() -> None:
     answer = token_page(scope_of(), 401)
     page = text_of(answer)
@@ -159,13 +128,6 @@ def test_the_form_of_the_token_in_both_languages() -> None:
         assert part in page
     german = text_of(token_page(scope_of("de"), 403, "This is not the token."))
     assert '<html lang="de">' in german and "This is" not in german
-
-
-@pytest.mark.parametrize(("wait_s", "seconds"), [(0.1, 1), (30.0, 30), (59.2, 60)])
-def test_too_many_tries_are_told_how_long_to_wait(wait_s: float, seconds: int) -> None:
-    answer = too_many_tries(scope_of(), wait_s)
-    assert (answer.status_code, answer.headers["retry-after"]) == (429, str(seconds))
-    assert f" {seconds} " in text_of(answer)
 
 
 def test_tries_are_forgotten_after_a_minute_each() -> None:
@@ -191,19 +153,6 @@ def test_networks_have_tries_of_their_own() -> None:
     assert tries.wait_s("2001:db8:0:1::") == 0.0
     assert [tries.wait_s("no address") for _ in range(11)] == [0.0] * 10 + [60.0]
     assert tries.wait_s("another") == 0.0
-
-
-def test_ten_thousand_addresses_are_known_the_latest_ones() -> None:
-    tries = Tries(lambda: 0.0)
-    for _ in range(10):
-        tries.wait_s("first")
-        tries.wait_s("second")
-    for number in range(9_998):
-        tries.wait_s(f"other {number}")
-    assert tries.wait_s("first") == 60.0  # known, and now the latest
-    tries.wait_s("one more")  # the second one is forgotten for it
-    assert tries.wait_s("first") == 60.0
-    assert tries.wait_s("second") == 0.0
 
 
 class Wire(asyncio.Transport):
@@ -355,47 +304,3 @@ def test_a_head_without_an_end_is_cut_off_and_each_request_is_counted_by_itself(
             assert server.wire.closed
 
     finished(talk())
-
-
-def test_a_connection_that_ends_with_its_answer_is_not_waited_for() -> None:
-    async def talk() -> None:
-        async with patience() as server:
-            await server.hears(GET.replace(b"Host: x", b"Connection: close"))
-            await server.answers(1)
-            assert server.wire.closed
-            assert server.waits == []
-
-    finished(talk())
-
-
-def test_a_web_socket_may_be_silent() -> None:
-    class Socket(asyncio.Protocol):
-        def __init__(self, **_: object) -> None:
-            super().__init__()
-
-    async def talk() -> None:
-        async with patience() as server:
-            vars(server.protocol)["ws_protocol_class"] = Socket
-            upgrade = b"Connection: Upgrade\r\nUpgrade: websocket"
-            assert await server.hears(GET.replace(b"Host: x", upgrade)) == []
-            assert isinstance(server.wire.get_protocol(), Socket)
-            assert not server.wire.closed
-
-    finished(talk())
-
-
-def test_a_timer_that_ends_closes_the_connection() -> None:
-    class Hasty(TimeLimitedProtocol):
-        head_s = 0.0
-
-    async def talk() -> bool:
-        wire = Wire()
-        config = uvicorn.Config(hi, ws="none", lifespan="off", log_level="critical")
-        config.load()
-        Hasty(config, ServerState(), {}).connection_made(wire)
-        while not wire.closed:
-            await asyncio.sleep(0)
-        return True
-
-    assert finished(talk())
-    assert (TimeLimitedProtocol.head_s, TimeLimitedProtocol.body_s) == (20.0, 120.0)

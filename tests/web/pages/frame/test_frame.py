@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Sequence
-from html import unescape
+import time
+from collections.abc import Callable, Iterator, Sequence
+from datetime import UTC, datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from nicegui import ui
+from starlette.requests import Request
 
-from skisnow.web.elements import FIRST, TypedField, Words, button, choice, field, link, named, option_texts
-from skisnow.web.layout import SAID_BY_SCRIPT, heading, sentence
+from skisnow.web.elements import FIRST, TypedField, button, field
+from skisnow.web.language import (
+    language_asked,
+    language_of_request,
+    minute_words,
+)
 from skisnow.web.line_chart import STYLES, ChartLine, LineChart
-
-from .shared import made
+from skisnow.web.page_addresses import plain_stem
+from skisnow.web.words import (
+    LABELS,
+    TABLES,
+    displacement_words,
+    estimate_words,
+    hardness_words,
+    in_words,
+    label,
+    stress_words,
+    unloading_words,
+)
 
 if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
+    from ..desk import Desk
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
@@ -49,48 +64,6 @@ def test_the_content_is_closed_until_the_browser_is_connected(desk: Desk) -> Non
     assert "lab.answered(0, true)" not in page.at_first
 
 
-def scripts(page: Sheet) -> list[str]:
-    """The lab's own lines in the head of a page."""
-    return [line for line in page.html.splitlines() if re.search(r'="/(lab|kept)\.', line)]
-
-
-@pytest.mark.parametrize(("path", "ahead"), [("/describe", True), ("/skis", False)])
-def test_scripts_know_what_the_page_keeps(desk: Desk, path: str, *, ahead: bool) -> None:
-    page = desk.open(path)
-    style, kept, script = scripts(page)
-    assert 'href="/lab.css"' in style
-    assert ("data-keeps" in kept) is ahead
-    assert 'data-language="en"' in script
-    assert script.endswith(f'"{" data-ahead" if ahead else ""}></script>')
-    assert ("lab.answered(0, true)" in page.at_first) is ahead
-    words = unescape(script.split('data-words="')[1].split('"')[0])
-    assert all(f'"{key}": "{text}"' in words for key, text in SAID_BY_SCRIPT.items())
-
-
-def test_the_title_of_the_window_and_the_scripts_speak_the_language_of_the_page(desk: Desk) -> None:
-    assert "<title>Skis" in desk.open("/skis").html
-    page = desk.open("/skis", "de")
-    assert "<title>Ski " in page.html
-    assert 'data-language="de"' in page.html
-    assert '"refused": "nicht gespeichert"' in unescape(page.html)
-
-
-def test_headings_and_sentences(desk: Desk) -> None:
-    page = desk.open("/carve")
-
-    def write() -> None:
-        with page.content:
-            heading("First")
-            heading("Second", 4)
-            sentence("Third", "bad")
-            sentence("Fourth")
-
-    desk.do(write, page.client)
-    assert page.outline()[-4:] == ["h2 First", "h4 Second", "[bad] Third", "Fourth"]
-    plain = made(desk, lambda: sentence("Skis", "quiet"), "de")
-    assert (plain.text, plain._text, plain.classes) == ("Skis", "Ski", ["sentence", "quiet"])
-
-
 def test_a_field_has_its_name_above_it_in_the_language_of_the_page(desk: Desk) -> None:
     plain = made(desk, lambda: field("Width (mm)", "7"), "de")
     assert isinstance(plain, TypedField)
@@ -111,14 +84,6 @@ def test_a_field_shows_its_error_as_it_is_set(desk: Desk) -> None:
     assert (typed.error, typed.props["error"], typed.props["error-message"]) == (None, None, None)
 
 
-def test_a_choice_shows_words_for_values(desk: Desk) -> None:
-    one = made(desk, lambda: choice("Compared with", ["nothing", "mine"], "mine"), "de")
-    assert (one.value, one.props["label"], one.classes) == ("mine", "Verglichen mit", ["field"])
-    assert one.options == {"nothing": "nichts", "mine": "mine"}
-    assert made(desk, lambda: choice("Ski", {"a": "nothing"}, None), "de").options == {"a": "nichts"}
-    assert option_texts({"a": "b"}) == {"a": "b"}
-
-
 def test_a_button_that_acts_once_tells_presses_apart(desk: Desk) -> None:
     pressed: list[str] = []
 
@@ -135,23 +100,6 @@ def test_a_button_that_acts_once_tells_presses_apart(desk: Desk) -> None:
     page.fire(often, "click", {})
     page.fire(once, "click", {})
     assert pressed == ["often", "once"]
-
-
-def test_a_link_is_as_large_as_a_button(desk: Desk) -> None:
-    plain = made(desk, lambda: link("Carve both side by side", "/carve", "main"), "de")
-    assert plain.text == "Beide nebeneinander carven"
-    assert plain.props["href"] == "/carve"
-    assert plain.classes == ["nicegui-link", "act", "main"]
-    assert made(desk, lambda: link("x", "/carve")).classes == ["nicegui-link", "act"]
-
-
-def test_words_stay_as_they_were_said_and_are_shown_in_german(desk: Desk) -> None:
-    words = made(desk, lambda: Words("Skis"), "de")
-    assert (words.text, words._text) == ("Skis", "Ski")
-    desk.do(lambda: words.set_text("Depth (mm)"))
-    assert (words.text, words._text) == ("Depth (mm)", "Tiefe (mm)")
-    called = made(desk, lambda: named(ui.element("nav"), "Pages"), "de")
-    assert called.props["aria-label"] == "Seiten"
 
 
 def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -190,12 +138,104 @@ def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.
     assert (chart.props["panel"]["range"], chart.props["panel"]["from_zero"]) == (None, "")
 
 
-def test_a_chart_in_german(desk: Desk) -> None:
-    chart = made(desk, lambda: LineChart("Depth (mm)", "Load (N)", "EI (N m²) along the ski"), "de")
-    panel = chart.props["panel"]
-    assert (panel["x"], panel["y"], panel["mark"], panel["ends"]) == ("Tiefe (mm)", "Last (N)", ",", ["", ""])
-    desk.do(lambda: chart.show([ChartLine([0.0, 1.0], [0.5, 2.25], name="nothing")]))
-    panel = chart.props["panel"]
-    assert panel["label"].endswith(": 0,500 bis 2,25 (nichts)")
-    assert panel["lines"][0]["name"] == "nichts"
-    assert [each["read"] for each in STYLES] == [True, True, True, False]
+@pytest.mark.parametrize(("name", "words"), [*LABELS.items(), *TABLES.items()])
+def test_columns_and_tables_are_called_as_on_the_pages(name: str, words: str) -> None:
+    if "_" in name or "." in name:
+        assert in_words(f"{name} is {name}, {name}s and x.{name}") == f"{words} is {words}, {name}s and x.{name}"
+    else:
+        assert in_words(f"a {name} here") == f"a {name} here"
+    assert label(name) == LABELS.get(name, name)
+
+
+ROW = {
+    "H_V_N_per_mm3": 0.2, "H_V_interval_N_per_mm3": [0.15, 0.25],
+    "n_unloading": 3, "unloading_ratio": 12.0, "unloading_ratio_interval": None,
+    "S_f_N_per_mm2": 0.034412, "S_f_interval_N_per_mm2": [0.03, 0.04],
+    "shear_displacement_mm": 1.5, "shear_displacement_interval_mm": [1.0, 2.0],
+}  # fmt: skip
+
+
+def test_results_in_words() -> None:
+    assert hardness_words(ROW) == "0.200 N/mm³, [0.150, 0.250]"
+    assert unloading_words(ROW) == "k_u/H_V = 12.0, interval not known"
+    assert stress_words(ROW) == "0.0344 N/mm², [0.0300, 0.0400]"
+    assert displacement_words(ROW) == "u_y = 1.50 mm, [1.00, 2.00]"
+    assert unloading_words(ROW | {"n_unloading": 0}) == ""
+    assert displacement_words(ROW | {"shear_displacement_mm": None}) == ""
+    assert estimate_words(None, [1.0, 2.0], "mm") == "not defined"
+
+
+@pytest.mark.parametrize(
+    ("chosen", "accepted", "code"),
+    [
+        (None, "", "en"),
+        (None, "fr", "en"),
+        (None, "DE-at;q=0.9", "de"),
+        (None, "fr-CH, de-AT;q=0.9", "de"),
+        (None, "en-US,de", "en"),
+        ("de", "en", "de"),
+        ("en", "de", "en"),
+        ("fr", " de ;q=1", "de"),
+        ("", "de", "de"),
+    ],
+)
+def test_a_language_that_was_chosen_comes_before_those_of_the_browser(
+    chosen: str | None, accepted: str, code: str
+) -> None:
+    assert language_asked(chosen, accepted) == code
+
+
+def request(**headers: str) -> Request:
+    given = [(name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()]
+    return Request({"type": "http", "headers": given})
+
+
+def test_a_request_asks_by_its_cookie_or_its_header() -> None:
+    assert language_of_request(request()) == "en"
+    assert language_of_request(request(accept_language="de")) == "de"
+    assert language_of_request(request(accept_language="de", cookie="skisnow-language=en")) == "en"
+
+
+@pytest.fixture
+def in_vienna(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The clock of the lab is that of Vienna."""
+    with monkeypatch.context() as there:
+        there.setenv("TZ", "Europe/Vienna")
+        time.tzset()
+        yield
+    time.tzset()
+
+
+@pytest.mark.parametrize(
+    ("at", "words"),
+    [
+        ("2026-03-05T09:07:59", "5 Mar 2026, 10:07"),
+        ("2026-12-31T23:30:00+00:00", "1 Jan 2027, 00:30"),
+        (datetime(2026, 12, 5, 9, 7, tzinfo=timezone(timedelta(hours=5))), "5 Dec 2026, 05:07"),
+        (datetime(2026, 7, 5, 9, 7, tzinfo=UTC), "5 Jul 2026, 11:07"),
+    ],
+)
+@pytest.mark.usefixtures("in_vienna")
+def test_times_as_the_clock_of_the_lab_shows_them(desk: Desk, at: str | datetime, words: str) -> None:
+    assert made(desk, lambda: minute_words(at)) == words
+
+
+@pytest.mark.parametrize(
+    ("called", "stem"),
+    [
+        ("a.b.c.csv", "a-b-c"),
+        ("folder/x.csv", "x"),
+        ("a..csv", "a"),
+        (".csv", "course"),
+        ("x", "x"),
+        ("雪.csv", "course"),
+    ],
+)
+def test_the_stem_of_a_file(called: str, stem: str) -> None:
+    assert plain_stem(called, "course") == stem
+
+
+def made(desk: Desk, make: Callable[[], Any], language: str = "en") -> Any:
+    """An element on a page."""
+    page = desk.open("/carve", language)
+    return desk.do(make, page.client)

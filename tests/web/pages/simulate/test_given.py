@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
+import os
 import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +16,10 @@ from nicegui import ui
 from skisnow._support.errors import ParameterError
 from skisnow.campaign.store import Journals, NewEntry
 from skisnow.snow import snow_from_results
-from skisnow.web import snow_choice
+from skisnow.track.course import course_names
+from skisnow.web import lab_tracks, snow_choice
 from skisnow.web.lab_skis import LabSkis
+from skisnow.web.lab_tracks import LabCourses, gates_of
 from skisnow.web.pages.simulate import _Card
 from skisnow.web.replay_addresses import show_address
 from skisnow.web.runs import Job, Runs
@@ -23,10 +27,12 @@ from skisnow.web.snow_choice import campaign_snow
 from tests.coded import raises
 
 from ...campaign_texts import SHEARED, sheared
-from .shared import ENDS, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
+from ..desk import in_this_process
+from .shared import ENDS, GIVEN, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
 
 if TYPE_CHECKING:
     from ..desk import Desk
+
 
 SHEAR = sheared({"a": ("A", 20), "b": ("A", 21), "c": ("B", 30)})
 
@@ -201,18 +207,6 @@ def test_a_card_shows_how_its_run_stands(desk: Desk, state: Any, lines: list[str
         assert pressed == [(runs.cancel, "mine")]
 
 
-def test_a_run_that_says_nothing_yet_has_no_line_of_progress(desk: Desk) -> None:
-    page, runs = desk.open("/replay"), Runs(desk.lab.runs)
-
-    def shown() -> None:
-        with page.content:
-            _Card(runs, job, lambda *_: None).show(job)
-
-    job = Job("mine", "carved-46m", {}, "2026", "running")
-    desk.do(shown, page.client)
-    assert page.outline()[-2 - len(RENAMING) :] == ["[quiet] carved-46m · running", "button Cancel", *RENAMING]
-
-
 def test_a_run_gets_a_name_in_words_that_can_be_changed(desk: Desk) -> None:
     first, second = (asked(desk, desk.open("/simulate")) for _ in range(2))
     assert [job["title"] for job in (first, second)] == ["carved 46m, 1", "carved 46m, 2"]
@@ -232,3 +226,82 @@ def test_a_run_with_a_file_of_its_course_can_be_watched(desk: Desk) -> None:
     assert "Watch" not in [each.text for each in desk.open("/simulate").of(ui.link)]
     (desk.lab.runs / "a run" / "run.nc").touch()
     assert desk.open("/simulate").link("Watch") == show_address("a run")
+
+
+COURSE = b"gate,x_m,y_m,side\n1,12,1.5,left\n2,22,-1.5,right\n3,32,1.5,left\n"
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Courses are read in this process."""
+    in_this_process(monkeypatch, "lab_tracks")
+
+
+@pytest.mark.usefixtures("here")
+def test_a_course_that_was_taken_in_is_chosen_for_a_skier(desk: Desk) -> None:
+    answer = desk.post("/simulate/course", files={"file": ("Hang 3.csv", COURSE)})
+    (name,) = LabCourses(desk.lab.runs).kept()
+    assert (answer.status_code, answer.headers["location"]) == (303, f"/simulate?course={name}")
+    page = desk.open(answer.headers["location"])
+    assert [page.field(name).value for name in ("Scenario", "Course")] == ["slalom-20-gates", name]
+    assert list(page.field("Course").options) == [GIVEN, *course_names(), name]
+    job = asked(desk, page)
+    word = str(desk.lab.runs / "courses" / name)
+    assert (job["changes"], job["given"]) == ({"course.file": word, "skier.steers": "gates"}, f"course: {name}")
+    page = desk.open("/simulate?course=nothing.csv")
+    assert [page.field(name).value for name in ("Scenario", "Course")] == ["carved-46m", GIVEN]
+    with raises(ParameterError, "unknown_course"):
+        LabCourses(desk.lab.runs).change("../lab.log")
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(
+    ("form", "code"),
+    [
+        ({"files": [("file", ("a.csv", COURSE))] * 2}, ""),
+        ({"files": [("other", ("a.csv", COURSE))]}, "no_file"),
+        ({"files": [("file", ("a.txt", COURSE))]}, "unknown_ending"),
+        ({"files": [("file", (f"{'a' * 250}.csv", COURSE))]}, "unknown_ending"),
+        ({"data": {"file": "a.csv"}}, "no_file"),
+    ],
+)
+def test_what_is_no_course_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+    assert desk.post("/simulate/course", **form).status_code == 400
+    assert desk.code == code
+    assert LabCourses(desk.lab.runs).kept() == []
+
+
+@pytest.mark.usefixtures("here")
+def test_courses_are_listed_the_newest_first_without_what_is_none(tmp_path: Path) -> None:
+    courses = LabCourses(tmp_path)
+    assert courses.names() == list(course_names())
+    older, newer = (courses.keep(name, io.BytesIO(COURSE)) for name in ("z.csv", "a.csv"))
+    for name, when in ((older, 1_000_000_000), (newer, 1_100_000_000)):
+        os.utime(tmp_path / "courses" / name, (when, when))
+    for name in (".partial-x.csv", "words.txt"):
+        (tmp_path / "courses" / name).write_bytes(COURSE)
+    assert courses.kept() == [newer, older]
+    assert courses.names() == [*course_names(), newer, older]
+    assert gates_of(tmp_path / "courses" / newer) == 3
+    assert newer[:2] + newer[6:] == "a-.csv"
+
+
+def test_what_is_just_allowed_of_courses_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    courses = LabCourses(tmp_path)
+    monkeypatch.setattr(lab_tracks, "confined", lambda *_: 3)
+    with raises(ParameterError, "too_large", most=1):
+        courses.keep("a.csv", io.BytesIO(bytes(1_000_001)))
+    courses.keep("a.csv", io.BytesIO(bytes(1_000_000)))
+    monkeypatch.setattr(lab_tracks, "MOST_COURSES", 2)
+    courses.keep("a.csv", io.BytesIO(COURSE))
+    with raises(ParameterError, "too_many_files", most=2, folder="courses"):
+        courses.keep("a.csv", io.BytesIO(COURSE))
+    assert len(courses.kept()) == 2
+
+
+@pytest.mark.usefixtures("here")
+def test_a_course_that_cannot_be_read_is_told_under_its_own_name(tmp_path: Path) -> None:
+    with raises(ParameterError, "unknown_choice", path="bad.csv") as found:
+        LabCourses(tmp_path).keep("bad.csv", io.BytesIO(COURSE.replace(b"right", b"up")))
+    assert str(tmp_path) not in str(found.value) and "partial" not in str(found.value)
+    assert list((tmp_path / "courses").iterdir()) == []

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.parameters import Quantity
 from skisnow.scenario import scenario_names
 from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import ski_names
 from skisnow.snow import published_names
 from skisnow.track.course import course_names
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.scenario_fields import ScenarioField, called, in_labels, range_words
+from skisnow.web.scenario_fields import ScenarioField, called
 from tests.coded import raises
 
 from ..desk import values
@@ -41,42 +40,6 @@ if TYPE_CHECKING:
     from ..desk import Desk, Sheet
 
 INERTIA = "Moments of inertia I (kg m²)"
-EXPERT_OF_A_SLEDGE = {
-    "Slope": ["Gravity g (m/s²)"],
-    "Snow": [
-        "Law of penetration", "Pushing the groove brakes", "Shear displacement u_y (mm)",
-        "Growth of the hardness γ' (1/mm)", "Depth of the upper layer d (mm)",
-        "Hardness of the lower layer H_2 (N/mm³)",
-        "Damping of the snow c (N s/mm³)", "Delayed share H_V/H_2", "Retardation time c_2/H_2 (ms)",
-    ],
-    "Friction": ["Friction that grows with speed μ_1 (s/m)", "Friction acts on", "Direction of friction"],
-    "Air drag": ["Density of the air ρ (kg/m³)", "Height of the centre of pressure (m)"],
-    "Sledge": [
-        "Moments of inertia I (kg m²)", "Height of the centre of mass (m)", "Centre of mass ahead of the boots (m)",
-        "Stance width (m)",
-    ],
-    "Ski": [
-        "Rounding of the camber (mm)",
-        "Stiffness factor",
-        "Clamp length (m)",
-        "Footprint stiffness (N/mm²)",
-        "Damping ratio of the ski",
-    ],
-    "Start": ["Start, down the fall line x (m)", "Start, across it y (m)"],
-    "End and output": ["Time between outputs (ms)"],
-    "Shear": [
-        "Law of shear", "Relative decrease with the edge angle (1/rad)", "Density of the snow ρ (kg/m³)",
-        "Dynamic shear strength (N/mm²)", "Friction across the ski", "Least shear plane (°)", "Residual ratio",
-        "Slip weakening length (mm)", "Height that holds",
-    ],
-    "Solver": [
-        "Method", "Time step (ms)", "Tolerance (mm)", "Fixed time step", "Elements of a ski",
-        "Distance of the snow lines (mm)", "Tolerance of the groove", "Spacing of delayed depths (mm)",
-    ],
-    "Course": [
-        "Discipline", "Latitude of the origin (°)", "Longitude of the origin (°)", "Direction of the fall line (°)",
-    ],
-}  # fmt: skip
 
 
 def names_by_heading(page: Sheet) -> dict[str, list[str]]:
@@ -97,37 +60,6 @@ def test_a_first_run_is_asked_about_the_little_that_differs_from_run_to_run(desk
     assert list(before.values())[4:] == ["0.2", "0.5", "10", "10", "30", "80", "7", "-30", "0.01", "0.42", "5", ""]
     assert "15 s" in page.shows("Will take")  # 5 s and 8 s
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Simulate"]
-
-
-def test_all_else_stands_under_expert_inputs(desk: Desk) -> None:
-    page = desk.open("/simulate")
-    assert names_by_heading(page) == EXPERT_OF_A_SLEDGE
-    for name in (MASS, "Law of shear", "Fixed time step"):
-        assert page.field(name).props["aria-label"] == name
-
-
-@pytest.mark.parametrize(
-    ("meaning", "words"),
-    [
-        ("an angle", "An angle."),
-        ("c of p", "c of p."),
-        ("aϑ of it", "aϑ of it."),
-        ('angle; default: none; "x" is', "Angle."),
-        ("angle; file_name; so", "Angle; so."),
-        ("turns, said again", ""),
-        ("default: none", ""),
-    ],
-)
-def test_what_an_input_means_is_a_sentence_without_words_of_files(meaning: str, words: str) -> None:
-    assert range_words(Quantity("skier.turns", meaning, label="turns", kind="switch")) == words
-    number = range_words(Quantity("skier.turns", meaning, label="turns", lowest=0.0))
-    assert number.startswith(words) and "0 or more" in number
-
-
-def test_the_longer_of_two_names_is_found_in_a_message() -> None:
-    keys = Quantity("a.way", "so", label="way"), Quantity("a.way_m", "so", label="long way")
-    for both in (keys, keys[::-1]):
-        assert in_labels("a.way_m 3; a.way 2", *both) == "Long way (m) 3; Way 2"
 
 
 def test_a_field_that_is_checked_says_itself_what_is_wrong(desk: Desk) -> None:
@@ -157,7 +89,6 @@ def test_a_skier_sets_the_edge_angle_itself_and_has_inputs_of_its_own(desk: Desk
     assert not any("Edge angle" in name for name in shown)
     found = names_by_heading(page)
     of_skier = found.pop("Skier")
-    assert found == EXPERT_OF_A_SLEDGE
     first = [called(SCENARIO_KEYS[f"skier.{name}"]) for name in ("first_turn_s", "turn_angle_deg")]
     every = sum(name.startswith("skier.") for name in SCENARIO_KEYS)
     assert (of_skier[:2], len(of_skier)) == (first, every - 4)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import threading
 import tomllib
 from ast import literal_eval
 from dataclasses import replace
@@ -13,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from nicegui import ui
 
-from skisnow._support.errors import ParameterError
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
 from skisnow.web.page_addresses import carving
-from skisnow.web.ski_editor import SkiEditInput
 from skisnow.web.subprocesses import SKI_BOUNDS
 
 from .shared import (
@@ -86,15 +82,6 @@ def test_values_at_positions_are_drawn_and_taken_back(desk: Desk) -> None:
     page.shows("65.0 to 195 (carver, carver)")
 
 
-def test_an_emptied_cell_shows_what_it_was(desk: Desk) -> None:
-    page = opened(desk)
-    page.fill("EI (N m²) at 0.000 m", "500")
-    page.shows("100 to 500 (carver, carver, edited)")
-    page.fill("EI (N m²) at 0.000 m", "")
-    page.shows("field EI (N m²) at 0.000 m = '460' numeric")
-    page.shows("100 to 460 (carver, carver)")
-
-
 def test_what_is_just_being_typed_stays(desk: Desk) -> None:
     page = opened(desk)
     half = page.field("EI (N m²) at 0.000 m")
@@ -143,47 +130,6 @@ def test_what_a_reader_warns_of_is_shown(desk: Desk) -> None:
     page.fill("Ski", "carver")
     page.fill("Compared with", "nothing")
     page.until(lambda: not any("mass_kg is 20;" in line for line in page.outline() if line.startswith("[status")))
-
-
-def skis_of(page: Sheet) -> Any:
-    """The function that draws a page."""
-    return next(each.__self__ for each in page.field("Ski")._change_handlers if hasattr(each, "__self__"))
-
-
-@pytest.mark.parametrize("fails", [False, True])
-def test_an_answer_to_an_older_question_is_dropped(desk: Desk, monkeypatch: pytest.MonkeyPatch, *, fails: bool) -> None:
-    page = opened(desk)
-    asked, answered = threading.Event(), threading.Event()
-    drawn = skis_of(page)
-    find = drawn._load
-
-    def held(words: list[str], what: SkiEditInput) -> object:
-        if words == ["carver"]:
-            asked.set()
-            assert answered.wait(60)
-            if fails:
-                raise ParameterError("too late")
-        return find(words, what)
-
-    monkeypatch.setattr(drawn, "_load", held)
-
-    async def begun() -> asyncio.Task[None]:
-        with page.client:
-            return asyncio.create_task(drawn.draw())
-
-    async def ended(task: asyncio.Task[None]) -> None:
-        await task
-
-    older = desk.wait(begun())
-    assert asked.wait(60)
-    page.fill("Ski", "slalom")
-    page.shows("60.0 to 175 (slalom)")
-    answered.set()
-    desk.wait(ended(older))
-    lines = page.outline()
-    assert any("60.0 to 175 (slalom)" in line for line in lines)
-    assert "carver" not in lines
-    assert not any("too late" in line for line in lines)
 
 
 def test_an_edited_ski_is_saved_and_compared(desk: Desk) -> None:
@@ -350,15 +296,6 @@ def test_it_is_begun_again_from_the_ski_above(desk: Desk) -> None:
     assert page.field(FILE).value == LabSkis(desk.lab.runs).texts("slalom")[0]
     page.press("Download the file")
     page.told("download")
-
-
-def test_it_is_begun_again_without_a_table_left_over(desk: Desk) -> None:
-    LabSkis(desk.lab.runs).save_ski("mine", replace(CARVER, name="mine"))
-    page = opened(desk, "/skis?ski=mine", "mine")
-    page.fill("Ski", "carver")
-    page.press("Begin again from the ski above")
-    page.shows("(carver, carver)")
-    assert page.field(TABLE_FIELD).value == ""
 
 
 def test_cells_are_written_as_in_the_language_of_the_page(desk: Desk) -> None:

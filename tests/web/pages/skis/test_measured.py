@@ -25,22 +25,18 @@ from skisnow.web import lab_skis as measured_ski
 from skisnow.web.lab_skis import (
     LabSkis,
     SkiTexts,
-    _without_folder,
-    add_ski,
     check_ski_texts,
-    measured_text,
     read_ski_files,
     ski_of_texts,
     ski_of_uploads,
     texts_of_ski,
 )
-from skisnow.web.pages import skis as skis_page
 from skisnow.web.settings import Limits
 from skisnow.web.ski_editor import CELLS, FACTORS, SkiEditInput, edit_ski_texts
 from skisnow.web.subprocesses import SKI_BOUNDS
 from tests.coded import Coded, coded, raises
 
-from ...test_measured_ski import DESIGN, TABLE, TYPED, WITH_TABLE
+from ...test_skis_page import DESIGN, TABLE, TYPED, WITH_TABLE
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
 
 if TYPE_CHECKING:
@@ -107,16 +103,6 @@ def test_a_field_that_is_missing_is_marked_until_it_is_typed(desk: Desk) -> None
     assert not any("status bad" in line for line in page.outline())
 
 
-def test_an_empty_list_is_no_number_and_an_empty_camber_is_none() -> None:
-    with raises(ParameterError, "not_a_number", field="GJ (N m²) from tip to tail"):
-        measured_text("mine", {**TYPED, "GJ_N_m2": " "})
-    with raises(ParameterError, "not_a_number", field="Mass of one ski (kg)"):
-        measured_text("mine", {**TYPED, "mass_kg": " "})
-    assert "camber" not in measured_text("mine", {**TYPED, "camber_mm": " "})
-    assert "camber_mm = 7.0\n" in measured_text('Mö"', TYPED)
-    assert measured_text('Mö"', TYPED).startswith('name = "Mö\\""\n')
-
-
 def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
     assert (answer.status_code, added(answer)) == (303, "my slalom")
@@ -160,17 +146,6 @@ def test_what_cannot_be_taken_in_is_refused(desk: Desk, form: dict[str, Any], co
     assert LabSkis(desk.lab.runs).saved() == []
 
 
-def test_three_files_are_not_too_many(desk: Desk) -> None:
-    answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE, other_csv=TABLE))
-    assert answer.status_code == 303
-
-
-def test_a_refusal_is_said_in_the_language_of_the_request(desk: Desk) -> None:
-    assert '<html lang="de">' in desk.post("/skis/add", "de").text
-    too_many = desk.post("/skis/add", "de", files=files(a_toml="a", b_csv="b", c_csv="c", d_csv="d"))
-    assert '<html lang="de">' in too_many.text
-
-
 def folder_of(folder: Path, texts: Mapping[str, str]) -> list[str]:
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -188,12 +163,6 @@ def test_a_file_with_its_table_is_written_anew(tmp_path: Path) -> None:
     assert found.table.startswith("station_m,")
     assert tomllib.loads(found.text)["table"] == "ski.csv"
     assert texts_of_ski(read_ski(tmp_path / "mine.toml")) == (found.text, found.table)
-
-
-def test_what_is_warned_of_an_upload_is_kept(tmp_path: Path) -> None:
-    names = folder_of(tmp_path, {"mine.toml": HEAVY})
-    found = read_ski_files(str(tmp_path), names, {})
-    assert found.warned.startswith("mine.toml")
 
 
 @pytest.mark.parametrize(
@@ -233,14 +202,6 @@ def test_uploads_are_named_without_their_folders(confined_words: list[tuple[obje
     assert not Path(str(folder)).exists()
     with raises(ParameterError, "too_many_files", most=1):
         ski_of_uploads(uploads, {}, Limits(files=1))
-
-
-def test_a_ski_is_added_under_a_name_or_its_own(tmp_path: Path) -> None:
-    skis = LabSkis(tmp_path)
-    texts = SkiTexts("its own", TEXT, "", "")
-    assert add_ski(skis, "", texts) == "its own"
-    assert add_ski(skis, " an  other ", texts) == "an other"
-    assert skis.saved() == ["an other", "its own"]
 
 
 def test_skis_are_listed_without_regard_to_capitals_after_the_catalogue(tmp_path: Path) -> None:
@@ -363,19 +324,6 @@ def test_a_text_that_names_another_file_is_refused(line: str, code: str) -> None
         ski_of_texts(f"{TEXT}\n{line}\n", "")
 
 
-def test_a_folder_that_is_gone_is_not_named(tmp_path: Path) -> None:
-    (tmp_path / "real").mkdir()
-    (tmp_path / "link").symlink_to(tmp_path / "real")
-    told = f"{tmp_path}/link/a and {tmp_path}/real/b in {tmp_path}"
-    assert _without_folder(f"{tmp_path}/link", told) == f"a and b in {tmp_path}"
-
-
-def test_a_ski_that_was_read_is_checked_alone() -> None:
-    check_ski_texts(TEXT, "")
-    with raises(ParameterError, "out_of_range"):
-        check_ski_texts(TEXT.replace("2.246", "-1"), "")
-
-
 ONES = dict.fromkeys(FACTORS, "1")
 
 
@@ -424,10 +372,3 @@ def test_an_edit_is_what_the_library_makes_of_it() -> None:
     shown = {(column, i) for column in CELLS for i in range(9)}
     assert set(found.cells) == shown
     assert found.cells["width_mm", 4] == f"{float(np.interp(0.0, -edited.station, edited.width)) * 1000:.4g}"
-
-
-def test_the_page_reads_a_text_in_its_own_process_before_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    heard: list[tuple[object, ...]] = []
-    monkeypatch.setattr(skis_page, "confined", lambda *words: heard.append(words))
-    skis_page._check_confined("text", "table")
-    assert heard == [(SKI_BOUNDS, check_ski_texts, "text", "table")]

@@ -8,10 +8,9 @@ import pytest
 from nicegui import ui
 
 from skisnow.ski import ski_names
-from skisnow.web.elements import FIRST
 from skisnow.web.lab_skis import LabSkis
 
-from .shared import CARVER, FILE, SAVE, SLALOM, TABLE_FIELD, TEXT, cells_of, opened, source_words
+from .shared import CARVER, FILE, SLALOM, TABLE_FIELD, TEXT, cells_of, opened, source_words
 
 if TYPE_CHECKING:
     from ..desk import Desk
@@ -46,27 +45,6 @@ def test_the_page_shows_facts_charts_and_the_editor_of_a_ski(desk: Desk) -> None
     assert list(page.field("Compared with").options) == ["nothing", "the edited ski", *ski_names()]
 
 
-def test_what_a_browser_gets_of_the_form_of_files(desk: Desk) -> None:
-    page = opened(desk)
-    (form,) = (each for each in page.of() if each.tag == "form")
-    assert form.props["method"] == "post"
-    assert form.props["action"] == "/skis/add"
-    assert form.props["enctype"] == "multipart/form-data"
-    inputs = {each.props["name"]: each for each in page.of() if each.tag == "input"}
-    labels = [each.props["for"] for each in page.of() if each.tag == "label"]
-    assert list(inputs) == ["files", "name", "mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2"]
-    assert [each.props["id"] for each in inputs.values()] == labels == [f"ski-{name}" for name in inputs]
-    files = inputs.pop("files")
-    assert files.props["type"] == "file" and files.props["accept"] == ".toml,.csv,.json"
-    assert files.props["multiple"] and files.props["required"]
-    assert files.classes == []
-    assert all(each.classes == ["act", "plain"] for each in inputs.values())
-    numeric = [name for name, each in inputs.items() if each.props.get("inputmode") == "decimal"]
-    assert numeric == ["mass_kg", "camber_mm"]
-    (button,) = (each for each in page.of() if each.tag == "button")
-    assert button.props["type"] == "submit" and button.classes == ["act"]
-
-
 def test_parts_of_the_page_have_names_and_roles(desk: Desk) -> None:
     page = opened(desk)
     sections = [each.props["aria-label"] for each in page.of() if each.tag == "section"]
@@ -77,16 +55,6 @@ def test_parts_of_the_page_have_names_and_roles(desk: Desk) -> None:
     assert [each.props["role"] for each in status] == ["status"] * 3
     folded = [each for each in page.of() if each.tag == "details"]
     assert len(folded) == len([each for each in page.of() if each.tag == "summary"]) == 4
-
-
-def test_what_saves_does_it_once_where_it_is_pressed_twice(desk: Desk) -> None:
-    page = opened(desk)
-    once = [
-        each.text
-        for each in page.of(ui.button)
-        if FIRST in [one.js_handler for one in each._event_listeners.values() if one.type == "click"]
-    ]
-    assert once == ["Add this ski", SAVE]
 
 
 def sent(values: Any) -> Any:
@@ -152,8 +120,3 @@ def test_a_ski_that_came_in_is_told(desk: Desk, added: str) -> None:
     announced = [each for each in page.of(ui.label) if "good" in each.classes and "mine" in each.text]
     assert [each.props["role"] for each in announced] == (["status"] if added else [])
     page.shows("Begun from mine")
-
-
-def test_a_ski_of_the_catalogue_was_not_added(desk: Desk) -> None:
-    page = opened(desk, "/skis?ski=slalom&added=1", "slalom")
-    assert not any("is added" in line for line in page.outline())

@@ -13,11 +13,9 @@ from skisnow.campaign import read_campaign
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
 from skisnow.parameters import Quantity
-from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.ski import read_ski
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.studies import Studies
-from skisnow.web.study_fields import CARVE, first_range, study_keys
+from skisnow.web.study_fields import CARVE, first_range
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed
 from .shared import (
@@ -37,7 +35,6 @@ from .shared import (
     WAY,
     asked,
     estimate,
-    refused,
     scenario,
 )
 
@@ -71,38 +68,6 @@ def campaign(desk: Desk, folder: Path) -> str:
 )
 def test_an_input_begins_around_what_it_usually_is(key: Quantity, ends: tuple[float, float] | None) -> None:
     assert first_range(key) == ends
-
-
-@pytest.mark.parametrize(
-    ("name", "ends"),
-    [
-        ("edge_angle_deg", ("10", "70")),
-        ("load_N", ("400", "1200")),
-        ("H_V_N_per_mm3", ("0.1", "10")),
-        ("S_f_N_per_mm2", ("0.05", "0.5")),
-        ("unloading_ratio", ("1", "50")),
-        ("moment_Nm", ("-50", "50")),
-    ],
-)
-def test_what_varies_of_a_turn_has_ends_to_begin_with(desk: Desk, name: str, ends: tuple[str, str]) -> None:
-    page = desk.open("/study")
-    page.fill(SECOND, name)
-    assert (page.field(FROM_2).value, page.field(TO_2).value) == ends
-    assert first_range(study_keys(CARVE)[name]) == tuple(map(float, ends))
-
-
-@pytest.mark.parametrize(
-    ("name", "ends"),
-    [
-        ("start.speed_m_per_s", (6.0, 12.0)),
-        ("slope.angle_deg", (5.0, 20.0)),
-        ("friction.mu_0", (0.02, 0.1)),
-        ("drag.drag_area_m2", (0.3, 0.8)),
-        ("sledge.mass_kg", (60.0, 120.0)),
-    ],
-)
-def test_what_varies_of_a_run_has_ends_to_begin_with(name: str, ends: tuple[float, float]) -> None:
-    assert first_range(SCENARIO_KEYS[name]) == ends
 
 
 def numbers(text: str) -> str:
@@ -154,23 +119,6 @@ def test_how_long_it_takes_is_learned_from_studies_with_the_method(desk: Desk) -
     assert numbers(estimate(page)) == "10 35 s"  # 33 s
 
 
-def test_how_long_it_takes_is_learned_from_runs_where_no_study_tells_it(desk: Desk) -> None:
-    place = desk.lab.runs / "before"
-    place.mkdir()
-    job = {"name": "before", "scenario": "a", "changes": {}, "asked_at": "2026", "state": "done", "took_s": 6.0}
-    (place / "job.json").write_text(json.dumps(job), encoding="utf-8")
-    summary = {"wall_s": 6.0, "simulated_s": 2.0, "scenario": {"solver": {"method": "default"}}}
-    (place / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    assert numbers(estimate(scenario(desk))) == "7 60 s"  # 7 * 5 * 3 / 2 + 8
-
-
-def test_workers_elsewhere_are_told(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Studies, "elsewhere", "tcp://host:1")
-    page = scenario(desk)
-    assert estimate(page).startswith("7 ") and " 35 s " in estimate(page)
-    assert sum("tcp://host:1" in line for line in page.outline()) == 2
-
-
 def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
     page = scenario(desk)
     job, text = asked(desk, page)
@@ -211,13 +159,6 @@ def test_of_the_two_numbers_of_the_snow_both_or_none_are_given(
     for name, value in typed.items():
         page.fill(name, value)
     assert asked(desk, page)[1]["fixed"] == fixed
-
-
-def test_a_value_that_a_scenario_cannot_have_is_refused(desk: Desk) -> None:
-    page = scenario(desk)
-    page.fill("Stance width (m)", "-5")
-    assert refused(desk, page) == "out_of_range"
-    assert page.field("Stance width (m)").error
 
 
 def test_a_ski_goes_with_the_study(desk: Desk) -> None:

@@ -89,19 +89,6 @@ def test_a_card_shows_how_its_study_stands(desk: Desk, state: Any, further: Any,
         assert page.link("Table and figure") == "/study/a%20study"
 
 
-def test_a_study_that_says_nothing_yet_has_no_line_of_progress(desk: Desk) -> None:
-    page, studies = desk.open("/replay"), Studies(desk.lab.runs)
-    job = StudyJob("a", CARVE, {}, "2026", "running")
-
-    def shown() -> None:
-        with page.content:
-            study_page._Card(studies, job, lambda *_: None).show(job)
-
-    desk.do(shown, page.client)
-    assert [line.partition(" ")[0] for line in page.outline()[-2:]] == ["[quiet]", "button"]
-    assert "progress" not in page.outline()[-2]
-
-
 def test_a_study_that_waits_is_cancelled_and_goes_on(desk: Desk) -> None:
     page = desk.open("/study")
     name = asked(desk, page)[0]["name"]
@@ -111,23 +98,6 @@ def test_a_study_that_waits_is_cancelled_and_goes_on(desk: Desk) -> None:
     assert " · cancelled · " in page.outline()[-2]
     page.press(f"Go on with {name}")
     assert page.outline()[-2].endswith(" · waiting")
-
-
-def test_the_queue_begins_and_ends_with_the_server(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    begun, ends, made = list[Any](), list[Any](), list[Any]()
-    monkeypatch.setattr(f"{study_page.__name__}.app.on_startup", begun.append)
-    monkeypatch.setattr(f"{study_page.__name__}.app.on_shutdown", ends.append)
-    monkeypatch.setattr(f"{study_page.__name__}.ui.page", lambda path: lambda shown: made.append((path, shown)))
-    monkeypatch.setattr(f"{study_page.__name__}.background_tasks.create", lambda work, name: made.append((work, name)))
-    study_page.add_page(desk.lab)
-    ((path, _),) = made
-    assert path == "/study"
-    begun[0]()
-    work, name = made[1]
-    assert (work.__name__, name) == ("work", "studies")
-    work.close()
-    assert ends[0].__name__ == "end"
-    assert isinstance(ends[0].__self__, Studies)
 
 
 def test_a_table_of_turns_over_one_input(desk: Desk) -> None:
@@ -192,23 +162,6 @@ def test_of_two_inputs_the_one_with_more_values_is_along_the_axis(desk: Desk) ->
         assert line["x"] == angles
         assert line["y"] == pytest.approx([load / angle for angle in angles], abs=0.01)
     assert page.tagged("th")[0].slots["default"].children[0].text == LOAD
-
-
-@pytest.mark.parametrize("first", ["load_N", "elements"])
-def test_of_two_inputs_with_as_many_values_the_first_is_along_the_axis(desk: Desk, first: str) -> None:
-    both = {"load_N": Range(400.0, 800.0, 2), "elements": Range(40.0, 80.0, 2)}
-    varied = {name: both[name] for name in (first, *both)}
-    fixed = {name: value for name, value in TURN.items() if name != "load_N"} | {"edge_angle_deg": 45.0}
-    rows = [
-        {"load_N": load, "elements": elements, "turn_radius_boot_m": 3.0, "outcome": "equilibrium"}
-        for load in (400.0, 800.0)
-        for elements in (40, 80)
-    ]
-    page = desk.open(f"/study/{finished(desk, StudyQuestion(CARVE, varied, fixed), rows)}")
-    chart = page.charts()["Carved radius (m)"]
-    assert chart["x"] == {"load_N": LOAD, "elements": "Elements"}[first]
-    other = {"load_N": ["Elements: 40", "Elements: 80"], "elements": [f"{LOAD}: 400", f"{LOAD}: 800"]}[first]
-    assert [(line["style"], line["name"]) for line in chart["lines"]] == list(enumerate(other))
 
 
 def test_a_table_of_runs(desk: Desk) -> None:

@@ -36,7 +36,6 @@ from .shared import (
     WAY,
     asked,
     estimate,
-    jobs,
     refused,
     scenario,
 )
@@ -102,13 +101,6 @@ def test_nothing_typed_asks_for_turns_over_the_edge_angle(desk: Desk) -> None:
     assert job["changes"] == {
         "load_N": "800", "H_V_N_per_mm3": "0.2", "S_f_N_per_mm2": "0.5", "unloading_ratio": "10",
     }  # fmt: skip
-
-
-def test_the_map_is_in_the_language_of_the_page(desk: Desk) -> None:
-    page = desk.open("/study", "de")
-    page.press("Studie starten")
-    page.until(lambda: jobs(desk))
-    assert jobs(desk)[0]["language"] == "de"
 
 
 def test_what_is_typed_is_asked_for(desk: Desk) -> None:
@@ -177,16 +169,6 @@ def test_what_cannot_be_studied_is_refused(desk: Desk, typed: dict[str, Any], co
     for name, value in typed.items():
         page.fill(name, value)
     assert refused(desk, page) == code
-
-
-def test_a_refusal_is_gone_when_the_study_is_in_the_queue(desk: Desk) -> None:
-    page = desk.open("/study")
-    page.fill(LOAD, "0")
-    refused(desk, page)
-    assert page.field(LOAD).error
-    page.fill(LOAD, "800")
-    asked(desk, page)
-    assert not [line for line in page.outline() if "bad" in line or " ! " in line]
 
 
 def test_as_many_points_as_the_lab_takes_are_taken(desk: Desk) -> None:
