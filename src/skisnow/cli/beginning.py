@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from .new_ski import add_ski
 from .options import Parser, seed_number
 
 SEED = "seed of the random numbers, 0 or more (default: 1)"
@@ -14,7 +15,7 @@ def add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     """Add ``skisnow new`` to the program."""
     about = "Write templates to be filled in."
     parser = commands.add_parser(
-        "new", help="write the templates of a campaign, as files or one workbook", description=about
+        "new", help="write the templates of a campaign, or a ski file of what was measured", description=about
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
     campaign = kinds.add_parser(
@@ -30,6 +31,7 @@ def add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
         "--xlsx", action="store_true", help="one workbook (.xlsx) with a sheet for each table instead"
     )
     campaign.set_defaults(run=write_new)
+    add_ski(kinds)
 
 
 def write_new(options: argparse.Namespace) -> int:

@@ -1,9 +1,21 @@
-"""From the wanted turn to the ski that makes it: variables, conditions, goals, and the search."""
+"""From the wanted turn to the ski that makes it: variables, conditions, goals, and the search; skis as measured."""
 
 from __future__ import annotations
 
+from .measured_ski import Measured, MeasuredSki, measured_ski
 from .result import Design, DesignRow
 from .search import design_ski
+from .ski_tables import Mapped
 from .task import DesignTask, read_design
 
-__all__ = ["Design", "DesignRow", "DesignTask", "design_ski", "read_design"]
+__all__ = [
+    "Design",
+    "DesignRow",
+    "DesignTask",
+    "Mapped",
+    "Measured",
+    "MeasuredSki",
+    "design_ski",
+    "measured_ski",
+    "read_design",
+]

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 from skisnow import read_study
 from skisnow._support.processes.dask_cluster import scheduler_of
-from skisnow.design import read_design
+from skisnow.design import Measured, measured_ski, read_design
 from skisnow.studies import merge_shards, read_table, run_shard, run_study
 from skisnow.studies.table import stored_rows
 
@@ -123,11 +123,28 @@ terms = { tip_width_mm = 1, waist_width_mm = -1 }
 at_least = 20
 """
 
+_WIDTHS = """x (mm),width (mm),EI (N m²)
+1700,30,100
+1580,119.5,120
+1200,84,300
+840,70.8,450
+400,83,300
+50,105,120
+0,104,100
+"""
+
 READERS = (
     Reader(
         name="design.toml", target="design.toml", files=lambda: {"design.toml": _DESIGN.encode()},
         read=lambda folder: repr(read_design(folder / "design.toml")), mutations=TOML,
         covers=("design.task:read_design",),
+    ),
+    Reader(
+        name="measured ski.csv", target="ski.csv", files=lambda: {"ski.csv": _WIDTHS.encode()}, mutations=TABLE,
+        read=lambda folder: measured_ski(
+            Measured(name="mine", tables=(folder / "ski.csv",), stations_from="tail", boot=0.8)
+        ),
+        covers=("design.ski_tables:read_ski_table",),
     ),
     Reader(
         name="study.toml", target="study.toml", files=lambda: {"study.toml": (_STUDY % "table.csv").encode()},

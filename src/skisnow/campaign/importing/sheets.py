@@ -21,7 +21,7 @@ from ..reading.workbook_files import is_workbook
 from .answers import NONE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from ..._support.user_files.workbook import Rows
     from ..reading.table_forms import TableForm
@@ -68,8 +68,15 @@ def column_letters(column: int) -> str:
     return (column_letters(before - 1) if before else "") + chr(ord("A") + last)
 
 
-def read_sheets(name: str, data: bytes) -> list[Sheet]:
+def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int] | None = None) -> list[Sheet]:
     """Read all sheets of a file that are not empty.
+
+    Parameters
+    ----------
+    name, data
+        The file.
+    count
+        Number of known headings in a row, by which the separator of a CSV file is found; default: those of campaigns.
 
     Raises
     ------
@@ -77,7 +84,7 @@ def read_sheets(name: str, data: bytes) -> list[Sheet]:
         It is not a workbook or a CSV file, or is beyond a limit.
     """
     if not is_workbook(name):
-        rows, separator = _csv_rows(name, data)
+        rows, separator = _csv_rows(name, data, count or _headings)
         return [Sheet(PurePath(name).stem, rows, rows, separator=separator)]
     merged = merged_ranges(data)
     fractions: dict[str, list[tuple[int, int]]] = {}
@@ -100,7 +107,7 @@ def _sheet(
     return Sheet(title, rows, filled, frozenset(fractions))
 
 
-def _csv_rows(name: str, data: bytes) -> tuple[Rows, str]:
+def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> tuple[Rows, str]:
     """Rows of a CSV file by line, and the separator that gives the most headings."""
     try:
         text = decode(data)
@@ -115,7 +122,7 @@ def _csv_rows(name: str, data: bytes) -> tuple[Rows, str]:
             Message("{file}: allowed: {allowed}. {action}", file=name, allowed=failure.allowed, action=failure.action),
             code="unreadable_file",
         ) from failure
-    return max(candidates, key=lambda candidate: max(map(_headings, candidate[0]), default=0))
+    return max(candidates, key=lambda candidate: max(map(count, candidate[0]), default=0))
 
 
 def _headings(cells: Sequence[str]) -> int:

@@ -1,0 +1,175 @@
+"""Tables of a ski that a maker has: any order, headings and units, from CSV files and workbooks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from .._support.errors import ParameterError
+from .._support.spreadsheet_text import decimal_mark, number
+from .._support.user_files import plain_bytes
+from ..campaign.importing.sheets import column_letters, read_sheets
+from ..campaign.reading.headings import FORM, conversion, known_unit, named_unit, plain_heading, units_for
+from ..parameters import nearest
+
+if TYPE_CHECKING:
+    from .._support.arrays import FloatArray
+    from ..campaign.importing.sheets import Sheet
+
+SYNONYMS: Final = {
+    "station_mm": "station, position, distance, abstand, stelle, x",
+    "width_mm": "width, breite",
+    "base_height_mm": "base height, camber, vorspannung, höhe",
+    "EI_N_m2": "ei, bending stiffness, biegesteifigkeit",
+    "GJ_N_m2": "gj, torsional stiffness, torsionssteifigkeit",
+    "bend_span_mm": "span, bend span, stützweite, auflagerabstand",
+    "bend_load_N": "load, force, bend load, last, kraft",
+    "deflection_mm": "deflection, durchbiegung",
+    "torsion_length_mm": "torsion length, torsionslänge, einspannlänge",
+    "torsion_moment_Nm": "moment, torque, drehmoment, torsion moment",
+    "twist_deg": "twist, verdrehung, verdrehwinkel",
+}
+"""Columns, and what they are called in headings."""
+STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
+BEND_TEST: Final = ("bend_span_mm", "bend_load_N", "deflection_mm")
+TORSION_TEST: Final = ("torsion_length_mm", "torsion_moment_Nm", "twist_deg")
+_STIFFNESS_UNITS: Final = {"n m2": 1.0, "nm2": 1.0, "n mm2": 1e-6, "nmm2": 1e-6, "kn m2": 1e3, "knm2": 1e3}
+"""Factors to N m², by the unit without powers and middle dots."""
+_MOST_BYTES: Final = 1 << 22
+
+
+@dataclass(frozen=True, slots=True)
+class Mapped:
+    """Columns and units that the user states for headings."""
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in self.columns.values():
+            if name not in SYNONYMS:
+                raise ParameterError(
+                    "the column {name!r} is not known. {allowed}",
+                    code="unknown_name",
+                    name=name,
+                    allowed=nearest(name, SYNONYMS),
+                )
+
+    def column(self, heading: str) -> str:
+        """Column of a heading: the stated one, the one whose name or synonym it is, or ""."""
+        plain = plain_heading(heading)
+        stated = {plain_heading(key): name for key, name in self.columns.items()}
+        if plain in stated:
+            return stated[plain]
+        match = FORM.fullmatch(plain)
+        words = re.sub(r"[\s_]+", " ", match["words"] if match else plain).strip()
+        return next(
+            (
+                name
+                for name, synonyms in SYNONYMS.items()
+                if plain == name.casefold() or words in synonyms.split(", ") or words == _without_unit(name)
+            ),
+            "",
+        )
+
+    def unit(self, heading: str) -> str:
+        """Unit that is stated for a heading, or that it names."""
+        stated = {plain_heading(key): unit for key, unit in self.units.items()}.get(plain_heading(heading))
+        if stated is not None:
+            return stated
+        match = FORM.fullmatch(" ".join(heading.split()))
+        return named_unit(heading) or ((match["in"] or "") if match else "")
+
+
+def read_ski_table(path: Path, mapped: Mapped) -> dict[str, FloatArray]:
+    """Columns of the first table of a file, in the units of their names, without blank rows and unknown headings.
+
+    Raises
+    ------
+    ParameterError
+        There is no column that is known, a unit is neither named nor stated, or a cell is not a number.
+    """
+
+    def count(cells: Sequence[str]) -> int:
+        return sum(map(bool, map(mapped.column, cells)))
+
+    for sheet in read_sheets(path.name, plain_bytes(path, most_bytes=_MOST_BYTES), count=count):
+        for row, cells in enumerate(sheet.filled):
+            places = {name: place for place, cell in enumerate(cells) if (name := mapped.column(cell))}
+            if "station_mm" in places and len(places) > 1:
+                return _columns(path, sheet, row, places, mapped)
+    raise ParameterError(
+        "{path} has no row with a heading for the station and one for another column. Allowed: {names}. State a "
+        "heading by --column HEADING=NAME.",
+        code="missing",
+        path=path,
+        names=list(SYNONYMS),
+    )
+
+
+def _columns(path: Path, sheet: Sheet, header: int, places: Mapping[str, int], mapped: Mapped) -> dict[str, FloatArray]:
+    below = {place: sheet.cell(header + 1, place).strip("[]()") for place in places.values()}
+    has_units = any(map(known_unit, below.values()))
+    rows = [
+        row
+        for row in range(header + 1 + has_units, len(sheet.rows))
+        if sheet.cell(row, places["station_mm"]) and not sheet.cell(row, 0).startswith("#")
+    ]
+    mark = decimal_mark(
+        [[sheet.cell(row, place) for row in rows for place in places.values()]], separator=sheet.separator
+    )
+    columns = {}
+    for name, place in places.items():
+        heading = sheet.cell(header, place, filled=True)
+        unit = mapped.unit(heading) or (below[place] if has_units else "")
+        factor = _factor(path, heading, unit, name)
+        columns[name] = factor * np.array([_number(path, sheet, row, place, mark) for row in rows])
+    return columns
+
+
+def _factor(path: Path, heading: str, unit: str, name: str) -> float:
+    """Factor from the unit of a heading to that of its column; a heading that is the column's name has its unit."""
+    if not unit and plain_heading(heading) == name.casefold():
+        return 1.0
+    if name in STIFFNESSES:
+        plain = re.sub(r"[\s·*]+", " ", unit.replace("²", "2").replace("^2", "2")).strip().casefold()
+        factor, allowed = _STIFFNESS_UNITS.get(plain), "N m², N mm², kN m²"
+    else:
+        found = conversion(known_unit(unit), name)
+        factor, allowed = (None if found is None else found.factor), units_for(name)
+    if factor is None:
+        raise ParameterError(
+            "{path}: the heading {heading!r} names no unit that {name} can have. Allowed: {allowed}. Write the unit in "
+            "brackets, or state it by --unit HEADING=UNIT.",
+            code="no_unit",
+            path=path,
+            heading=heading,
+            name=name,
+            allowed=allowed,
+        )
+    return factor
+
+
+def _number(path: Path, sheet: Sheet, row: int, place: int, mark: str) -> float:
+    cell = sheet.cell(row, place)
+    value = number(cell, "." if (row, place) in sheet.fractions else mark) if cell else np.nan
+    if cell and not np.isfinite(value):
+        raise ParameterError(
+            "{path}, {sheet}, cell {letters}{row}: {cell!r} is no number. Correct it or leave it blank.",
+            code="not_a_number",
+            path=path,
+            sheet=sheet.name,
+            letters=column_letters(place),
+            row=row + 1,
+            cell=cell,
+        )
+    return value
+
+
+def _without_unit(name: str) -> str:
+    return re.sub(r"_(mm|N_m2|N|Nm|deg)$", "", name).replace("_", " ").casefold()
