@@ -17,6 +17,8 @@ from skisnow.cli import build_parser
 from skisnow.cli.options import number
 from skisnow.cli.shell import candidates, manual_page
 
+from ..docs.page_text import page_text
+
 
 def after(*words: str) -> list[str]:
     return candidates(build_parser(), words[:-1], words[-1])
@@ -148,15 +150,15 @@ def test_what_is_no_number_gets_an_example(unit: str, word: str, told: str) -> N
         number(unit)(word)
 
 
-# docs/files/command-line.md names every command and option that there is, and no other
+# docs/files/command-line.md has every command with every option and choice
+
+SECTIONS = dict(part.split("\n", 1) for part in page_text("files/command-line").split("\n## ")[1:])
 
 
-COMMAND_PAGE = (Path(__file__).parents[2] / "docs" / "files" / "command-line.md").read_text(encoding="utf-8")
-PIECES = [piece for piece in re.split(r"\n\n|\n(?=`skisnow |\| )", COMMAND_PAGE) if piece.strip()]
-
-
-def commands(parser: argparse.ArgumentParser, words: tuple[str, ...] = ()) -> Iterator[tuple[str, argparse.Action]]:
-    """Each command that does something, with each of its options."""
+def commands(
+    parser: argparse.ArgumentParser, words: tuple[str, ...] = ("skisnow",)
+) -> Iterator[tuple[str, argparse.Action]]:
+    """Each command that does something, with each of its arguments."""
     inner = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     for group in inner:
         for name, command in group.choices.items():
@@ -166,37 +168,15 @@ def commands(parser: argparse.ArgumentParser, words: tuple[str, ...] = ()) -> It
             yield " ".join(words), action
 
 
-EVERY = list(commands(build_parser()))
-
-
-def told(command: str) -> str:
-    """The page's rows about a command and those that begin with its name; of stores their common words."""
-    group, *rest = command.split()
-    own = [piece for piece in PIECES if re.search(rf"`skisnow {command}(?![\w-])", piece)]
-    if group == "store":
-        own += [piece for piece in PIECES if f"`{' '.join(rest)}" in piece or "Each `store` command" in piece]
-    return "\n".join(own)
-
-
-@pytest.mark.parametrize("command", sorted({command for command, _ in EVERY}))
-def test_it_names_the_command_with_every_option_and_choice(command: str) -> None:
-    text = told(command)
-    assert text, f"skisnow {command} is not there"
-    for action in (action for name, action in EVERY if name == command):
-        if not action.option_strings or action.dest == "help" or action.help == argparse.SUPPRESS:
+def test_every_option_and_choice_has_a_row() -> None:
+    missing = []
+    for command, action in commands(build_parser()):
+        if action.help == argparse.SUPPRESS or action.dest == "help":
             continue
-        option = max(action.option_strings, key=len)
-        assert re.search(rf"{option}(?![\w-])", text), f"skisnow {command} {option} is not there"
-        for choice in action.choices or ():
-            assert re.search(rf"(?<![\w-]){re.escape(str(choice))}(?![\w-])", text), f"{command} {option} {choice}"
-
-
-def test_it_names_no_option_that_is_none() -> None:
-    known = {option for _, action in EVERY for option in action.option_strings} | {"--version"}
-    assert set(re.findall(r"(?<![\w-])--[A-Za-z][\w-]*", COMMAND_PAGE)) <= known
-    for row in re.findall(r"^\| `skisnow (.*?)` ", COMMAND_PAGE, re.MULTILINE):
-        words = re.match(r"[a-z]+(?: [a-z]+)*", row)
-        assert words is not None
-        command = next(name for name in (words[0], words[0].split()[0], " ".join(words[0].split()[:2])) if told(name))
-        own = {o for name, action in EVERY if name.startswith(command) for o in action.option_strings}
-        assert set(re.findall(r"--[A-Za-z][\w-]*", row)) <= own, row
+        text = SECTIONS[command].replace("\\|", "|")
+        words = [
+            max(action.option_strings, key=len, default=""),
+            *([] if action.metavar else map(str, action.choices or ())),
+        ]
+        missing += [(command, word) for word in words if word not in text]
+    assert missing == []

@@ -16,7 +16,7 @@ from skisnow.cli.schema import json_schema
 from .page_text import page_text
 
 CAMPAIGN, RESULTS, COMMANDS = (page_text(f"files/{name}") for name in ("campaign", "results", "command-line"))
-BESIDE = page_text("files/snow-micro-pen") + page_text("files/smet")
+BESIDE = page_text("files/instruments")
 PACKAGE = Path(skisnow.__file__).parent
 
 

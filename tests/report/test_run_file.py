@@ -15,9 +15,10 @@ from skisnow.report.run.file import MISSING, write_run_file
 from skisnow.report.run.variables import RUN_VARIABLES
 from skisnow.simulation.run import LOST, STORED, Run
 
+from ..docs.page_text import page_text
 from .runs import RADIUS, SPEED, STANCE, circle_run
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "files" / "run.md").read_text(encoding="utf-8")
+PAGE = page_text("files/run")
 VARIABLES = PAGE.split("| variable |")[1].splitlines()
 UNITS = {"s", "m", "m s-1", "rad", "N m-1", "J", "1", "N", "N m"}
 

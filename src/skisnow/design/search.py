@@ -45,7 +45,7 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
 
     References
     ----------
-    * The page docs/files/design.md.
+    * The page docs/files/ski.md.
     * The page docs/methods/carve-derivatives.md.
 
     Examples

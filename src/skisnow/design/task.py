@@ -108,7 +108,7 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
             _refuse(Message("there is no {name}. {allowed}", name=name, allowed=nearest(name, known)), "unknown_name")
     for name in ("ski", "variables", "conditions", "goals"):
         if not values.get(name):
-            _refuse(Message("{name} is missing. Add it, as on the page docs/files/design.md.", name=name), "missing")
+            _refuse(Message("{name} is missing. Add it, as on the page docs/files/ski.md.", name=name), "missing")
     _require_tables(values)
     sources = sources or Sources()
     ski, _ = sources.ski(str(values["ski"]))

@@ -68,7 +68,7 @@ def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
 
     References
     ----------
-    The page docs/files/smet.md.
+    The page docs/files/instruments.md.
     """
     weather = campaign.weather
     if weather is None:

@@ -218,7 +218,7 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     Parameters
     ----------
     path
-        A CSV file, or .mot or .sto of OpenSim. The page docs/files/boots.md names the columns.
+        A CSV file, or .mot or .sto of OpenSim. The page docs/files/scenario.md names the columns.
     edge_angle, stance_width
         Values of the sledge for angles and places that the file does not give (rad, m).
 
