@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final, cast
-from xml.parsers import expat
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.units import DEGREE
-from ..._support.user_files import plain_text
+from ..._support.user_files import Element, GivenError, plain_bytes, xml_tree
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
 from .course import Course, Discipline, Gate, Side, course_names, course_place
@@ -217,8 +216,6 @@ def on_slope(course: Course, *, slope_angle: float | None) -> Course:
 
 
 MOST_BYTES: Final = 1 << 24
-DEEPEST: Final = 100
-_POINT: Final = ("gpx", "wpt")
 _SAYS: Final = ("type", "sym", "cmt", "desc", "name")
 _SIDE: Final = re.compile(r"\b(left|right)\b", re.IGNORECASE)
 
@@ -235,48 +232,6 @@ class Waypoint:
     side: Side | None
 
 
-@dataclass(slots=True)
-class _WaypointTexts:
-    latitude: str | None
-    longitude: str | None
-    texts: dict[str, str] = field(default_factory=dict)
-
-
-class _RefusedError(Exception):
-    """The file has something that no course has."""
-
-
-class _Reader:
-    """Handler of the elements from expat that collects the waypoints."""
-
-    def __init__(self) -> None:
-        self.points: list[_WaypointTexts] = []
-        self._path: list[str] = []
-        self._text: list[str] = []
-
-    def start(self, name: str, attributes: Mapping[str, str]) -> None:
-        self._path.append(name.rsplit("}", 1)[-1])
-        self._text = []
-        if len(self._path) > DEEPEST:
-            raise _RefusedError(
-                Message("more than {deepest} elements within each other", deepest=DEEPEST),
-            )
-        if tuple(self._path) == _POINT:
-            self.points.append(_WaypointTexts(attributes.get("lat"), attributes.get("lon")))
-
-    def text(self, text: str) -> None:
-        self._text.append(text)
-
-    def end(self, _name: str) -> None:
-        if tuple(self._path[:2]) == _POINT and len(self._path) == 3:
-            self.points[-1].texts.setdefault(self._path[2], "".join(self._text).strip())
-        self._text = []
-        self._path.pop()
-
-    def entity(self, name: str, *_rest: object) -> None:
-        raise _RefusedError(Message("the declaration of an entity, {name}", name=name))
-
-
 def read_waypoints(path: str | Path) -> list[Waypoint]:
     """Read the waypoints of a GPX file.
 
@@ -285,26 +240,24 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
     ParameterError
         The file cannot be read, is not GPX, or a waypoint has no place on the earth.
     """
-    reader, parser = _Reader(), expat.ParserCreate(namespace_separator="}")
-    parser.buffer_text = True
-    parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
-    parser.CharacterDataHandler, parser.EntityDeclHandler = reader.text, reader.entity
+    data = plain_bytes(path, most_bytes=MOST_BYTES)
     try:
-        parser.Parse(plain_text(path, most_bytes=MOST_BYTES).lstrip(), True)
-    except (_RefusedError, expat.ExpatError) as error:
+        root = xml_tree(data.lstrip())
+    except GivenError as error:
         raise ParameterError(
             "{path} is not a readable GPX file ({error}); export it again", code="not_gpx", path=path, error=error
         ) from error
-    return [_waypoint(path, row, point) for row, point in enumerate(reader.points, start=1)]
+    points = root.every("wpt") if root.name == "gpx" else ()
+    return [_waypoint(path, row, point) for row, point in enumerate(points, start=1)]
 
 
-def _waypoint(path: str | Path, row: int, point: _WaypointTexts) -> Waypoint:
-    name = point.texts.get("name") or str(row)
-    words = (_SIDE.search(point.texts.get(key, "")) for key in _SAYS)
+def _waypoint(path: str | Path, row: int, point: Element) -> Waypoint:
+    name = point.text_of("name") or str(row)
+    words = (_SIDE.search(point.text_of(key)) for key in _SAYS)
     side = next((word[1].lower() for word in words if word), None)
-    latitude = _number(path, row, "lat", point.latitude, 90.0)
-    longitude = _number(path, row, "lon", point.longitude, 180.0)
-    height = _number(path, row, "ele", point.texts.get("ele") or "nan", 1e5)
+    latitude = _number(path, row, "lat", point.attributes.get("lat"), 90.0)
+    longitude = _number(path, row, "lon", point.attributes.get("lon"), 180.0)
+    height = _number(path, row, "ele", point.text_of("ele") or "nan", 1e5)
     return Waypoint(row, name, latitude, longitude, height, cast("Side | None", side))
 
 
