@@ -152,8 +152,8 @@ def _half_intervals(answer: CarveAnswer) -> dict[str, Any]:
 
 def answers_dict(answers: Sequence[CarveAnswer]) -> dict[str, Any]:
     """The JSON of `skisnow carve`: one answer as it is, several under `skis`."""
-    each = [answer_dict(answer) for answer in answers]
-    return each[0] if len(each) == 1 else {"skis": each}
+    dicts = [answer_dict(answer) for answer in answers]
+    return dicts[0] if len(dicts) == 1 else {"skis": dicts}
 
 
 def sensitivities_dict(equilibrium: Equilibrium, parameters: Sequence[str] = ()) -> list[dict[str, Any]]:
@@ -162,16 +162,16 @@ def sensitivities_dict(equilibrium: Equilibrium, parameters: Sequence[str] = ())
     names = parameters or exact.everyday_parameters
     return [
         {
-            "output": each.output,
-            "parameter": each.parameter,
-            "value": each.output_value,
-            "derivative": each.derivative,
-            "percent_per_percent": each.relative,
-            "relative_distance_to_kink": json_number(each.kink),
+            "output": derivative.output,
+            "parameter": derivative.parameter,
+            "value": derivative.output_value,
+            "derivative": derivative.derivative,
+            "percent_per_percent": derivative.relative,
+            "relative_distance_to_kink": json_number(derivative.kink),
         }
         for output in OUTPUTS
         if exact.output(output) is not None
-        for each in exact.sensitivity(output, names)
+        for derivative in exact.sensitivity(output, names)
     ]
 
 
@@ -215,18 +215,18 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
 
 def inputs_dict(answer: CarveAnswer) -> dict[str, Any]:
     """Every input with the value in force, that of the snow's numbers too; an infinite unloading ratio as computed."""
-    given = answer.question.as_dict()
-    ratio, stress = given["unloading_ratio"], answer.snow.failure_shear_stress
-    return given | {
-        "H_V_N_per_mm3": _in_unit(given["H_V_N_per_mm3"], answer.snow.snow_hardness, N_PER_MM3),
-        "S_f_N_per_mm2": _in_unit(given["S_f_N_per_mm2"], stress, N_PER_MM2),
+    inputs = answer.question.as_dict()
+    ratio, stress = inputs["unloading_ratio"], answer.snow.failure_shear_stress
+    return inputs | {
+        "H_V_N_per_mm3": _in_unit(inputs["H_V_N_per_mm3"], answer.snow.snow_hardness, N_PER_MM3),
+        "S_f_N_per_mm2": _in_unit(inputs["S_f_N_per_mm2"], stress, N_PER_MM2),
         "unloading_ratio": RIGID_PLASTIC if ratio is not None and math.isinf(ratio) else ratio,
     }
 
 
-def _in_unit(given: float | None, value: float | None, unit: float) -> float | None:
+def _in_unit(stated: float | None, value: float | None, unit: float) -> float | None:
     """The number as given: there and back over the unit could change its last digit."""
-    return given if given is not None or value is None else value / unit
+    return stated if stated is not None or value is None else value / unit
 
 
 def _numbers(values: FloatArray | None, unit: float) -> list[float | None] | None:

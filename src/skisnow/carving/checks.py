@@ -83,9 +83,9 @@ def require_strength(snow: SnowProperties) -> None:
         )
 
 
-def unloading_ratio_of(snow: SnowProperties, given: float | None) -> float:
+def unloading_ratio_of(snow: SnowProperties, stated: float | None) -> float:
     """k_u/H_V as given, or else the snow's own; refused where neither says it."""
-    ratio = snow.unloading_ratio if given is None else given
+    ratio = snow.unloading_ratio if stated is None else stated
     if ratio is None:
         raise ParameterError(
             "unloading_ratio is missing, and the snow ({source}) has none: k_u/H_V has no default. Give it here, or "

@@ -39,7 +39,7 @@ class EdgeLine:
     def sections(self, station: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Width, height of the unloaded base, deflection (m) and twist (rad) at stations (m)."""
         ski = self._model.ski
-        width, height = (np.interp(station, ski.station[::-1], each[::-1]) for each in (ski.width, ski.base_height))
+        width, height = (np.interp(station, ski.station[::-1], table[::-1]) for table in (ski.width, ski.base_height))
         return (width, height, *beam_at(self._model, self._u, station))
 
     def _across(

@@ -155,7 +155,7 @@ def carve(
     find = solved if groove == "edge" else _following_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
-    for gentler in (each for each in GENTLER_RATIOS if each < ratio):
+    for gentler in (smaller for smaller in GENTLER_RATIOS if smaller < ratio):
         if solution.converged:
             break
         conditions = conditions._replace(excess=snow.snow_hardness * (gentler - 1.0))
@@ -164,11 +164,11 @@ def carve(
     if laws is not None and not solution.converged:
         laws.require_finite()
     exact = laws is None and groove == "edge" and footprint_stiffness is None
-    found = equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None)
-    if found.turn_radius_boot is None:
-        return found
+    equilibrium = equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None)
+    if equilibrium.turn_radius_boot is None:
+        return equilibrium
     other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))
-    return replace(found, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
+    return replace(equilibrium, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
 
 
 def differentiable_carve(
@@ -247,14 +247,14 @@ def rest(
     return equilibrium_of(model, conditions, snow, solved(model, conditions))
 
 
-def _unloading_ratio(snow: SnowProperties, given: float | None, penetration: object) -> float:
+def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: object) -> float:
     if penetration is None:
-        return unloading_ratio_of(snow, given)
-    if given is not None:
+        return unloading_ratio_of(snow, stated)
+    if stated is not None:
         raise ParameterError(
             "unloading_ratio is {given} beside a penetration law, which says itself how the snow unloads: leave it out",
             code="contradiction",
-            given=given,
+            given=stated,
         )
     return 1.0
 

@@ -51,9 +51,9 @@ class StrengthLaw:
 
     def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Stress at depths (m), 0 at depths that are not positive, and at edge angles (rad)."""
-        found = self._asked(depth, edge_angle)[0] / self._unit
+        share = self._asked(depth, edge_angle)[0] / self._unit
         self.refused = self.refused or self._asked.refused
-        return found
+        return share
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,10 +87,10 @@ class SnowLaws:
 
     def require_finite(self) -> None:
         """Refuse a law that gave no finite answer on the way; asked where no equilibrium was found."""
-        for each in self.asked:
-            if each.refused:
+        for law in self.asked:
+            if law.refused:
                 raise ParameterError(
-                    "{problem}, and no equilibrium was found", code="no_equilibrium", problem=each.refused
+                    "{problem}, and no equilibrium was found", code="no_equilibrium", problem=law.refused
                 )
 
 
@@ -137,7 +137,7 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
         np.array(() if penetration is None else penetration.bends, float),
         None if strength is None else strength.share,
     )
-    return SnowLaws(shear, penetration, tuple(each for each in (pressure, strength) if each is not None), compiled)
+    return SnowLaws(shear, penetration, tuple(law for law in (pressure, strength) if law is not None), compiled)
 
 
 def _no_point_law(law: object) -> Message:
@@ -203,7 +203,7 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
     depth = np.maximum(_DEPTHS[:, None] - place * math.tan(edge_angle), 0.0)
     flat = depth.ravel()
     pressure = law.stress_and_energy(flat, flat, np.full(len(flat), edge_angle))[0].reshape(depth.shape)
-    force, volume = ((each * step) @ _WEIGHTS for each in (pressure, depth))
+    force, volume = ((values * step) @ _WEIGHTS for values in (pressure, depth))
     bears = np.flatnonzero(force * _LOADED_SHARE * ski.running_length >= load)
     at = int(bears[0]) if len(bears) else len(_DEPTHS) - 1
     hardness, deepest = float(force[at] / volume[at]), np.array([_DEPTHS[at]])

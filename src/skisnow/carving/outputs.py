@@ -135,8 +135,8 @@ def _radius_over(at: At, x: FloatArray) -> tuple[OutputGrowth, FloatArray] | Non
 
 
 def _radius_at_boot(at: At) -> OutputGrowth | None:
-    found = _radius_over(at, AT_BOOT)
-    return None if found is None else found[0]
+    circle = _radius_over(at, AT_BOOT)
+    return None if circle is None else circle[0]
 
 
 def _radius_of_chord(at: At) -> OutputGrowth | None:
@@ -144,10 +144,10 @@ def _radius_of_chord(at: At) -> OutputGrowth | None:
     if ends is None:
         return None
     x = np.array([ends[0].value, 0.0, ends[1].value])
-    found = _radius_over(at, x) if x[0] > 0.0 > x[2] else None
-    if found is None:
+    circle = _radius_over(at, x) if x[0] > 0.0 > x[2] else None
+    if circle is None:
         return None
-    growth, by_x = found
+    growth, by_x = circle
     columns = [
         np.asarray(by_x[0] * getattr(ends[0], name) + by_x[2] * getattr(ends[1], name)) for name in ("depth", "place")
     ]
@@ -206,18 +206,18 @@ def _deflection(at: At) -> OutputGrowth | None:
 
 
 def _grip_utilisation(at: At) -> OutputGrowth | None:
-    weight, depth, given = at.model.stations.weight, at.solution.edge_depth, at.conditions
-    if at.strength is None or given.side_force == 0.0:
+    weight, depth, conditions = at.model.stations.weight, at.solution.edge_depth, at.conditions
+    if at.strength is None or conditions.side_force == 0.0:
         return None
     below = np.where(depth > 0.0, 1.0, 0.0)
     area = float(weight @ (below * depth))
-    value = given.side_force / (at.strength * area)
+    value = conditions.side_force / (at.strength * area)
     return OutputGrowth(
         value=value,
         depth=-value / area * weight * below,
         weight=-value / area * depth * below,
-        edge_angle=given.load / math.cos(given.edge_angle) ** 2 / (at.strength * area),
-        load=value / given.load,
+        edge_angle=conditions.load / math.cos(conditions.edge_angle) ** 2 / (at.strength * area),
+        load=value / conditions.load,
         strength=-value / at.strength,
     )
 
@@ -237,5 +237,5 @@ OUTPUTS: Final[dict[str, tuple[Callable[[At], OutputGrowth | None], float, str]]
 def output_growth(name: str, at: At) -> OutputGrowth | None:
     """An output in the unit of its name; None where it does not exist."""
     compute, unit, _ = OUTPUTS[name]
-    found = compute(at)
-    return None if found is None else found.scaled(unit)
+    growth = compute(at)
+    return None if growth is None else growth.scaled(unit)

@@ -41,8 +41,8 @@ def carve_question(values: Mapping[str, object]) -> CarveQuestion:
     """
     require_known(values)
     require_complete(values)
-    given: dict[str, Any] = {name: CARVE_KEYS[name].in_range(value) for name, value in values.items()}
-    return CarveQuestion(**given)
+    inputs: dict[str, Any] = {name: CARVE_KEYS[name].in_range(value) for name, value in values.items()}
+    return CarveQuestion(**inputs)
 
 
 def require_known(names: Iterable[str]) -> None:
@@ -106,7 +106,7 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
         )
 
 
-_SNOW: Final = {each.name: each for each in own_quantities(SnowProperties)}
+_SNOW: Final = {quantity.name: quantity for quantity in own_quantities(SnowProperties)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -293,15 +293,15 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
 
 def implausible_values(question: CarveQuestion) -> tuple[str, ...]:
     """Numbers that look like those of another unit, in words."""
-    found = []
+    texts = []
     degrees = in_degrees_if_radians(question.edge_angle_deg)
     if degrees is not None:
-        given = question.edge_angle_deg
-        found.append(f"edge_angle_deg is {given:g}: that looks like radians. If it is, write {degrees:.4g}")
+        degrees_read = question.edge_angle_deg
+        texts.append(f"edge_angle_deg is {degrees_read:g}: that looks like radians. If it is, write {degrees:.4g}")
     low, high = USUAL_LOADS_N
     if not low <= question.load_N <= high:
-        found.append(f"load_N is {question.load_N:g}: is it in kg or kN? It is read as newtons (80 kg weigh 785 N)")
+        texts.append(f"load_N is {question.load_N:g}: is it in kg or kN? It is read as newtons (80 kg weigh 785 N)")
     hardness = question.H_V_N_per_mm3
     if hardness is not None and hardness > GREATEST_LIKELY_HARDNESS:
-        found.append(f"H_V_N_per_mm3 is {hardness:g}: is it in N/m³? If it is, write {hardness / N_PER_MM3:.4g}")
-    return tuple(found)
+        texts.append(f"H_V_N_per_mm3 is {hardness:g}: is it in N/m³? If it is, write {hardness / N_PER_MM3:.4g}")
+    return tuple(texts)

@@ -325,12 +325,12 @@ def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> 
 
 
 def _warnings(line: EdgeLine) -> tuple[str, ...]:
-    found = []
+    warnings = []
     slope, twist = line.greatest_slope(), float(np.max(np.abs(line.twist)))
     if slope > LARGE_SLOPE:
-        found.append(
+        warnings.append(
             f"the ski bends to a slope of {slope:.2f}: beyond {LARGE_SLOPE} beams of small deflection are inexact"
         )
     if twist > LARGE_SLOPE:
-        found.append(f"the ski twists by {math.degrees(twist):.0f} degrees: more than a linear torsion bar can tell")
-    return tuple(found)
+        warnings.append(f"the ski twists by {math.degrees(twist):.0f} degrees: more than a linear torsion bar can tell")
+    return tuple(warnings)

@@ -124,11 +124,11 @@ class CarveDerivatives:
     )
 
     def __post_init__(self) -> None:
-        asked = self.request
-        self.point = refined(asked.model, asked.conditions, asked.solution)
+        request = self.request
+        self.point = refined(request.model, request.conditions, request.solution)
         _, u, (depth, slope, stress), edge_depth, force = self.point.state()
         solution = Solution(True, 0, u, depth, slope, stress, edge_depth, force)
-        self.at = At(asked.model, asked.conditions, asked.strength, solution)
+        self.at = At(request.model, request.conditions, request.strength, solution)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -138,18 +138,24 @@ class CarveDerivatives:
     @property
     def everyday_parameters(self) -> tuple[str, ...]:
         """Turn and snow, the ski's widths and camber, factors of its sidecut and stiffness."""
-        kept = (*CONDITIONS, *(f"ski.{key}" for key in LINEAR), "edit.sidecut_depth", "edit.EI_N_m2", "edit.GJ_N_m2")
-        return tuple(name for name in self.parameters if name in kept)
+        everyday = (
+            *CONDITIONS,
+            *(f"ski.{key}" for key in LINEAR),
+            "edit.sidecut_depth",
+            "edit.EI_N_m2",
+            "edit.GJ_N_m2",
+        )
+        return tuple(name for name in self.parameters if name in everyday)
 
     def value(self, parameter: str) -> float:
         """Value of a parameter, in the unit of its name."""
-        given = self.request.conditions
+        conditions = self.request.conditions
         values = {
-            "edge_angle_deg": given.edge_angle / DEGREE,
-            "load_N": given.load,
-            "moment_Nm": given.moment,
-            "unloading_ratio": 1.0 + given.excess / given.hardness,
-            "snow.H_V_N_per_mm3": given.hardness / N_PER_MM3,
+            "edge_angle_deg": conditions.edge_angle / DEGREE,
+            "load_N": conditions.load,
+            "moment_Nm": conditions.moment,
+            "unloading_ratio": 1.0 + conditions.excess / conditions.hardness,
+            "snow.H_V_N_per_mm3": conditions.hardness / N_PER_MM3,
             "snow.S_f_N_per_mm2": (self.request.strength or 0.0) / N_PER_MM2,
         }
         if parameter in values:
@@ -171,21 +177,21 @@ class CarveDerivatives:
         ParameterError
             An output or a parameter is unknown, or the output does not exist here.
         """
-        found = self._gradient(output)
-        if found is None:
+        growth_and_gradient = self._gradient(output)
+        if growth_and_gradient is None:
             raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
         out = []
         for name in parameters:
-            value, growth = self.value(name), self._derivative(name, *found)
-            relative = growth * value / found[0].value if value and found[0].value else None
+            value, growth = self.value(name), self._derivative(name, *growth_and_gradient)
+            relative = growth * value / growth_and_gradient[0].value if value and growth_and_gradient[0].value else None
             kink = self._kink(name) / (abs(value) or 1.0) if kinks else math.inf
-            out.append(Sensitivity(output, name, found[0].value, value, growth, relative, kink))
+            out.append(Sensitivity(output, name, growth_and_gradient[0].value, value, growth, relative, kink))
         return tuple(out)
 
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""
-        found = self._gradient(name)
-        return None if found is None else found[0].value
+        growth_and_gradient = self._gradient(name)
+        return None if growth_and_gradient is None else growth_and_gradient[0].value
 
     def half_interval(self, output: str, snow: SnowProperties) -> float | None:
         """Half the 95 % interval of an output by those of H_V and S_f, to first order; None where the snow has none."""
@@ -209,11 +215,11 @@ class CarveDerivatives:
 
         With width and base height (mm) at ``station_m``, and with EI and GJ (N m²) at ``beam_m``.
         """
-        found = self._gradient(output)
+        growth_and_gradient = self._gradient(output)
         model = self.request.model
-        if found is None:
+        if growth_and_gradient is None:
             raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
-        _, (columns, _, adjoint) = found
+        _, (columns, _, adjoint) = growth_and_gradient
         length = model.node[:-1] - model.node[1:]
         bending, torsion = beam_gradient(model, self.at.solution.u, adjoint)
         weight = model.stations.weight
@@ -241,7 +247,7 @@ class CarveDerivatives:
 
     def _adjoint(self, growth: OutputGrowth) -> tuple[FloatArray, FloatArray, FloatArray]:
         none = np.zeros(len(self.at.solution.edge_depth))
-        depth, force = (none if each is None else each for each in (growth.depth, growth.force))
+        depth, force = (none if part is None else part for part in (growth.depth, growth.force))
         return self.point.gradient(growth.by_unknowns(self.request.model), depth, force)
 
     def _derivative(
@@ -257,7 +263,7 @@ class CarveDerivatives:
         along = direction.columns(model)
         total += float(np.sum(columns[:4] * along[:4])) + float(adjoint @ direction.bent)
         if along[4].any():  # the shapes of slopes are as long as the element
-            own, back = (_slopes_at_stations(model, each) for each in (self.at.solution.u, adjoint))
+            own, back = (_slopes_at_stations(model, unknowns) for unknowns in (self.at.solution.u, adjoint))
             total += float((columns[4] * own - columns[5] * back) @ along[4])
         for by, column in ((growth.place, along[0]), (growth.weight, along[1])):
             total += 0.0 if by is None else float(by @ column)
@@ -294,22 +300,22 @@ class CarveDerivatives:
         return shape_growth(model.ski, name, model.clamp_length, self.request.elements, tuple(edge.tolist()))
 
     def _of_conditions(self, name: str) -> _Direction:
-        given, numbers, strength = self.request.conditions, np.zeros(12), 0.0
-        turns = given.side_force > 0.0
+        conditions, numbers, strength = self.request.conditions, np.zeros(12), 0.0
+        turns = conditions.side_force > 0.0
         if name == "edge_angle_deg":
             numbers[_ANGLE] = DEGREE
-            numbers[_SIDE_FORCE] = turns * given.load / math.cos(given.edge_angle) ** 2 * DEGREE
-            if given.pitch_of_shear != 0.0:  # free: cos ϑ and sin ϑ
-                numbers[_PITCH] = -math.sin(given.edge_angle) * DEGREE
-                numbers[_PITCH_OF_SHEAR] = math.cos(given.edge_angle) * DEGREE
+            numbers[_SIDE_FORCE] = turns * conditions.load / math.cos(conditions.edge_angle) ** 2 * DEGREE
+            if conditions.pitch_of_shear != 0.0:  # free: cos ϑ and sin ϑ
+                numbers[_PITCH] = -math.sin(conditions.edge_angle) * DEGREE
+                numbers[_PITCH_OF_SHEAR] = math.cos(conditions.edge_angle) * DEGREE
         elif name == "load_N":
-            numbers[_LOAD], numbers[_SIDE_FORCE] = 1.0, turns * math.tan(given.edge_angle)
+            numbers[_LOAD], numbers[_SIDE_FORCE] = 1.0, turns * math.tan(conditions.edge_angle)
         elif name == "moment_Nm":
             numbers[_MOMENT] = 1.0
         elif name == "unloading_ratio":
-            numbers[_EXCESS] = given.hardness
+            numbers[_EXCESS] = conditions.hardness
         elif name == "snow.H_V_N_per_mm3":
-            numbers[_HARDNESS], numbers[_EXCESS] = N_PER_MM3, given.excess / given.hardness * N_PER_MM3
+            numbers[_HARDNESS], numbers[_EXCESS] = N_PER_MM3, conditions.excess / conditions.hardness * N_PER_MM3
         else:
             strength = N_PER_MM2
         return _Direction(numbers, strength)

@@ -158,7 +158,7 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
 def beam_gradient(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (n, 4) each."""
     length = _lengths(model)
-    both = np.array([_values(model, each) for each in (u, adjoint)])
+    both = np.array([_values(model, vector) for vector in (u, adjoint)])
     curvature = curvature_shape(GAUSS_POINTS[None, :], length[:, None])
     kappa = np.einsum("ngi,kni->kng", curvature, both)
     turn = (both[:, :, 5] - both[:, :, 2]) / length

@@ -92,8 +92,8 @@ def solved(
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
         from_there = (near.u, border, near.edge_depth)
     laws = None if conditions.laws is None else conditions.laws.compiled
-    found = core.find_carve(_core_ski(model), _numbers(conditions), offset, from_there, laws)
-    converged, iterations, u, (depth, slope, stress), edge_depth, force = found
+    result = core.find_carve(_core_ski(model), _numbers(conditions), offset, from_there, laws)
+    converged, iterations, u, (depth, slope, stress), edge_depth, force = result
     return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
 
 
@@ -117,8 +117,8 @@ def refined(
 
 def _numbers(conditions: Conditions) -> core.CarveConditions:
     # numbers of NumPy, too, which the core does not know
-    given: list[Any] = [each.item() if isinstance(each, np.generic) else each for each in conditions[:-1]]
-    return core.CarveConditions(*given)
+    numbers: list[Any] = [number.item() if isinstance(number, np.generic) else number for number in conditions[:-1]]
+    return core.CarveConditions(*numbers)
 
 
 @functools.lru_cache(maxsize=32)

@@ -35,18 +35,22 @@ class Evaluator:
     _points: dict[bytes, tuple[CarveDerivatives, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.snows = tuple(asked_snow(each, self.task.sources) for each in self.task.conditions)
+        self.snows = tuple(asked_snow(condition, self.task.sources) for condition in self.task.conditions)
 
     @property
     def start(self) -> FloatArray:
         """The ski to begin with, moved into the bounds."""
         keys = self.task.ski.keys or {}
-        values = [(start_value(keys, each.name) - each.lowest) / each.width for each in self.task.variables]
+        values = [
+            (start_value(keys, variable.name) - variable.lowest) / variable.width for variable in self.task.variables
+        ]
         return np.clip(values, 0.0, 1.0)
 
     def values(self, z: FloatArray) -> FloatArray:
         """Values of the variables, in the units of the ski file."""
-        return np.array([each.lowest + each.width * share for each, share in zip(self.task.variables, z, strict=True)])
+        return np.array(
+            [variable.lowest + variable.width * share for variable, share in zip(self.task.variables, z, strict=True)]
+        )
 
     def keys(self, z: FloatArray) -> dict[str, Any]:
         """Keys of the ski file."""
@@ -68,18 +72,20 @@ class Evaluator:
                 ski = ski_of_keys(self.keys(z))
             except ParameterError as error:
                 raise SolverError("there is no such ski: {reason}", code="no_ski", reason=error) from error
-            self._points[place] = tuple(self._point(n, ski, each) for n, each in enumerate(self.task.conditions))
+            self._points[place] = tuple(
+                self._point(n, ski, condition) for n, condition in enumerate(self.task.conditions)
+            )
         return self._points[place]
 
-    def _point(self, number: int, ski: Ski, asked: CarveQuestion) -> CarveDerivatives:
+    def _point(self, number: int, ski: Ski, question: CarveQuestion) -> CarveDerivatives:
         self.equilibria += 1
-        found = carve_at(ski, asked, self.snows[number], near=self._near.get(number))
-        if found is None:
+        derivatives = carve_at(ski, question, self.snows[number], near=self._near.get(number))
+        if derivatives is None:
             raise SolverError(
                 "there is no equilibrium at condition {number}.", code="no_equilibrium", number=number + 1
             )
-        self._near[number] = found.at.solution
-        return found
+        self._near[number] = derivatives.at.solution
+        return derivatives
 
     def goal_values(self, goal: Goal, z: FloatArray) -> FloatArray:
         """The goal's output at each of its conditions, or the ratio of two."""
@@ -100,7 +106,8 @@ class Evaluator:
         out = []
         for variable, value in zip(self.task.variables, self.values(z), strict=True):
             growth = sum(
-                each.derivative for each in point.sensitivity(output, combined_names(variable.name), kinks=False)
+                sensitivity.derivative
+                for sensitivity in point.sensitivity(output, combined_names(variable.name), kinks=False)
             )
             out.append(growth * variable.width * self._factor(variable.name, value, z))
         return np.array(out)
@@ -109,8 +116,8 @@ class Evaluator:
         """What a parameter of the ski grows by with a variable: factors and rows of a list multiply each other."""
         if name in COMBINED:
             return 1.0 if name == "sidecut_mm" else 1.0 / value
-        now = zip(self.task.variables, self.values(z), strict=True)
-        factors = {COMBINED[each.name][0]: float(at) for each, at in now if each.name in COMBINED}
+        places = zip(self.task.variables, self.values(z), strict=True)
+        factors = {COMBINED[combined.name][0]: float(at) for combined, at in places if combined.name in COMBINED}
         return factors.get(name.partition("[")[0], 1.0) if "[" in name else 1.0
 
     def _chosen(self, goal: Goal, z: FloatArray) -> list[CarveDerivatives]:
@@ -126,21 +133,21 @@ def _output(point: CarveDerivatives, name: str) -> float:
 
 
 def carve_at(
-    ski: Ski, asked: CarveQuestion, snow: SnowProperties, *, near: Solution | None = None
+    ski: Ski, question: CarveQuestion, snow: SnowProperties, *, near: Solution | None = None
 ) -> CarveDerivatives | None:
     """Refined equilibrium of a question for this ski on this snow; None: not converged."""
     return differentiable_carve(
         ski,
         snow,
-        edge_angle=math.radians(asked.edge_angle_deg),
-        load=asked.load_N,
-        unloading_ratio=asked.unloading_ratio,
-        moment=asked.moment_Nm,
-        clamp_length=asked.clamp_length_m,
-        side_force_bending=asked.side_force_bending,
-        side_force_spread=asked.side_force_spread,
-        moment_balance=asked.moment_balance,
-        twist=asked.twist,
-        elements=asked.elements,
+        edge_angle=math.radians(question.edge_angle_deg),
+        load=question.load_N,
+        unloading_ratio=question.unloading_ratio,
+        moment=question.moment_Nm,
+        clamp_length=question.clamp_length_m,
+        side_force_bending=question.side_force_bending,
+        side_force_spread=question.side_force_spread,
+        moment_balance=question.moment_balance,
+        twist=question.twist,
+        elements=question.elements,
         near=near,
     )

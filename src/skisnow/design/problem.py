@@ -78,20 +78,20 @@ class Search:
 
     def constraints(self, *, exact: bool = False) -> list[dict[str, Any]]:
         """Limits, linear constraints, slacks; `exact`: all targets as equalities."""
-        found = [_constraint(self, self.room, self.room_growth, goal) for goal in self.limits]
+        constraints = [_constraint(self, self.room, self.room_growth, goal) for goal in self.limits]
         if exact:
-            found += [
+            constraints += [
                 _constraint(self, self.deviations, self.deviation_growth, goal, kind="eq") for goal in self.targets
             ]
         else:
             for number, goal in enumerate(self.worst):
-                found += [_slack(self, goal, number, side) for side in (1.0, -1.0)]
+                constraints += [_slack(self, goal, number, side) for side in (1.0, -1.0)]
         matrix, lowest = linear_constraints(self.evaluator)
         if len(lowest):
-            found.append(
+            constraints.append(
                 {"type": "ineq", "fun": lambda x: matrix @ x[: self.count] - lowest, "jac": self._padded(matrix)}
             )
-        return found
+        return constraints
 
     def _padded(self, matrix: FloatArray) -> Callable[[FloatArray], FloatArray]:
         return lambda x: np.pad(matrix, ((0, 0), (0, len(x) - self.count)))
@@ -107,11 +107,11 @@ class Search:
         bounds = [(0.0, 1.0)] * self.count + [(0.0, None)] * len(slack)
         begin = np.concatenate([z, slack])
         if self.targets:
-            found = minimize(
+            solution = minimize(
                 self.objective, begin, jac=self.gradient, method="SLSQP", bounds=bounds,
                 constraints=self.constraints(), options=options,
             )  # fmt: skip
-            z = np.clip(found.x[: self.count], 0.0, 1.0)
+            z = np.clip(solution.x[: self.count], 0.0, 1.0)
             if self.worst_deviation(z) > 1e-3:
                 return z
         home = self.evaluator.start
@@ -182,19 +182,19 @@ def linear_constraints(evaluator: Evaluator) -> tuple[FloatArray, FloatArray]:
     keys = task.ski.keys or {}
 
     def total(terms: Mapping[str, float], z: FloatArray) -> float:
-        now = designed_keys(keys, task.variables, evaluator.values(z).tolist())
-        return sum(factor * start_value(now, name) for name, factor in terms.items())
+        current = designed_keys(keys, task.variables, evaluator.values(z).tolist())
+        return sum(factor * start_value(current, name) for name, factor in terms.items())
 
     rows, limits = [], []
     zero = np.zeros(len(task.variables))
-    for each in task.constraints:
-        base = total(each.terms, zero)
-        row = np.array([total(each.terms, zero + one) - base for one in np.eye(len(zero))])
+    for constraint in task.constraints:
+        base = total(constraint.terms, zero)
+        row = np.array([total(constraint.terms, zero + one) - base for one in np.eye(len(zero))])
         size = float(np.max(np.abs(row), initial=0.0)) or 1.0
-        if np.isfinite(each.at_least):
+        if np.isfinite(constraint.at_least):
             rows.append(row / size)
-            limits.append((each.at_least - base) / size)
-        if np.isfinite(each.at_most):
+            limits.append((constraint.at_least - base) / size)
+        if np.isfinite(constraint.at_most):
             rows.append(-row / size)
-            limits.append((base - each.at_most) / size)
+            limits.append((base - constraint.at_most) / size)
     return np.array(rows).reshape(-1, len(zero)), np.array(limits)

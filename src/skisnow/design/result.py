@@ -130,8 +130,8 @@ class Design(Shown):
             "keys": self.keys,
             "rounded_keys": self.rounded_keys,
             "rows": [asdict(row) for row in self.rows],
-            "remarks": [str(each) for each in self.remarks],
-            "optima": [asdict(each) for each in self.optima],
+            "remarks": [str(remark) for remark in self.remarks],
+            "optima": [asdict(optimum) for optimum in self.optima],
             "equilibria": self.equilibria,
         }
 
@@ -172,7 +172,9 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
         ski=ski_of_keys(keys),
         keys=keys,
         rounded_keys=rounded,
-        values={each.name: float(value) for each, value in zip(task.variables, evaluator.values(z), strict=True)},
+        values={
+            variable.name: float(value) for variable, value in zip(task.variables, evaluator.values(z), strict=True)
+        },
         rows=_rows(search, keys, rounded),
         reached=not remarks,
         remarks=(*remarks, *_active(search, z), CONFIRM),
@@ -184,13 +186,13 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
 def _digits(value: Any) -> Any:
     """Numbers with the nine digits of the file, so that the answer is that of the file."""
     if isinstance(value, list):
-        return [_digits(each) for each in value]
+        return [_digits(item) for item in value]
     return float(f"{value:.9g}") if isinstance(value, float) else value
 
 
 def _rounded(key: str, value: Any) -> Any:
     if isinstance(value, list):
-        return [_rounded(key, each) for each in value]
+        return [_rounded(key, item) for item in value]
     if not isinstance(value, float):
         return value
     return round(value, 0 if key.endswith("N_m2") else 1 if key.endswith("_mm") else 3)
@@ -200,13 +202,13 @@ def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tupl
     evaluator = search.evaluator
     skis = [search.evaluator.task.ski, ski_of_keys(keys), ski_of_keys(rounded)]
     rows = []
-    for number, asked in enumerate(evaluator.task.conditions):
-        found = [carve_at(ski, asked, evaluator.snows[number]) for ski in skis]
+    for number, question in enumerate(evaluator.task.conditions):
+        answers = [carve_at(ski, question, evaluator.snows[number]) for ski in skis]
         for output in OUTPUTS:
-            before, after, after_rounding = (None if point is None else point.output(output) for point in found)
+            before, after, after_rounding = (None if point is None else point.output(output) for point in answers)
             change = None if not before or after is None else 100.0 * (after / before - 1.0)
             snow = evaluator.snows[number]
-            half = None if found[1] is None or after is None else found[1].half_interval(output, snow)
+            half = None if answers[1] is None or after is None else answers[1].half_interval(output, snow)
             rows.append(DesignRow(number + 1, output, before, after, after_rounding, change, half))
     return tuple(rows)
 
@@ -214,7 +216,7 @@ def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tupl
 def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
     active = _active(search, z)
     reason = (
-        Message("Active are: {bounds}", bounds=" ".join(str(each) for each in active))
+        Message("Active are: {bounds}", bounds=" ".join(str(bound) for bound in active))
         if active
         else Message("No bound is active: the goals contradict each other, or the search ended at a local optimum.")
     )
@@ -256,21 +258,21 @@ def _active(search: Search, z: FloatArray) -> list[Message]:
 
 
 def _optima(search: Search, starts: tuple[Start, ...]) -> tuple[Optimum, ...]:
-    found: list[tuple[Start, int]] = []
-    for start in sorted((each for each in starts if each.end is not None), key=lambda each: each.result):
-        for n, (first, count) in enumerate(found):
+    optima: list[tuple[Start, int]] = []
+    for start in sorted((start for start in starts if start.end is not None), key=lambda each: each.result):
+        for n, (first, count) in enumerate(optima):
             near = abs(start.result - first.result) <= _SAME_RESULT * abs(first.result) + 1e-12
             if near and np.max(np.abs(np.subtract(start.end, first.end))) <= _SAME_DESIGN:  # type: ignore[arg-type]
-                found[n] = (first, count + 1)
+                optima[n] = (first, count + 1)
                 break
         else:
-            found.append((start, 1))
-    names = [each.name for each in search.evaluator.task.variables]
+            optima.append((start, 1))
+    names = [variable.name for variable in search.evaluator.task.variables]
     return tuple(
         Optimum(
             first.result,
             count / len(starts),
             dict(zip(names, search.evaluator.values(first.end).tolist(), strict=True)) if first.end is not None else {},
         )
-        for first, count in found
+        for first, count in optima
     )

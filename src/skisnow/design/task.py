@@ -102,10 +102,10 @@ def read_design(path: str | Path) -> DesignTask:
 
 def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) -> DesignTask:
     """Check a task of the form of DESIGN.toml."""
-    known = ("ski", "variables", "conditions", "goals", "constraints", "monotone", "starts", "seed")
+    keys = ("ski", "variables", "conditions", "goals", "constraints", "monotone", "starts", "seed")
     for name in values:
-        if name not in known:
-            _refuse(Message("there is no {name}. {allowed}", name=name, allowed=nearest(name, known)), "unknown_name")
+        if name not in keys:
+            _refuse(Message("there is no {name}. {allowed}", name=name, allowed=nearest(name, keys)), "unknown_name")
     for name in ("ski", "variables", "conditions", "goals"):
         if not values.get(name):
             _refuse(Message("{name} is missing. Add it, as on the page docs/files/ski.md.", name=name), "missing")
@@ -145,11 +145,11 @@ def _require_tables(values: Mapping[str, Any]) -> None:
     variables, monotone = values["variables"], values.get("monotone", [])
     if not isinstance(variables, dict):
         _refuse(Message("variables is {value}. Write it as a table: [variables].", value=variables), "wrong_kind")
-    if not isinstance(monotone, list) or not all(isinstance(each, str) for each in monotone):
+    if not isinstance(monotone, list) or not all(isinstance(name, str) for name in monotone):
         _refuse(Message('monotone is {value}. Write a list, such as ["EI_N_m2"].', value=monotone), "wrong_kind")
     for name in ("conditions", "goals", "constraints"):
         tables = values.get(name, [])
-        if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
             _refuse(Message("{name} is {value}. Write tables: [[{name}]].", name=name, value=tables), "wrong_kind")
 
 
@@ -170,10 +170,14 @@ def _whole(name: str, value: object, lowest: int) -> int:
 
 
 def _variable(ski: Ski, name: str, bounds: object) -> Variable:
-    known = (*(each.removeprefix("ski.") for each in shape_parameters(ski) if each.startswith("ski.")), *COMBINED)
-    if name not in known:
+    allowed = (
+        *(parameter.removeprefix("ski.") for parameter in shape_parameters(ski) if parameter.startswith("ski.")),
+        *COMBINED,
+    )
+    if name not in allowed:
         _refuse(
-            Message("variables: there is no {name}. {allowed}", name=name, allowed=nearest(name, known)), "unknown_name"
+            Message("variables: there is no {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
+            "unknown_name",
         )
     if (
         not isinstance(bounds, list | tuple)
@@ -197,15 +201,15 @@ def _is_number(value: object) -> bool:
 def _conditions(table: Mapping[str, Any], ski: str) -> list[CarveQuestion]:
     for name in table:
         if name not in CARVE_KEYS or name in _WITHOUT:
-            known = [key for key in CARVE_KEYS if key not in _WITHOUT]
+            allowed = [key for key in CARVE_KEYS if key not in _WITHOUT]
             _refuse(
-                Message("conditions: there is no {name}. {allowed}", name=name, allowed=nearest(name, known)),
+                Message("conditions: there is no {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
                 "unknown_name",
             )
     lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
     return [
-        carve_question({**table, "ski": ski, **dict(zip(lists, each, strict=True))})
-        for each in itertools.product(*lists.values())
+        carve_question({**table, "ski": ski, **dict(zip(lists, combination, strict=True))})
+        for combination in itertools.product(*lists.values())
     ]
 
 
@@ -220,10 +224,12 @@ def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
             name=goal.output,
             allowed=nearest(goal.output, OUTPUTS),
         )
-    if sum(each is not None for each in (goal.target, goal.at_most, goal.at_least)) != 1:
+    if sum(limit is not None for limit in (goal.target, goal.at_most, goal.at_least)) != 1:
         raise ParameterError("{place}: give one of target, at_most and at_least.", code="contradiction", place=place)
     chosen = goal.conditions or tuple(range(1, conditions + 1))
-    if any(not 1 <= each <= conditions or each != int(each) for each in chosen) or (goal.ratio and len(chosen) != 2):
+    if any(not 1 <= number <= conditions or number != int(number) for number in chosen) or (
+        goal.ratio and len(chosen) != 2
+    ):
         raise ParameterError(
             "{place}: conditions is {chosen}. Allowed: numbers from 1 to {count}, two of them for a ratio.",
             code="out_of_range",
@@ -240,7 +246,7 @@ def _constraint(table: Mapping[str, Any]) -> Constraint:
     sound = (
         isinstance(terms, dict)
         and terms
-        and all(isinstance(each, str) for each in terms)
+        and all(isinstance(term, str) for term in terms)
         and all(map(_is_number, terms.values()))
         and limits
     )

@@ -58,5 +58,5 @@ def designed_keys(keys: Mapping[str, Any], variables: Sequence[Variable], values
             out |= {key: out[key] + value for key in COMBINED[name]}
         elif name in COMBINED:
             key = COMBINED[name][0]
-            out[key] = [value * each for each in out[key]]
+            out[key] = [value * number for number in out[key]]
     return out

@@ -103,9 +103,9 @@ class SkiParts:
             return like.station
         own = self.layout
         before = np.array([like.station[-1], *like.sidecut_ends, *like.contact_points, 0.0, like.station[0]])
-        now = np.array([own.tail, *own.widest_points, *own.contact_points, 0.0, own.tip])
+        after = np.array([own.tail, *own.widest_points, *own.contact_points, 0.0, own.tip])
         _, first = np.unique(np.round(before, 9), return_index=True)
-        return np.asarray(like.station + np.interp(like.station, before[first], now[first] - before[first]))
+        return np.asarray(like.station + np.interp(like.station, before[first], after[first] - before[first]))
 
     def _grid(self) -> FloatArray:
         own_stations = np.empty(0) if self.stations is None else self.stations

@@ -218,8 +218,8 @@ def shape_value(ski: Ski, name: str) -> float:
     ParameterError
         The ski has no such parameter; the nearest is named.
     """
-    known = shape_parameters(ski)
-    if name not in known:
+    allowed = shape_parameters(ski)
+    if name not in allowed:
         if ski.keys is None and name.startswith("ski."):
             raise ParameterError(
                 "{name}: the ski {ski} was not read from a file of keys alone, or was changed since. Take one of "
@@ -230,7 +230,7 @@ def shape_value(ski: Ski, name: str) -> float:
                 allowed=list(FACTORS),
             )
         raise ParameterError(
-            "the ski has no parameter {name}. {allowed}", code="unknown_name", name=name, allowed=nearest(name, known)
+            "the ski has no parameter {name}. {allowed}", code="unknown_name", name=name, allowed=nearest(name, allowed)
         )
     return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
 

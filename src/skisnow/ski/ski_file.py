@@ -171,7 +171,7 @@ def write_keys(keys: Mapping[str, Any], path: Path, *, digits: int = 9) -> None:
 
     def text(value: Any) -> str:
         if isinstance(value, list | tuple):
-            return f"[{', '.join(text(each) for each in value)}]"
+            return f"[{', '.join(text(item) for item in value)}]"
         return toml_text(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
 
     write_file(path, "".join(f"{key} = {text(value)}\n" for key, value in keys.items()))
