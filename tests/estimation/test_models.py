@@ -280,9 +280,8 @@ def test_rows_that_repeat_each_other_are_equal_and_not_a_rounding_apart(make_cam
         if ids[test["full"]]["n_parameters"] == ids[test["reduced"]]["n_parameters"]:
             assert test["rmse_change_percent"] == 0.0
     assert results["selected"] is None
-    assert results["warnings"] == [
-        "No law of the penetration force is selected: that takes 4 series at 2 edge angles, and used are 6 at 1."
-    ]
+    (warning,) = results["warnings"]
+    assert warning.endswith("6 at 1.")
 
 
 @pytest.mark.parametrize(

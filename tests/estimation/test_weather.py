@@ -11,6 +11,7 @@ import pytest
 
 import skisnow
 from skisnow._support.errors import FieldDataError
+from skisnow.campaign import Problem
 from skisnow.cli.schema import json_schema
 from skisnow.interop.snowex import site_pit
 
@@ -77,25 +78,30 @@ def test_without_the_section_nothing_is_said(make_campaign: MakeCampaign) -> Non
     assert analysis.campaign.unread_files == ("s.smet",)
 
 
+def refused_cells(folder: Path) -> list[tuple[str | None, str | None]]:
+    """Column and value of each problem of a campaign that cannot be read."""
+    with pytest.raises(FieldDataError) as caught:
+        skisnow.read_campaign(folder)
+    return [(problem.column, problem.value) for problem in caught.value.problems if isinstance(problem, Problem)]
+
+
 @pytest.mark.parametrize(
-    ("section", "words"),
+    ("lines", "column", "value"),
     [
-        ('\n[weather]\nfile = "gone.smet"\n', r"weather\.file.*'gone\.smet'.*a file of this name"),
-        ('\n[weather]\nfile = "../s.smet"\n', r"weather\.file.*\.smet file in the campaign's folder"),
-        ('\n[weather]\nfile = "s.smet"\nutc_offset_h = 15\n', r"weather\.utc_offset_h.*from -14 to 14"),
-        ("\n[weather]\nlongest_gap = 2\n", r"weather\.longest_gap.*Did you mean longest_gap_h"),
+        ('file = "gone.smet"', "file", "gone.smet"),
+        ('file = "../s.smet"', "file", "../s.smet"),
+        ('file = "s.smet"\nutc_offset_h = 15', "utc_offset_h", "15"),
+        ("longest_gap = 2", "longest_gap", "longest_gap"),
     ],
 )
-def test_a_wrong_section_refuses_the_campaign(make_campaign: MakeCampaign, section: str, words: str) -> None:
-    with pytest.raises(FieldDataError, match=words):
-        skisnow.read_campaign(campaign(make_campaign, section))
+def test_a_wrong_section_refuses_the_campaign(make_campaign: MakeCampaign, lines: str, column: str, value: str) -> None:
+    assert (f"weather.{column}", value) in refused_cells(campaign(make_campaign, f"\n[weather]\n{lines}\n"))
 
 
 def test_a_damaged_file_refuses_the_campaign(make_campaign: MakeCampaign) -> None:
     folder = campaign(make_campaign)
     (folder / "s.smet").write_text(SMET.replace("0.7", "wet"))
-    with pytest.raises(FieldDataError, match=r"s\.smet, row 9, column RH.*'wet'"):
-        skisnow.read_campaign(folder)
+    assert refused_cells(folder) == [("RH", "wet")]
 
 
 @pytest.mark.usefixtures("undrawn")

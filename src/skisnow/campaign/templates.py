@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import OutputError
-from .._support.messages import Message
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import prepare_folder, staged, write_file
 from ..snow.published import moessner_2013
@@ -235,12 +234,12 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     folder = Path(folder)
     there = _there(folder)
     if CAMPAIGN_FILE in there or (there and xlsx):
-        message = Message(
+        raise OutputError(
             "{folder} holds a campaign already ({there}); nothing was written. Choose another folder.",
+            code="holds_campaign_already",
             folder=folder,
             there=list(there),
         )
-        raise OutputError(message, code="holds_campaign_already")
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
     contents = _workbook(name) if xlsx else _files(name, tables=not there)
     prepare_folder(folder)

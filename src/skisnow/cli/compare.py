@@ -43,6 +43,20 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="origin of equal times: the files' dates or seconds, or each track's first point; default: the "
         "clock, but the first points where only one file has a date",
     )
+    _add_placement(parser)
+    parser.add_argument("--from-above", action="store_true", help="leave the heights out")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="write compare.json and the figure (PNG, SVG, PDF, EPS); of gates their table, figure and report.html too",
+    )
+    add_language(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    parser.set_defaults(run=run, parser=parser)
+
+
+def _add_placement(parser: argparse.ArgumentParser) -> None:
     add_fall_line_azimuth(parser, "puts a track in latitude and longitude into a simulated run's frame")
     parser.add_argument(
         "--slope-angle-deg",
@@ -58,16 +72,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="how exactly the places of both are known, which no printed digit goes below; 0: print all. Default: as "
         "the receiver states, else by its kind",
     )
-    parser.add_argument("--from-above", action="store_true", help="leave the heights out")
-    parser.add_argument(
-        "--out",
-        type=Path,
-        metavar="DIR",
-        help="write compare.json and the figure (PNG, SVG, PDF, EPS); of gates their table, figure and report.html too",
-    )
-    add_language(parser)
-    parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
-    parser.set_defaults(run=run, parser=parser)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -17,6 +17,12 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         description="Write a model for one.",
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
+    _add_fmu(kinds)
+    _add_mjcf(kinds)
+    _add_chrono(kinds)
+
+
+def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
     fmu = kinds.add_parser(
         "fmu",
         help="a functional mock-up unit for co-simulation",
@@ -34,6 +40,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; default: 2")
     add_changes(fmu)
     fmu.set_defaults(run=_fmu, parser=fmu)
+
+
+def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
     mjcf = kinds.add_parser(
         "mjcf",
         help="a ski for MuJoCo",
@@ -45,6 +54,9 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--segments", type=whole_number(4, 400), default=20, metavar="N", help="segments of a ski; default: 20"
     )
     mjcf.set_defaults(run=_mjcf)
+
+
+def _add_chrono(kinds: argparse._SubParsersAction[Parser]) -> None:
     chrono = kinds.add_parser(
         "chrono",
         help="the snow of a scenario as a terrain of Chrono::Vehicle, untested",

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, ParameterError
-from .._support.messages import Message
 
 if TYPE_CHECKING:
     from ..campaign.importing import Answers, Proposal, Question
@@ -59,9 +58,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"Removed: {', '.join(undo_import(options.undo))}")
         return 0
     if options.file is None or options.out is None:
-        raise ParameterError(
-            Message("Name the file and the folder: skisnow import FILE --out DIR."), code="missing_option"
-        )
+        raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.", code="missing_option")
     asks = not options.yes and sys.stdin.isatty()
     proposal = _answered(options, _answers(options), asks=asks)
     if proposal.problems:

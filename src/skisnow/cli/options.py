@@ -10,7 +10,6 @@ import sys
 from typing import TYPE_CHECKING, Any, Final
 
 from .._support.language import ENGLISH, codes
-from .._support.messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -204,7 +203,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
         from .._support.errors import ParameterError
 
         raise ParameterError(
-            Message("--workers counts processes of this computer; a scheduler has its own. Leave one of them out"),
+            "--workers counts processes of this computer; a scheduler has its own. Leave one of them out",
             code="contradiction",
         )
     return checked_scheduler(scheduler)

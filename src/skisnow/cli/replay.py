@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from .._support.messages import Message
 from .options import add_fall_line_azimuth, add_language, number
 from .progress import announced
 
@@ -91,18 +90,19 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     azimuth = options.fall_line_azimuth_deg
     if track.axes == "east_north_up":
         if azimuth is None:
-            message = Message(
+            raise ParameterError(
                 "{track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
                 "direction the slope falls",
+                code="missing",
                 track=options.track,
             )
-            raise ParameterError(message, code="missing")
         angle = shown.tilt if shown.profile is None else None
         track = in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=angle, missing_height="on_slope")
     elif azimuth is not None:
         raise ParameterError(
-            Message("{track} is in the axes of the slope already: leave the direction out", track=options.track),
+            "{track} is in the axes of the slope already: leave the direction out",
             code="contradiction",
+            track=options.track,
         )
     return measured_track(track, starts_at=options.starts_at_s)
 

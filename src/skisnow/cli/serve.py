@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .options import add_scheduler, checked_scheduler, whole_number
 
 
@@ -55,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
 
     require_allowed(options.host, options.token)
     if options.certificate is None and options.certificate_key is not None:
-        raise ParameterError(Message("--certificate-key goes with --certificate"), code="contradiction")
+        raise ParameterError("--certificate-key goes with --certificate", code="contradiction")
     certificate = None if options.certificate is None else Certificate(options.certificate, options.certificate_key)
     scheduler = checked_scheduler(options.scheduler)
     place = store_place(options.store) if options.store is not None else default_path()

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .._support.errors import StoreError
-from .._support.messages import Message
 from .progress import Progress
 
 if TYPE_CHECKING:
@@ -53,7 +52,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--as-added", action="store_true", help="write the stored files only, without corrections made in the lab"
     )
     actions.add_parser("verify", parents=[every], help="check every file in the store; exit code 1 if any is damaged")
-    syncing = actions.add_parser(
+    _add_sync(actions.add_parser, every)
+    parser.set_defaults(run=run)
+
+
+def _add_sync(add_parser: Callable[..., argparse.ArgumentParser], every: argparse.ArgumentParser) -> None:
+    syncing = add_parser(
         "sync",
         parents=[every],
         help="bring this store and the group's what each lacks; exit code 1 if conflicts are open",
@@ -72,7 +76,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="settle the conflict with this id, or all: here, there or both; what is not kept stays in the history",
     )
     syncing.add_argument("--who", default="", metavar="NAME", help="whose choice it is")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -144,8 +147,9 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
 
     if args.as_added:
         raise StoreError(
-            Message("The campaign {id} consists of lab entries and has no stored files. Omit --as-added.", id=head.id),
+            "The campaign {id} consists of lab entries and has no stored files. Omit --as-added.",
             code="no_data",
+            id=head.id,
         )
     export_entered(store, head.id, args.out)
     return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
@@ -182,10 +186,11 @@ def _group_place(word: str) -> StorePlace:
 
     place = store_place(word)
     if isinstance(place, Path) and not place.parent.is_dir():
-        message = Message(
-            "{parent} is not there; is the disk or stick with the group's store plugged in?", parent=place.parent
+        raise StoreError(
+            "{parent} is not there; is the disk or stick with the group's store plugged in?",
+            code="wrong_kind",
+            parent=place.parent,
         )
-        raise StoreError(message, code="wrong_kind")
     return place
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .ending import ending_is_an_interrupt, report_interrupt
 from .options import add_language, add_scheduler, add_workers, scheduler_of
 from .progress import Progress
@@ -65,7 +64,7 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
         raise ParameterError(
-            Message("--figure draws maps of carved turns; for simulated runs leave it out and use the table"),
+            "--figure draws maps of carved turns; for simulated runs leave it out and use the table",
             code="not_supported",
         )
     executor = scheduler_of(options)
@@ -87,9 +86,7 @@ def _shard(options: argparse.Namespace, study: Study) -> int:
     from ..studies import Shard, run_shard
 
     if options.figure is not None:
-        raise ParameterError(
-            Message("--figure needs the whole table; draw it when the parts are put together"), code="missing"
-        )
+        raise ParameterError("--figure needs the whole table; draw it when the parts are put together", code="missing")
     shard = Shard.of(options.shard)
     executor = scheduler_of(options)
     try:

@@ -38,6 +38,16 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_changes(
         parser, "; the campaign's H_V and S_f count, a given unloading_ratio or shear_displacement_mm comes before it"
     )
+    _add_ensemble(parser)
+    parser.add_argument("--json", action="store_true", help="print turn.json alone to standard output")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="write report.html, turn.json and figures of the whole chain here"
+    )
+    add_language(parser)
+    parser.set_defaults(run=run)
+
+
+def _add_ensemble(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--unloading-ratio",
         type=number("", lowest=1.0, highest=1000.0, above=True),
@@ -58,12 +68,6 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("--seed", type=seed_number, help="seed of the ensemble, a whole number of 0 or more")
     add_workers(parser)
-    parser.add_argument("--json", action="store_true", help="print turn.json alone to standard output")
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="write report.html, turn.json and figures of the whole chain here"
-    )
-    add_language(parser)
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace) -> int:

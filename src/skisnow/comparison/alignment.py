@@ -16,7 +16,6 @@ from scipy.special import stdtrit
 
 from .._support.arrays import FloatArray
 from .._support.errors import FitError, ParameterError
-from .._support.messages import Message
 from .._support.units import CONFIDENCE, DEGREE
 from .distances import EXACTNESS, Polyline, polyline
 from .nearest_place import NearestPlaces, Path
@@ -107,8 +106,10 @@ def require_offsets(fit: Collection[str]) -> None:
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
         raise ParameterError(
-            Message("{value!r} cannot be fitted as an offset; {allowed} are", value=wrong[0], allowed=list(OFFSETS)),
+            "{value!r} cannot be fitted as an offset; {allowed} are",
             code="unknown_offset",
+            value=wrong[0],
+            allowed=list(OFFSETS),
         )
 
 
@@ -143,13 +144,13 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     solutions = [_iterate(path, places, motion, start=start, heading=heading) for motion in refined]
     answers = [motion for motion in solutions if math.isfinite(motion.rms)]
     if not answers:
-        message = Message(
+        raise FitError(
             "start and heading cannot be fitted: less than {share:g} % of the measured track then "
             "has the simulated one beside it, or the steps do not settle. Look at both tracks "
             "without a fit",
+            code="no_alignment",
             share=100 * LEAST_SHARE,
         )
-        raise FitError(message, code="no_alignment")
     answers = [motion for motion in answers if _same_direction(path, places, motion)] or answers
     best = answers[0]
     for motion in answers[1:]:

@@ -11,7 +11,6 @@ import numpy as np
 
 from .._support.display import amount
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import DEGREE
 from ..track.flags import inexact_sentence
 from ..track.slope_frame import STEEPEST, LaidTracks, lay_for_fit
@@ -101,23 +100,7 @@ def compare_tracks(
     ----------
     The page docs/methods/track-distances.md.
     """
-    require_offsets(fit)
-    if time_from not in (None, *get_args(TimeFrom)):
-        raise ParameterError(
-            Message("time is counted from first_point or clock, not from {time_from!r}", time_from=time_from),
-            code="unknown_time_origin",
-        )
-    if known_to is not None and not (math.isfinite(known_to) and known_to >= 0.0):
-        raise ParameterError(
-            Message("places are known to 0 m or more, not to {known_to!r}", known_to=known_to), code="out_of_range"
-        )
-    if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
-        message = Message(
-            "slope_angle is {slope_angle!r} rad. Allowed: from 0 to {steepest:.4g}.",
-            slope_angle=slope_angle,
-            steepest=STEEPEST,
-        )
-        raise ParameterError(message, code="out_of_range")
+    _require_options(fit, time_from, known_to, slope_angle)
     if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:
         simulated = simulated.at_origin(measured.origin)
     placed, together = set(fit) >= _PLACED, _share_frame(simulated, measured)
@@ -149,6 +132,29 @@ def compare_tracks(
         in_one_frame=together or placed,
         known_to=max(map(place_accuracy, (simulated, measured))) if known_to is None else known_to,
     )
+
+
+def _require_options(
+    fit: Collection[str], time_from: str | None, known_to: float | None, slope_angle: float | None
+) -> None:
+    require_offsets(fit)
+    if time_from not in (None, *get_args(TimeFrom)):
+        raise ParameterError(
+            "time is counted from first_point or clock, not from {time_from!r}",
+            code="unknown_time_origin",
+            time_from=time_from,
+        )
+    if known_to is not None and not (math.isfinite(known_to) and known_to >= 0.0):
+        raise ParameterError(
+            "places are known to 0 m or more, not to {known_to!r}", code="out_of_range", known_to=known_to
+        )
+    if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
+        raise ParameterError(
+            "slope_angle is {slope_angle!r} rad. Allowed: from 0 to {steepest:.4g}.",
+            code="out_of_range",
+            slope_angle=slope_angle,
+            steepest=STEEPEST,
+        )
 
 
 def _dimensions(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
@@ -226,7 +232,7 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
 def _fit_time(simulated: Polyline, plain: Comparison) -> float:
     reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
     if reason:
-        raise ParameterError(Message("{reason}; leave time out of the fit", reason=reason), code="no_times")
+        raise ParameterError("{reason}; leave time out of the fit", code="no_times", reason=reason)
     return fit_time(simulated, plain.measured)
 
 
@@ -234,15 +240,15 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
     places = measured.at_arc_length(np.linspace(0.0, measured.length, 1001))
     nearest = float(Path(simulated.place).nearest(places).distance.min())
     if nearest > FARTHEST:
-        message = Message(
+        raise ParameterError(
             "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
             "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading",
+            code="nothing_common",
             first=names[0],
             second=names[1],
             nearest=nearest / 1000.0,
             farthest=FARTHEST / 1000.0,
         )
-        raise ParameterError(message, code="nothing_common")
 
 
 def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:

@@ -11,7 +11,6 @@ import numpy.typing as npt
 from .._support.arrays import FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..track.track import Track
 from .nearest_place import NearestPlaces, Path
 
@@ -264,12 +263,12 @@ def track_polyline(track: Track, *, dimensions: int) -> Polyline:
     points = compared_points(track, dimensions=dimensions)
     line = polyline(track.place[points][:, :dimensions], track.time[points])
     if not line.length > 0.0:
-        message = Message(
+        raise ParameterError(
             "{name}: {usable} of its {count} points can be used, all in one place. A comparison needs "
             "two points in different places; give a longer track",
+            code="one_place",
             name=track.name,
             usable=int(points.sum()),
             count=len(track),
         )
-        raise ParameterError(message, code="one_place")
     return line

@@ -11,7 +11,6 @@ from scipy.spatial import cKDTree
 
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
 
 IntArray = npt.NDArray[np.intp]
 
@@ -135,8 +134,7 @@ class Path:
         places = points[np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])]
         if len(places) < 2:
             raise ParameterError(
-                Message("a path needs two points in different places; all of these are in one"),
-                code="one_place",
+                "a path needs two points in different places; all of these are in one", code="one_place"
             )
         self._start = places[:-1]
         self._along = np.diff(places, axis=0)

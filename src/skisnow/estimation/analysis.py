@@ -12,7 +12,6 @@ import numpy as np
 
 from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
@@ -49,6 +48,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ..geometry import GeometryForm
+    from .readings import ReadingUncertainty
 
 
 DEFAULT_RESAMPLES: Final = 2000
@@ -271,16 +271,17 @@ def analyse(
     * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
     """
     if n_resamples < FEWEST_RESAMPLES:
-        message = Message(
+        raise ParameterError(
             "n_resamples is {n_resamples!r}; a 95 % interval needs {fewest_resamples} or more",
+            code="out_of_range",
             n_resamples=n_resamples,
             fewest_resamples=FEWEST_RESAMPLES,
         )
-        raise ParameterError(message, code="out_of_range")
     if not 0.0 < difference < np.inf:
         raise ParameterError(
-            Message("difference is {difference!r}; a number above 0 is needed, 0.2 for 20 %", difference=difference),
+            "difference is {difference!r}; a number above 0 is needed, 0.2 for 20 %",
             code="out_of_range",
+            difference=difference,
         )
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     return _analysis(read, geometry, seed, n_resamples, difference, progress)
@@ -307,6 +308,11 @@ def _analysis(
     screened = (kind.screened if kind else None for kind in (penetration, shear))
     pairs = compare_campaign(campaign, *screened, difference=difference)
     of_sites = {name: [pair for pair in pairs if (pair.quantity, pair.by) == (name, "site")] for name in ("H_V", "S_f")}
+    means = (
+        *site_means(HARDNESS_KEY, *pressed, geometric=True, pairs=of_sites["H_V"]),
+        *site_means(STRESS_KEY, *sheared, geometric=False, pairs=of_sites["S_f"]),
+    )
+    density = own_mean(*observations["shear"].known(DENSITY_KEY), geometric=False)
     return Analysis(
         campaign=campaign,
         geometry=geometry,
@@ -315,17 +321,9 @@ def _analysis(
         penetration=penetration,
         shear=shear,
         regressions=regressions(observations),
-        site_means=(
-            *site_means(HARDNESS_KEY, *pressed, geometric=True, pairs=of_sites["H_V"]),
-            *site_means(STRESS_KEY, *sheared, geometric=False, pairs=of_sites["S_f"]),
-        ),
+        site_means=means,
         group_comparisons=pairs,
-        comparisons=compare_with_published(
-            own_hardness,
-            own_stress,
-            _angle_term(penetration),
-            own_mean(*observations["shear"].known(DENSITY_KEY), geometric=False),
-        ),
+        comparisons=compare_with_published(own_hardness, own_stress, _angle_term(penetration), density),
         own_hardness=own_hardness,
         own_stress=own_stress,
         observations=observations,
@@ -369,13 +367,24 @@ def _penetration(
     )
     if not screened.used.any():
         return of_series
+    return _with_models(of_series, uncertainty, rng, n_resamples, progress)
 
-    used = readings.of(screened.used)
+
+def _with_models(
+    of_series: PenetrationAnalysis,
+    uncertainty: ReadingUncertainty,
+    rng: np.random.Generator,
+    n_resamples: int,
+    progress: Callable[[str], None] | None,
+) -> PenetrationAnalysis:
+    """Add the results over all used readings: model tables, the selected model, the factor b."""
+    included, model, hardnesses = of_series.screened.used, of_series.model, of_series.hardness
+    used = of_series.readings.of(included)
     _report(progress, f"model table over {used.n} readings")
-    by_last = {symbol: H.value[screened.used] for symbol, H in hardnesses.items()}
+    by_last = {symbol: H.value[included] for symbol, H in hardnesses.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
-    depth_fits = fit_models_with_depth_errors(fitted.of(screened.used), uncertainty)
+    depth_fits = fit_models_with_depth_errors(of_series.fitted.of(included), uncertainty)
     no_choice = why_no_choice(used)
     selected = None if no_choice else select_model(fits)
     return replace(
@@ -384,7 +393,7 @@ def _penetration(
         nested=compare_nested_rows(fits),
         selected=selected,
         errors_in_depth=ModelTable(depth_fits, {}),  # no intervals: a bootstrap covers b in 7 to 90 % of campaigns
-        volume_factor=volume_factor(used, by_last["H_V"], model.of(screened.used)),
+        volume_factor=volume_factor(used, by_last["H_V"], model.of(included)),
         warnings=(*of_series.warnings, *filter(None, (no_choice,)), *fit_warnings(fits, selected, used.load)),
     )
 

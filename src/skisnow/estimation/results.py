@@ -135,25 +135,7 @@ def _penetration(analysis: Analysis) -> Json:
             "experiments": _fitted_hardness(tests.experiment, estimates),
         },
         "unloading": [_site_unloading(row) for row in estimates.site_unloading],
-        "growing_hardness": {
-            "experiments": column_rows(
-                {
-                    "experiment": list(tests.experiment),
-                    "H_0_N_per_mm3": finite_or_none(estimates.growing.surface_hardness / N_PER_MM3),
-                    "growth_percent": finite_or_none(100.0 * estimates.growing.growth),
-                    "growth_interval_percent": finite_or_none(100.0 * estimates.growing.growth_interval),
-                }
-            ),
-            "sites": [
-                {
-                    "site": row.site,
-                    "n": row.n,
-                    "growth_percent": 100.0 * row.value,
-                    "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
-                }
-                for row in estimates.site_growth
-            ],
-        },
+        "growing_hardness": _growing_hardness(tests.experiment, estimates),
     }
 
 
@@ -190,6 +172,26 @@ def _seating(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> l
             "H_V_change_percent": finite_or_none(100.0 * penetration.seating.hardness_change),
         }
     )
+
+
+def _growing_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> Json:
+    growing = penetration.growing
+    columns = {
+        "experiment": list(experiment),
+        "H_0_N_per_mm3": finite_or_none(growing.surface_hardness / N_PER_MM3),
+        "growth_percent": finite_or_none(100.0 * growing.growth),
+        "growth_interval_percent": finite_or_none(100.0 * growing.growth_interval),
+    }
+    sites = [
+        {
+            "site": row.site,
+            "n": row.n,
+            "growth_percent": 100.0 * row.value,
+            "growth_interval_percent": [100.0 * row.low, 100.0 * row.high],
+        }
+        for row in penetration.site_growth
+    ]
+    return {"experiments": column_rows(columns), "sites": sites}
 
 
 def _fitted_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .._support.errors import OutputError
-from .._support.messages import Message
 from .._support.staging import require_writable, staged, write_file
 from .._support.units import MM
 from ..campaign import write_reference
@@ -63,9 +62,7 @@ def write_samples(folder: str | Path, *, seed: int = 1) -> list[Path]:
     """
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()):
-        raise OutputError(
-            Message("{folder} is not empty. Give a new or an empty folder.", folder=folder), code="wrong_kind"
-        )
+        raise OutputError("{folder} is not empty. Give a new or an empty folder.", code="wrong_kind", folder=folder)
     require_writable(folder)
     with staged(folder, last=LAST) as stage:
         for name, content in _contents(np.random.default_rng(seed)):

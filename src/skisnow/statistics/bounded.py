@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .least_squares import as_predictors, as_response, warn_if_ill_conditioned
 
 if TYPE_CHECKING:
@@ -183,8 +182,7 @@ def _lengths(A: FloatArray) -> FloatArray:
 def _require_few(p: int) -> None:
     if not 1 <= p <= MOST_COEFFICIENTS:
         raise ParameterError(
-            Message("{p} coefficients; every set of bounds is tried, which is meant for 1 to 6 of them", p=p),
-            code="too_many",
+            "{p} coefficients; every set of bounds is tried, which is meant for 1 to 6 of them", code="too_many", p=p
         )
 
 
@@ -193,12 +191,12 @@ def _root_weights(weights: npt.ArrayLike | None, n: int) -> FloatArray:
         return np.ones(n)
     w = np.asarray(weights, dtype=float)
     if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
-        message = Message(
+        raise ParameterError(
             "weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response",
+            code="wrong_shape",
             shape=str(w.shape),
             n=n,
         )
-        raise ParameterError(message, code="wrong_shape")
     return np.sqrt(w)
 
 
@@ -276,12 +274,12 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     """
     G, m = np.asarray(gram, dtype=float), np.asarray(moment, dtype=float)
     if m.ndim != 2 or G.shape != (*m.shape, m.shape[1]):
-        message = Message(
+        raise ParameterError(
             "gram has shape {shape}, moment {shape_2}; (B, p, p) and (B, p) are needed",
+            code="wrong_shape",
             shape=str(G.shape),
             shape_2=str(m.shape),
         )
-        raise ParameterError(message, code="wrong_shape")
     _require_few(m.shape[1])
     finite = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))
     result = np.full(m.shape, np.nan)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence
 from .least_squares import (
     Factorisation,
@@ -106,12 +105,12 @@ def cluster_intervals(
     X = as_predictors(predictors, len(y))
     labels = np.asarray(clusters)
     if labels.shape != y.shape:
-        message = Message(
+        raise ParameterError(
             "clusters have shape {shape}; one of them is needed for each of {n_y} responses",
+            code="wrong_shape",
             shape=str(labels.shape),
             n_y=len(y),
         )
-        raise ParameterError(message, code="wrong_shape")
     names, cluster = np.unique(labels, return_inverse=True)
     columns = standardised(X, intercept=intercept)
     warn_if_ill_conditioned(columns.scaled)

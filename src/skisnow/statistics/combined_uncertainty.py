@@ -18,7 +18,6 @@ import numpy.typing as npt
 from scipy.special import ndtri, stdtrit
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.units import CONFIDENCE
 
 if TYPE_CHECKING:
@@ -100,11 +99,11 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
 def require_confidence(confidence: float) -> None:
     """Raise `ParameterError` unless the confidence lies between 0 and 1."""
     if not 0.0 < confidence < 1.0:
-        message = Message(
+        raise ParameterError(
             "confidence is {confidence!r}; it must lie between 0 and 1, 0.95 for a 95 % interval",
+            code="out_of_range",
             confidence=confidence,
         )
-        raise ParameterError(message, code="out_of_range")
 
 
 class RandomEffectsMean(NamedTuple):

@@ -9,7 +9,6 @@ import numpy as np
 from scipy.special import fdtrc
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .least_squares import require_finite
 
 if TYPE_CHECKING:
@@ -69,20 +68,20 @@ def nested_f_test(
     """
     df1, df2 = n_parameters_full - n_parameters_reduced, n - n_parameters_full
     if df1 < 0:
-        message = Message(
+        raise ParameterError(
             "the reduced model has {n_parameters_reduced} parameters, the full one "
             "{n_parameters_full}; the reduced model must be the smaller one: are the two swapped?",
+            code="contradiction",
             n_parameters_reduced=n_parameters_reduced,
             n_parameters_full=n_parameters_full,
         )
-        raise ParameterError(message, code="contradiction")
     if sse_full < 0 or sse_reduced < 0:
-        message = Message(
+        raise ParameterError(
             "sums of squares are {sse_full!r} and {sse_reduced!r}; they cannot be below 0",
+            code="out_of_range",
             sse_full=sse_full,
             sse_reduced=sse_reduced,
         )
-        raise ParameterError(message, code="out_of_range")
     if df1 == 0 or df2 <= 0:
         return NestedTest(float("nan"), df1, df2, float("nan"))
     F = f_ratio(max(sse_reduced - sse_full, 0.0), df1, sse_full, df2)
@@ -159,7 +158,7 @@ def one_way_anova(groups: Sequence[npt.ArrayLike]) -> Anova:
     """
     rows = [np.asarray(group, dtype=float) for group in groups]
     if not rows or any(row.ndim != 1 or row.size == 0 for row in rows):
-        raise ParameterError(Message("groups must be one or more rows of at least one number each"), code="wrong_shape")
+        raise ParameterError("groups must be one or more rows of at least one number each", code="wrong_shape")
     for number, row in enumerate(rows, start=1):
         require_finite(f"group {number}", row)
     overall = np.concatenate(rows).mean()

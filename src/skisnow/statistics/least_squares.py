@@ -77,8 +77,9 @@ def as_response(response: npt.ArrayLike) -> FloatArray:
     y = np.asarray(response, dtype=float)
     if y.ndim != 1 or y.size == 0:
         raise ParameterError(
-            Message("response has shape {shape}; it must be a row of at least one number", shape=str(y.shape)),
+            "response has shape {shape}; it must be a row of at least one number",
             code="wrong_shape",
+            shape=str(y.shape),
         )
     require_finite("response", y)
     return y
@@ -90,10 +91,12 @@ def as_predictors(predictors: npt.ArrayLike, n: int) -> FloatArray:
     if X.ndim == 1:
         X = X[:, None]
     if X.ndim != 2 or len(X) != n:
-        message = Message(
-            "predictors have shape {shape}; {n} rows are needed, one for each response", shape=str(X.shape), n=n
+        raise ParameterError(
+            "predictors have shape {shape}; {n} rows are needed, one for each response",
+            code="wrong_shape",
+            shape=str(X.shape),
+            n=n,
         )
-        raise ParameterError(message, code="wrong_shape")
     require_finite("predictors", X)
     return X
 
@@ -103,13 +106,13 @@ def require_finite(name: str, values: FloatArray) -> None:
     bad = ~np.isfinite(values)
     if np.any(bad):
         place = tuple(int(i) for i in np.argwhere(bad)[0])
-        message = Message(
+        raise ParameterError(
             "{name}{place} is {value}; only finite numbers can be fitted: leave such rows out",
+            code="not_a_number",
             name=name,
             place=place,
             value=values[place],
         )
-        raise ParameterError(message, code="not_a_number")
 
 
 def centre(values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -167,8 +170,7 @@ def factorise(columns: Columns) -> Factorisation:
     n, p = columns.scaled.shape
     if n < p:
         raise FitError(
-            Message("{n} observations cannot determine {p} coefficients; at least {p} are needed", n=n, p=p),
-            code="too_few_data",
+            "{n} observations cannot determine {p} coefficients; at least {p} are needed", code="too_few_data", n=n, p=p
         )
     Q, R, order = pivoted_qr(columns.scaled)
     rank = rank_of(R, n)

@@ -14,7 +14,6 @@ import numpy as np
 
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .combined_uncertainty import require_confidence
 from .f_tests import f_ratio, f_tail
 from .least_squares import (
@@ -201,12 +200,12 @@ def chebyshev_columns(x: FloatArray, degree: int) -> Columns:
     The scale is a power of two and middle has few binary digits, so that t keeps every digit of x.
     """
     if x.shape[1] != 1 or degree < 0:
-        message = Message(
+        raise ParameterError(
             "a polynomial needs one predictor (found {count}) and a degree ≥ 0 (found {degree})",
+            code="out_of_range",
             count=x.shape[1],
             degree=degree,
         )
-        raise ParameterError(message, code="out_of_range")
     low, high = float(x.min()), float(x.max())
     scale = 2.0 ** math.ceil(math.log2(high - low) - 1.0) if high > low else 1.0
     middle = round((0.5 * low + 0.5 * high) / scale * 16.0) / 16.0 * scale

@@ -141,14 +141,15 @@ def nonlinear_fit(
     n, p = len(observed), len(b)
     labels = tuple(names) if names is not None else tuple(f"b{j + 1}" for j in range(p))
     if len(labels) != p:
-        message = Message(
-            "{n_labels} names for {p} parameters; one is needed for each starting value", n_labels=len(labels), p=p
+        raise ParameterError(
+            "{n_labels} names for {p} parameters; one is needed for each starting value",
+            code="wrong_shape",
+            n_labels=len(labels),
+            p=p,
         )
-        raise ParameterError(message, code="wrong_shape")
     if n < p:
         raise FitError(
-            Message("{n} observations cannot determine {p} parameters; at least {p} are needed", n=n, p=p),
-            code="too_few_data",
+            "{n} observations cannot determine {p} parameters; at least {p} are needed", code="too_few_data", n=n, p=p
         )
     scale = np.where(b != 0, np.abs(b), 1.0)
 
@@ -156,12 +157,12 @@ def nonlinear_fit(
         with np.errstate(all="ignore"):  # trial steps may leave the model's domain; they are judged by their residuals
             fitted = np.asarray(model(x, *parameters), dtype=float)
         if fitted.shape != (n,):
-            message = Message(
+            raise ParameterError(
                 "the model returned shape {shape}; one value is needed for each of {n} responses",
+                code="wrong_shape",
                 shape=str(fitted.shape),
                 n=n,
             )
-            raise ParameterError(message, code="wrong_shape")
         return fitted
 
     require_finite("model at the start", values(b))
@@ -195,12 +196,11 @@ def _searched(values: Values, observed: FloatArray, start: FloatArray, scale: Fl
             )
         except (ValueError, np.linalg.LinAlgError) as error:
             raise FitError(
-                Message("the search broke off: {error}; start nearer to the solution", error=error),
-                code="not_converged",
+                "the search broke off: {error}; start nearer to the solution", code="not_converged", error=error
             ) from error
     if result.status <= 0 or not np.all(np.isfinite(result.x)):
         raise FitError(
-            Message("the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter"),
+            "the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter",
             code="not_converged",
         )
     return np.asarray(result.x, dtype=float)
@@ -226,8 +226,7 @@ def _polished(
         design, residual = _factorised(slopes, names), observed - values(b)
     if not least <= _SETTLED:
         raise FitError(
-            Message("the last steps of the fit did not shrink; the data hardly determine the parameters"),
-            code="not_converged",
+            "the last steps of the fit did not shrink; the data hardly determine the parameters", code="not_converged"
         )
     return b, design, _known(slopes, design, residual, values(b), np.abs(b) + error + _SETTLED * scale, least)
 
@@ -258,7 +257,7 @@ def _known(
 def _factorised(slopes: Jacobian, names: tuple[str, ...]) -> Factorisation:
     if not (np.all(np.isfinite(slopes.values)) and np.all(np.isfinite(slopes.error))):
         raise FitError(
-            Message("the model has no finite derivatives at the solution; it may lie on the border of its domain"),
+            "the model has no finite derivatives at the solution; it may lie on the border of its domain",
             code="not_a_number",
         )
     length = np.linalg.norm(slopes.values, axis=0)

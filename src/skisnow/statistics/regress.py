@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .._support.errors import FitError, FitWarning, ParameterError
-from .._support.messages import Message
 from .combined_uncertainty import expanded_factor, require_confidence
 from .f_tests import f_ratio, f_tail
 from .least_squares import (
@@ -108,7 +107,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     response, design = _checked(y, X)
     whole = ~(np.isnan(response) | np.any(np.isnan(design), axis=1))
     if not np.any(whole):
-        raise FitError(Message("no row of y and X is without NaN; there is nothing to fit"), code="no_data")
+        raise FitError("no row of y and X is without NaN; there is nothing to fit", code="no_data")
     fit = _factorised(design[whole])
     b, residuals = fit.solve(response[whole])
     _warn_without_constant(fit)
@@ -130,12 +129,12 @@ def _checked(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray
     if design.ndim == 1:
         design = design[:, None]
     if response.ndim != 1 or design.ndim != 2 or len(response) != len(design) or design.shape[1] == 0:
-        message = Message(
+        raise ParameterError(
             "y has shape {shape}, X {shape_2}; X needs one row for each value of y",
+            code="wrong_shape",
             shape=str(response.shape),
             shape_2=str(design.shape),
         )
-        raise ParameterError(message, code="wrong_shape")
     for name, values in (("y", response), ("X", design)):
         require_finite(name, np.where(np.isnan(values), 0.0, values))
     return response, design
@@ -154,16 +153,14 @@ def _factorised(design: FloatArray) -> Factorisation:
         columns = standardised(design, intercept=False)
     used = independent_columns(columns.scaled)
     if not used:
-        raise FitError(Message("X is zero throughout; it determines no coefficient"), code="no_data")
+        raise FitError("X is zero throughout; it determines no coefficient", code="no_data")
     if len(used) < design.shape[1]:
         warnings.warn(
             FitWarning(
-                Message(
-                    "X has {count} columns but rank {rank}: coefficients that are not determined are set to 0",
-                    count=design.shape[1],
-                    rank=len(used),
-                ),
+                "X has {count} columns but rank {rank}: coefficients that are not determined are set to 0",
                 code="rank_deficient",
+                count=design.shape[1],
+                rank=len(used),
             ),
             stacklevel=3,
         )
@@ -178,11 +175,9 @@ def _warn_without_constant(fit: Factorisation) -> None:
     if np.abs(missed).sum() > len(ones) * np.sqrt(np.finfo(float).eps):
         warnings.warn(
             FitWarning(
-                Message(
-                    "no combination of the columns of X is constant: R², F and p in stats are not those of a "
-                    "regression; add a column of ones, or compare models without an intercept by "
-                    "nested_f_test"
-                ),
+                "no combination of the columns of X is constant: R², F and p in stats are not those of a "
+                "regression; add a column of ones, or compare models without an intercept by "
+                "nested_f_test",
                 code="no_constant_column",
             ),
             stacklevel=3,

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .combined_uncertainty import require_confidence
 
 if TYPE_CHECKING:
@@ -56,13 +55,13 @@ def resampling_counts(
     ((3, 5), [5.0, 5.0, 5.0])
     """
     if n_units < 1 or n_resamples < 0 or (chunk is not None and chunk < 1):
-        message = Message(
+        raise ParameterError(
             "n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed",
+            code="out_of_range",
             n_units=n_units,
             n_resamples=n_resamples,
             chunk=chunk,
         )
-        raise ParameterError(message, code="out_of_range")
     return _drawn(n_units, n_resamples, rng, chunk or max(1, _DRAWS_AT_ONCE // n_units))
 
 
@@ -106,7 +105,7 @@ def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> 
     require_confidence(confidence)
     values = np.asarray(samples, dtype=float)
     if values.ndim == 0:
-        raise ParameterError(Message("samples must have at least one axis, that of the resamples"), code="wrong_shape")
+        raise ParameterError("samples must have at least one axis, that of the resamples", code="wrong_shape")
     if len(values) == 0:
         return np.full((*values.shape[1:], 2), np.nan)
     tail = 0.5 * (1.0 - confidence)

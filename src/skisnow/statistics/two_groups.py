@@ -9,7 +9,6 @@ import numpy as np
 from scipy.special import nctdtr, ndtr, ndtri, stdtrit
 
 from .._support.errors import FitError, ParameterError
-from .._support.messages import Message
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -114,28 +113,30 @@ def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, al
     64
     """
     if not (sd_log > 0 and math.isfinite(sd_log) and ratio > 0 and math.isfinite(ratio) and ratio != 1):
-        message = Message(
+        raise ParameterError(
             "sd_log is {sd_log!r}, ratio {ratio!r}; a scatter above 0 and a ratio above 0 other than 1 are needed",
+            code="out_of_range",
             sd_log=sd_log,
             ratio=ratio,
         )
-        raise ParameterError(message, code="out_of_range")
     if not 0 < alpha < power < 1:
         raise ParameterError(
-            Message("alpha is {alpha!r}, power {power!r}; 0 < alpha < power < 1 is needed", alpha=alpha, power=power),
+            "alpha is {alpha!r}, power {power!r}; 0 < alpha < power < 1 is needed",
             code="out_of_range",
+            alpha=alpha,
+            power=power,
         )
     effect = abs(math.log(ratio)) / sd_log
     low, high = 1, 2
     while _power(high, effect, alpha) < power:
         low, high = high, 2 * high
         if low > _MOST_TESTS:
-            message = Message(
+            raise FitError(
                 "more than {most_tests} tests per group would be needed for a ratio of {ratio} at this scatter",
+                code="too_many",
                 most_tests=_MOST_TESTS,
                 ratio=ratio,
             )
-            raise FitError(message, code="too_many")
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if _power(middle, effect, alpha) >= power else (middle, high)

@@ -89,8 +89,7 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
         return text, "yes"
     if not equals and kind not in {"tool", "plate"}:
         raise ParameterError(
-            Message("--{option} {text}: write a name, an equals sign and a value.", option=kind, text=text),
-            code="no_pair",
+            "--{option} {text}: write a name, an equals sign and a value.", code="no_pair", option=kind, text=text
         )
     return key.strip(), value.strip()
 
@@ -126,8 +125,9 @@ def _template(values: Mapping[str, Any], name: str) -> Answers:
     )
     if not answers or not texts:
         raise ParameterError(
-            Message("{file} has no [import] with texts. Choose a campaign that skisnow import wrote.", file=name),
+            "{file} has no [import] with texts. Choose a campaign that skisnow import wrote.",
             code="no_template",
+            file=name,
         )
     return Answers(**answers)
 

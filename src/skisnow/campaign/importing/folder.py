@@ -87,8 +87,7 @@ def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
     folder = Path(folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise OutputError(
-            Message("{folder} is not an empty folder; nothing was written. Choose another one.", folder=folder),
-            code="not_empty",
+            "{folder} is not an empty folder; nothing was written. Choose another one.", code="not_empty", folder=folder
         )
     prepare_folder(folder)
     with staged(folder, last=CAMPAIGN_FILE) as stage:
@@ -113,14 +112,14 @@ def undo_import(folder: str | Path) -> list[str]:
         changed = [path for path, digest in hashes.items() if _sha256(folder / path) != digest]
     except (OSError, ValueError) as failure:
         raise OutputError(
-            Message("{folder} has no {record}; nothing was removed.", folder=folder, record=RECORD), code="no_import"
+            "{folder} has no {record}; nothing was removed.", code="no_import", folder=folder, record=RECORD
         ) from failure
     if changed:
-        message = Message(
+        raise OutputError(
             "Changed since the import: {files}. Nothing was removed. Keep these files, and delete the folder.",
+            code="changed_since",
             files=changed,
         )
-        raise OutputError(message, code="changed_since")
     removed = [*hashes, RECORD]
     for path in removed:
         (folder / path).unlink(missing_ok=True)

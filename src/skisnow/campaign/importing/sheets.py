@@ -9,7 +9,6 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
 from ..._support.user_files import workbook_sheets
 from ..._support.user_files.workbook import merged_ranges
@@ -119,8 +118,11 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
         ]
     except UnreadableTextError as failure:
         raise ParameterError(
-            Message("{file}: allowed: {allowed}. {action}", file=name, allowed=failure.allowed, action=failure.action),
+            "{file}: allowed: {allowed}. {action}",
             code="unreadable_file",
+            file=name,
+            allowed=failure.allowed,
+            action=failure.action,
         ) from failure
     return max(candidates, key=lambda candidate: max(map(count, candidate[0]), default=0))
 

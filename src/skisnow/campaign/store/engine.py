@@ -194,8 +194,7 @@ def _require_tables(engine: Engine, path: Path) -> None:
             if place_reason(error) is not None:
                 raise
             raise StoreError(
-                Message("{path} is damaged: {error}. Put a backup in its place.", path=path, error=error),
-                code="damaged",
+                "{path} is damaged: {error}. Put a backup in its place.", code="damaged", path=path, error=error
             ) from error
 
 
@@ -248,14 +247,16 @@ def _revision(connection: Connection, path: Path) -> str | None:
         return None
     if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
         raise StoreError(
-            Message("{path} is an SQLite database of another program, not a store; name another file.", path=path),
+            "{path} is an SQLite database of another program, not a store; name another file.",
             code="other_database",
+            path=path,
         )
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1 or not isinstance(versions[0], str):
         raise StoreError(
-            Message("{path} is damaged: it does not say what version it is. Put a backup in its place.", path=path),
+            "{path} is damaged: it does not say what version it is. Put a backup in its place.",
             code="damaged",
+            path=path,
         )
     return versions[0]
 
@@ -278,11 +279,11 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
                 return  # another process was faster
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
-                message = Message(
+                raise StoreError(
                     "{path} holds rows that point nowhere; it was left as it is. Put a backup in its place.",
+                    code="damaged",
                     path=path,
                 )
-                raise StoreError(message, code="damaged")
 
 
 def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:

@@ -7,7 +7,6 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..._support.errors import StoreError
-from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
@@ -123,14 +122,14 @@ def _records(data: bytes) -> list[list[str]]:
     try:
         return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:
-        message = Message(
+        raise StoreError(
             "The {file} that came with the campaign cannot be read, so that no rows can follow: "
             "{allowed} is wanted. `skisnow store export --as-added` gives the files without later "
             "corrections.",
+            code="unreadable_corrections",
             file=CORRECTIONS.file,
             allowed=error.allowed,
-        )
-        raise StoreError(message, code="unreadable_corrections") from error
+        ) from error
 
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:

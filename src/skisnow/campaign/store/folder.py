@@ -99,13 +99,13 @@ def list_files(folder: Path) -> dict[str, FileState]:
             else:
                 refused.append(path)
     if refused:
-        message = Message(
+        raise StoreError(
             "{folder} holds what is neither file nor folder (links, pipes, …): {paths}; put the "
             "files themselves in their place, or take them out.",
+            code="not_a_file",
             folder=folder,
             paths=list(map(_printable, refused)),
         )
-        raise StoreError(message, code="not_a_file")
     return files
 
 
@@ -167,12 +167,12 @@ def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
 
 def _require_safe(path: str, *, for_windows: bool) -> None:
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
-        message = Message(
+        raise StoreError(
             "The file {path} cannot be imported or exported: {why}; rename it.",
+            code="unsafe_name",
             path=_printable(path),
             why=why,
         )
-        raise StoreError(message, code="unsafe_name")
 
 
 def _printable(path: str) -> str:
@@ -193,8 +193,9 @@ def new_folder(out: Path) -> Iterator[Path]:
     out = out.resolve()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise StoreError(
-            Message("{out} is there already and not an empty folder; name a folder that does not exist yet.", out=out),
+            "{out} is there already and not an empty folder; name a folder that does not exist yet.",
             code="not_empty",
+            out=out,
         )
     out.parent.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(dir=out.parent, prefix=f".{out.name[:40]}-") as hidden:
@@ -229,17 +230,18 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
             stream.flush()
             os.fsync(stream.fileno())
     except FileExistsError as error:
-        message = Message(
+        raise StoreError(
             "{path} and another file of the campaign have the same name on this file system; export "
             "to one that tells upper from lower case.",
+            code="same_name",
+            path=file.path,
+        ) from error
+    if digest.hexdigest() != file.sha256:
+        raise StoreError(
+            "{path} is damaged in the store and was not written; `skisnow store verify` lists all.",
+            code="damaged",
             path=file.path,
         )
-        raise StoreError(message, code="same_name") from error
-    if digest.hexdigest() != file.sha256:
-        message = Message(
-            "{path} is damaged in the store and was not written; `skisnow store verify` lists all.", path=file.path
-        )
-        raise StoreError(message, code="damaged")
 
 
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
@@ -252,10 +254,11 @@ def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     """
     data = b"".join(pieces)
     if hashlib.sha256(data).hexdigest() != file.sha256:
-        message = Message(
-            "{path} is damaged in the store and was not read; `skisnow store verify` lists all.", path=file.path
+        raise StoreError(
+            "{path} is damaged in the store and was not read; `skisnow store verify` lists all.",
+            code="damaged",
+            path=file.path,
         )
-        raise StoreError(message, code="damaged")
     return data
 
 

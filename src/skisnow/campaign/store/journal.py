@@ -202,16 +202,18 @@ def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, l
 def _require(connection: Connection, id_: str) -> None:
     if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
         raise StoreError(
-            Message("The store has no campaign in entry with the id {id!r}; the list of campaigns names all.", id=id_),
+            "The store has no campaign in entry with the id {id!r}; the list of campaigns names all.",
             code="unknown_id",
+            id=id_,
         )
 
 
 def _require_stored(connection: Connection, id_: str) -> None:
     if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
         raise StoreError(
-            Message("The store keeps no campaign with the id {id!r}; the list of campaigns names all.", id=id_),
+            "The store keeps no campaign with the id {id!r}; the list of campaigns names all.",
             code="unknown_id",
+            id=id_,
         )
 
 
@@ -245,14 +247,14 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
     row = connection.execute(query.order_by(journal_entry.c.sequence.desc())).mappings().first()
     if row is not None:
         subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
-        message = Message(
+        raise OvertakenError(
             "Nothing was stored: {who} wrote about {subject} meanwhile ({at}). Look at it as it is "
             "now, then enter again what is still missing.",
+            code="overtaken",
             who=row["who"] or Message("somebody"),
             subject=subject,
             at=row["at"],
         )
-        raise OvertakenError(message, code="overtaken")
 
 
 def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
@@ -260,10 +262,12 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
         return
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)
     if connection.execute(query).first() is None:
-        message = Message(
-            "{test} has no entry {about} that could be corrected or undone.", test=entry.test, about=entry.about
+        raise StoreError(
+            "{test} has no entry {about} that could be corrected or undone.",
+            code="no_entry",
+            test=entry.test,
+            about=entry.about,
         )
-        raise StoreError(message, code="no_entry")
 
 
 def entered_name(connection: Connection, journal_id: str) -> str:

@@ -102,14 +102,14 @@ def required_digits(beginning: str) -> str:
     """
     digits = beginning.strip().lower()
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
-        message = Message(
+        raise StoreError(
             "{digits!r} is not the id of a campaign: give its {most} hexadecimal digits or the first "
             "{fewest} or more of them.",
+            code="not_an_id",
             digits=digits,
             most=ID_DIGITS,
             fewest=_SHORTEST_PREFIX,
         )
-        raise StoreError(message, code="not_an_id")
     return digits
 
 
@@ -122,18 +122,18 @@ def campaign_ids(connection: Connection) -> list[NamedId]:
 def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
     """Error for an unknown or ambiguous beginning of an id, with candidates."""
     if matching:
-        message = Message(
+        return StoreError(
             "Several campaigns begin with {beginning}: {candidates}; give more digits.",
+            code="ambiguous_id",
             beginning=beginning,
             candidates=_candidates(matching),
         )
-        return StoreError(message, code="ambiguous_id")
-    message = Message(
+    return StoreError(
         "No campaign begins with {beginning}; the store holds {candidates}.",
+        code="unknown_id",
         beginning=beginning,
         candidates=_candidates(stored),
     )
-    return StoreError(message, code="unknown_id")
 
 
 def _candidates(campaigns: Sequence[NamedId]) -> Message:
@@ -152,11 +152,11 @@ def stored_hashes(connection: Connection) -> set[str]:
 
 def damage_error(what: str) -> StoreError:
     """Error for damaged rows."""
-    message = Message(
+    return StoreError(
         "{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place.",
+        code="damaged",
         what=what,
     )
-    return StoreError(message, code="damaged")
 
 
 def require_whole(stored: StoredCampaign) -> None:
@@ -286,8 +286,9 @@ def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
     """
     if connection.execute(select(journal_entry.c.sequence).where(journal_entry.c.journal_id == stored.id)).first():
         raise StoreError(
-            Message("The campaign {id} has corrections and was not removed. Export it instead.", id=stored.id),
+            "The campaign {id} has corrections and was not removed. Export it instead.",
             code="has_corrections",
+            id=stored.id,
         )
     connection.execute(delete(campaign_file).where(campaign_file.c.campaign_id == stored.id))
     connection.execute(delete(campaign).where(campaign.c.id == stored.id))
@@ -310,12 +311,12 @@ def _store_chunks(connection: Connection, sha256: str, pieces: Iterable[bytes]) 
 def refuse_changed(paths: Sequence[str]) -> None:
     """Raise an error if files changed while they were read."""
     if paths:
-        message = Message(
+        raise StoreError(
             "Changed while being read: {paths}; nothing was stored. Close the program that writes "
             "there and add the folder again.",
+            code="changed_meanwhile",
             paths=list(paths),
         )
-        raise StoreError(message, code="changed_meanwhile")
 
 
 def store_campaign(
@@ -337,8 +338,9 @@ def store_campaign(
         return False
     if present is not None:
         raise StoreError(
-            Message("Another campaign in the store has the id {id} by chance; keep this one in another store.", id=id_),
+            "Another campaign in the store has the id {id} by chance; keep this one in another store.",
             code="same_id",
+            id=id_,
         )
     connection.execute(
         insert(campaign).values(

@@ -110,10 +110,11 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
             _require_unicode(connection, address)
             revision = _revision(connection, address)
         if revision is None and not create:
-            message = Message(
-                "There is no store at {address}; add a campaign first, or name another place.", address=address
+            raise StoreError(
+                "There is no store at {address}; add a campaign first, or name another place.",
+                code="no_store",
+                address=address,
             )
-            raise StoreError(message, code="no_store")
         if needs_migration(revision, address):
             _bring_up_to_date(engine, address)
     except BaseException:
@@ -149,11 +150,11 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
     try:
         engine = create_engine(address.url, connect_args=defaults, pool_pre_ping=True, hide_parameters=True)
     except ModuleNotFoundError as missing:
-        message = Message(
+        raise StoreError(
             "A store on a server needs {name}; install it with: pip install 'skisnow[postgresql]'",
+            code="not_installed",
             name=missing.name,
-        )
-        raise StoreError(message, code="not_installed") from None
+        ) from None
 
     def set_up(connection: Any, _: object) -> None:
         connection.autocommit = True  # what is set inside a transaction ends with it
@@ -176,13 +177,13 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
 def _require_unicode(connection: Connection, address: ServerAddress) -> None:
     encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
     if encoding != "UTF8":
-        message = Message(
+        raise StoreError(
             "The database {address} holds texts as {encoding}, which has not every letter; make one "
             "with: createdb --encoding=UTF8 --template=template0 NAME",
+            code="wrong_encoding",
             address=address,
             encoding=encoding,
         )
-        raise StoreError(message, code="wrong_encoding")
 
 
 def _revision(connection: Connection, address: ServerAddress) -> str | None:
@@ -195,17 +196,18 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
     if not tables.keys() - {"alembic_version"}:
         return None
     if tables.get("campaign") != MARK or "alembic_version" not in tables:
-        message = Message(
+        raise StoreError(
             "{address} holds tables of another program, not a store; create a separate database for the store.",
+            code="other_database",
             address=address,
         )
-        raise StoreError(message, code="other_database")
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1:
-        message = Message(
-            "{address} is damaged: it does not say what version it is. Put a backup in its place.", address=address
+        raise StoreError(
+            "{address} is damaged: it does not say what version it is. Put a backup in its place.",
+            code="damaged",
+            address=address,
         )
-        raise StoreError(message, code="damaged")
     return str(versions[0])
 
 
@@ -222,14 +224,14 @@ def needs_migration(revision: str | None, place: object) -> bool:
     from .migrations import is_known
 
     if revision is not None and not is_known(revision):
-        message = Message(
+        raise StoreError(
             "{place} has schema {revision}, which this version of skisnow does not know; it reads "
             "{known}. Update skisnow, or name another store.",
+            code="unknown_schema",
             place=place,
             revision=revision,
             known=REVISION,
         )
-        raise StoreError(message, code="unknown_schema")
     return True
 
 
@@ -280,16 +282,14 @@ def store_place(place: Path | str | ServerAddress) -> StorePlace:
     if isinstance(place, Path):
         if re.match(r"postgres(ql)?:/", str(place), re.IGNORECASE):
             raise StoreError(
-                Message("The address of a server is a text, not a path: give it as {form!r}.", form=_FORM),
-                code="not_an_address",
+                "The address of a server is a text, not a path: give it as {form!r}.", code="not_an_address", form=_FORM
             )
         return place.absolute()
     if _SERVER.match(place):
         return ServerAddress(_server_url(place))
     if _SCHEME.match(place):
         raise StoreError(
-            Message("A store is a file or {form}; another kind of address was given.", form=_FORM),
-            code="not_an_address",
+            "A store is a file or {form}; another kind of address was given.", code="not_an_address", form=_FORM
         )
     return Path(place).absolute()
 
@@ -298,17 +298,16 @@ def _server_url(text: str) -> URL:
     try:
         url = make_url(text).set(drivername="postgresql+psycopg")
     except (ArgumentError, ValueError):  # their messages contain the address
-        message = Message(
+        raise StoreError(
             "The address of the server cannot be read; it has the form {form}, and any other character than "
             "A–Z, 0–9, - . _ ~ in a user's name or a password is written as % and two hexadecimal "
             "digits.",
+            code="not_an_address",
             form=_FORM,
-        )
-        raise StoreError(message, code="not_an_address") from None
+        ) from None
     if not url.database:
         raise StoreError(
-            Message("The address of the server names no database; it has the form {form}.", form=_FORM),
-            code="no_database",
+            "The address of the server names no database; it has the form {form}.", code="no_database", form=_FORM
         )
     return url
 

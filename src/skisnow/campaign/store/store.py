@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Self
 
 from ..._support.display import Facts, Shown
 from ..._support.errors import StoreError
-from ..._support.messages import Message
 from .engine import database_errors, file_errors, open_engine, reading, writing
 from .folder import (
     FileState,
@@ -135,15 +134,14 @@ class Store(Shown):
             return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
         with file_errors(place, "cannot be used as a store"):
             if place.is_dir():
-                raise StoreError(
-                    Message("{place} is a folder, not a store; name a file.", place=place), code="not_a_file"
-                )
+                raise StoreError("{place} is a folder, not a store; name a file.", code="not_a_file", place=place)
             if not place.exists():
                 if not create:
-                    message = Message(
-                        "There is no store at {place}; add a campaign first, or name another file.", place=place
+                    raise StoreError(
+                        "There is no store at {place}; add a campaign first, or name another file.",
+                        code="no_store",
+                        place=place,
                     )
-                    raise StoreError(message, code="no_store")
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
 
@@ -206,19 +204,23 @@ class Store(Shown):
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
             raise StoreError(
-                Message("{folder} is not a folder; name the folder that holds the campaign's files.", folder=folder),
+                "{folder} is not a folder; name the folder that holds the campaign's files.",
                 code="no_folder",
+                folder=folder,
             )
         if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
-            message = Message(
-                "The store {path} is in {folder} itself; keep it somewhere else.", path=self.path, folder=folder
+            raise StoreError(
+                "The store {path} is in {folder} itself; keep it somewhere else.",
+                code="inside_folder",
+                path=self.path,
+                folder=folder,
             )
-            raise StoreError(message, code="inside_folder")
         files = list_files(folder)
         if not files:
             raise StoreError(
-                Message("{folder} holds no file; name the folder that holds the campaign's files.", folder=folder),
+                "{folder} holds no file; name the folder that holds the campaign's files.",
                 code="no_files",
+                folder=folder,
             )
         return files
 

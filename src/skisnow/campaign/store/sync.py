@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final
 from sqlalchemy import Connection, select
 
 from ..._support.errors import StoreError
-from ..._support.messages import Message
 from .conflict import Conflict, entries_by_uid, entry_index, find_divergences, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
@@ -95,8 +94,7 @@ def sync(
     """
     if here.path == there.path:
         raise StoreError(
-            Message("{path} cannot be synchronised with itself; name the group's store.", path=here.path),
-            code="same_store",
+            "{path} cannot be synchronised with itself; name the group's store.", code="same_store", path=here.path
         )
     return _Sync(here, there).run(keep or {}, who, progress)
 
@@ -165,12 +163,12 @@ class _Sync:
         with reading(self._there.engine) as there, writing(self._here.engine) as here:
             open_ = {divergence.id: divergence for divergence in self._open(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
-                message = Message(
+                raise StoreError(
                     "No open conflict is called {names}: one of its sides may have changed. Nothing was "
                     "settled; synchronise without a choice to see what is open.",
+                    code="unknown_conflict",
                     names=list(unknown),
                 )
-                raise StoreError(message, code="unknown_conflict")
             sides = {id_: chosen.get(id_, chosen.get(ALL)) for id_ in open_}
             choices = [(open_[id_], side) for id_, side in sides.items() if side is not None]
             for divergence, side in choices:

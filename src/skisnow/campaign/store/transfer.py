@@ -98,13 +98,13 @@ def settle(here: Connection, there: Connection, divergence: Divergence, side: Si
         Both cannot be kept.
     """
     if side not in divergence.choices:
-        message = Message(
+        raise StoreError(
             "The conflict {id} cannot be settled by keeping {side}: {choices}.",
+            code="unknown_side",
             id=divergence.id,
             side=side,
             choices=list(divergence.choices),
         )
-        raise StoreError(message, code="unknown_side")
     numbers = take_entries(there, here, divergence.journal_id, [entry.uid for entry in divergence.there])
     if divergence.subject[0] == DESCRIPTION:
         _write_chosen_description(here, divergence, side, who)
