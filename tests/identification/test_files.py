@@ -12,8 +12,7 @@ from skisnow.identification.data import data_description, read_data
 from skisnow.identification.data_tables import PhotoCells
 from skisnow.simulation.run_tables import COLUMNS
 from skisnow.track.track import Track
-
-from ..error_codes import raises_code
+from tests.coded import raises
 
 CELLS = "run,station_m,time_s\nfirst,20,3.34\nfirst,40,5.1\nfirst,60,6.5\n"
 
@@ -49,7 +48,7 @@ def test_decimal_commas_between_commas_are_not_cut_off(text: str, row: str, beyo
     ],
 )
 def test_misspelled_columns_are_rejected(text: str, column: str, meant: str, tmp_path: Path) -> None:
-    with raises_code(ParameterError, "misspelled_column") as caught:
+    with raises(ParameterError, "misspelled_column") as caught:
         read_data(file_in(tmp_path, text))
     assert f"row 1: unknown column {column}." in str(caught.value)
     assert f" {meant}?" in str(caught.value)
@@ -65,13 +64,13 @@ def test_another_column_is_nobody_s_concern(tmp_path: Path) -> None:
     "columns", [("experiment", "site", "tool", "load_N", "depth_mm"), ("experiment", "depth_mm", "moment_Nm")]
 )
 def test_a_table_of_a_campaign_is_not_read_as_grooves(columns: tuple[str, ...], tmp_path: Path) -> None:
-    with raises_code(ParameterError, "table_of_campaign"):
+    with raises(ParameterError, "table_of_campaign"):
         read_data(file_in(tmp_path, f"{','.join(columns)}\n1,2,3,4,5,6\n"))
 
 
 def test_what_was_measured_once_counts_once(tmp_path: Path) -> None:
     one, copy = file_in(tmp_path, CELLS), file_in(tmp_path, CELLS, "copy.csv")
-    with raises_code(ParameterError, "same_file"):
+    with raises(ParameterError, "same_file"):
         identify("carved-46m", [one, copy], "mu_0")
 
 

@@ -19,8 +19,8 @@ from skisnow.identification.parameter import Parameter
 from skisnow.identification.problem import Fit, Kind, Values, unweighted_problem
 from skisnow.identification.solution import build_identification
 from skisnow.identification.solving import SearchRequest, solution_of
+from tests.coded import raises
 
-from ..error_codes import raises_code
 from . import straight_tracks
 from .straight_tracks import SCENARIO, track
 
@@ -174,9 +174,9 @@ class TestTracks:
         assert found["mu_0"].bootstrap_interval is not None
 
     def test_too_few_resamples_are_refused(self) -> None:
-        with raises_code(ParameterError, "too_few_resamples"):
+        with raises(ParameterError, "too_few_resamples"):
             found_from(track(), bootstrap=39)
-        with raises_code(ParameterError, "unknown_bootstrap"):
+        with raises(ParameterError, "unknown_bootstrap"):
             found_from(track(), bootstrap=100, bootstrap_by="hope")
 
 

@@ -15,8 +15,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.identification import MeasuredGrooves, identification_dict, identify, read_measured_grooves
 from skisnow.identification.groove_residuals import GrooveResiduals
 from skisnow.scenario import scenario_file
-
-from ..error_codes import raises_code
+from tests.coded import raises
 
 CHANGES: dict[str, object] = {"snow.H_V_N_per_mm3": 0.1, "start.heading_deg": 0.0}
 
@@ -160,7 +159,7 @@ def test_a_profile_is_as_steep_as_where_the_run_starts() -> None:
 
 
 def test_elastic_snow_keeps_no_groove() -> None:
-    with raises_code(ParameterError, "elastic_snow"):
+    with raises(ParameterError, "elastic_snow"):
         identify("carved-46m", measured(2e-3, 4e-3, 16.0), "H_V", changes={"snow.unloading_ratio": 1.0})
 
 

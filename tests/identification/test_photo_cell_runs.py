@@ -14,8 +14,8 @@ from scipy.integrate import solve_ivp
 from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, PhotoCellRun, PhotoCells, identify
 from skisnow.scenario import scenario_text
+from tests.coded import raises
 
-from ..error_codes import raises_code
 from . import glide_in_closed_form as exact
 from .test_photo_cell_times import ANGLE_DEG, AREA, CHANGES, MU, SD, SPEED, STATION, mass
 
@@ -78,7 +78,7 @@ class TestSkiers:
     )
     def test_errors(self, tmp_path: Path, free: str, section: str, code: str) -> None:
         path = with_section(tmp_path, f'[identify.runs."second"]\n{section}\n')
-        with raises_code(ParameterError, code):
+        with raises(ParameterError, code):
             found_from(path, self.RUNS, free)
 
     @pytest.mark.parametrize("entry", ["mas_kg = 80", "mass_kg = -80"])
@@ -117,7 +117,7 @@ class TestWeights:
         assert np.array(away) / error == pytest.approx(wanted / error, abs=0.02)
 
     def test_runs_that_state_nothing_beside_runs_that_do_are_refused(self) -> None:
-        with raises_code(ParameterError, "partial_accuracy"):
+        with raises(ParameterError, "partial_accuracy"):
             found_from("carved-46m", (run("one"), replace(run("other"), time_sd=None)), "mu_0")
 
 

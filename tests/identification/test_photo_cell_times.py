@@ -12,8 +12,8 @@ from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, PhotoCellRun, PhotoCells, identify, read_photo_cells
 from skisnow.identification.data import read_data
 from skisnow.scenario import scenario_file
+from tests.coded import raises
 
-from ..error_codes import raises_code
 from . import glide_in_closed_form as exact
 from .test_glide import times_on_two_planes, two_planes
 
@@ -188,9 +188,9 @@ def test_a_free_clock_is_set_by_the_times_that_are_known_best() -> None:
 
 
 def test_as_many_stations_as_times_and_at_least_one() -> None:
-    with raises_code(ParameterError, "unequal_lengths"):
+    with raises(ParameterError, "unequal_lengths"):
         PhotoCellRun("a", STATION[:2], truth()[:3])
-    with raises_code(ParameterError, "unequal_lengths"):
+    with raises(ParameterError, "unequal_lengths"):
         PhotoCellRun("a", STATION[:0], truth()[:0])
 
 
@@ -222,7 +222,7 @@ def test_four_points_for_three_parameters_are_warned_of_and_two_are_too_few() ->
 
 
 def test_a_key_that_plays_no_part_is_refused() -> None:
-    with raises_code(ParameterError, "unused_key"):
+    with raises(ParameterError, "unused_key"):
         found_from(cells(truth()), "mu_0,S_f")
 
 
@@ -274,17 +274,17 @@ class TestFile:
     def test_errors(self, tmp_path: Path, rows: str, code: str, place: str) -> None:
         path = tmp_path / "cells.csv"
         path.write_text(f"run;station_m;time_s\n{rows}", encoding="utf-8")
-        with raises_code(ParameterError, code) as caught:
+        with raises(ParameterError, code) as caught:
             read_photo_cells(path)
         assert place in str(caught.value)
 
     def test_columns_that_are_missing_or_half_filled(self, tmp_path: Path) -> None:
         path = tmp_path / "cells.csv"
         path.write_text("run,station_m\na,10\n", encoding="utf-8")
-        with raises_code(ParameterError, "missing_column"):
+        with raises(ParameterError, "missing_column"):
             read_photo_cells(path)
         path.write_text("run,station_m,time_s,time_sd_s\na,1,3,0.1\na,2,4,\n", encoding="utf-8")
-        with raises_code(ParameterError, "partial_accuracy"):
+        with raises(ParameterError, "partial_accuracy"):
             read_photo_cells(path)
 
 

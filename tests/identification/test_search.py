@@ -22,8 +22,7 @@ from skisnow.scenario import scenario_file, scenario_text
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import FREE_KEYS, free_key, free_keys, short_name
 from skisnow.scenario.reading import load_input
-
-from ..error_codes import raises_code
+from tests.coded import raises
 
 FAR = np.full(2, 1e3)
 Places = Sequence[np.ndarray]
@@ -174,7 +173,7 @@ def test_a_key_named_twice_is_refused() -> None:
 
 def test_bounds_that_exclude_the_start_are_refused() -> None:
     section = given_parameters({"mu_0": {"lower": 0.02, "upper": 0.3}})
-    with raises_code(ParameterError, "start_outside_bounds"):
+    with raises(ParameterError, "start_outside_bounds"):
         parameter_table(["friction.mu_0"], VALUES, section)
 
 

@@ -23,8 +23,8 @@ from skisnow.simulation.run import Run
 from skisnow.simulation.simulated_run import simulate
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.track import Track
+from tests.coded import raises
 
-from ..error_codes import raises_code
 from ..simulation.straight_run import straight_run
 from . import straight_tracks
 from .straight_tracks import SCENARIO, SD, TRUE_FRICTION, TRUE_SPEED, track
@@ -162,7 +162,7 @@ class TestStraight:
     def test_a_track_of_another_place_is_refused(self) -> None:
         one = track()
         far = replace(one, place=one.place + np.array([350_000.0, 20_000.0, 0.0]))
-        with raises_code(ParameterError, "other_place") as caught:
+        with raises(ParameterError, "other_place") as caught:
             found_from(far)
         assert "350.6 km" in str(caught.value)
 
@@ -254,7 +254,7 @@ class TestStraight:
 
     def test_east_north_up_needs_to_know_where_the_slope_falls(self) -> None:
         one = replace(track(), axes="east_north_up", origin=GeodeticPoint(47.0, 11.0, 2000.0))
-        with raises_code(ParameterError, "site_missing"):
+        with raises(ParameterError, "site_missing"):
             found_from(one)
 
 
@@ -275,12 +275,12 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
     far = path.with_name("far.toml")
     far.write_text(scenario_text("carved-46m") + section + "latitude_deg = 11\nlongitude_deg = 47\n", encoding="utf-8")
-    with raises_code(ParameterError, "far_from_site"):
+    with raises(ParameterError, "far_from_site"):
         identify(far, there, "mu_0,speed", changes=SCENARIO, workers=1)
     other = path.with_name("other.toml")  # Norway: 13.1° of latitude are 1459 km, straight through the earth 1456
     text = scenario_text("carved-46m") + section + "latitude_deg = 60.1\nlongitude_deg = 11\n"
     other.write_text(text, encoding="utf-8")
-    with raises_code(ParameterError, "far_from_site") as caught:
+    with raises(ParameterError, "far_from_site") as caught:
         identify(other, there, "mu_0,speed", changes=SCENARIO, workers=1)
     assert re.search(r" 14\d\d km ", str(caught.value))
 
