@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -129,12 +129,7 @@ def identify(
     scenario_input = (scenario if isinstance(scenario, ScenarioInput) else load_input(scenario)).changed(changes)
     scenario_file = build_input(scenario_input)
     tables = given_parameters(scenario_input.identify)
-    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
-    if not keys:
-        raise ParameterError(
-            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario',
-            code="nothing_free",
-        )
+    keys = _named_keys(free, tables)
     measurements = collect_data(
         scenario_input, scenario_file, [data] if isinstance(data, Data | str | Path) else data, keys
     )
@@ -144,11 +139,8 @@ def identify(
     simulate = RunSimulation(scenario_input, tuple(track.time for track in measurements.tracks))
     if restart and checkpoint is not None:
         forget(checkpoint)
-    rows = (
-        KeptRows()
-        if checkpoint is None
-        else KeptRows.opened(checkpoint, fingerprint(scenario_input, measurements.tracks))
-    )
+    identity = fingerprint(scenario_input, measurements.tracks) if checkpoint else ""
+    rows = KeptRows.opened(checkpoint, identity) if checkpoint else KeptRows()
     counted = _ProgressCounter(progress or _silent)
     with Simulations(simulate, rows, workers, counted, executor) as simulations:
         observations = _observations(
@@ -178,6 +170,17 @@ def identify(
                 wall_s=time.monotonic() - begun,
             ),
         )
+
+
+def _named_keys(free: str | Sequence[str], tables: Iterable[str]) -> tuple[str, ...]:
+    """Keys that are named as free, otherwise those with a table in the scenario."""
+    keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
+    if not keys:
+        raise ParameterError(
+            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario',
+            code="nothing_free",
+        )
+    return keys
 
 
 def _search(

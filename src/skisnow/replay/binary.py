@@ -49,47 +49,23 @@ class _ArrayType:
     unit: str
 
 
-ARRAY_TYPES: Final[dict[str, _ArrayType]] = {
-    "time": _ArrayType(_EXACT, "s"),
-    "place": _ArrayType(_EXACT, "m"),
-    "attitude": _ArrayType(_EXACT, "1"),
-    "speed": _ArrayType(_EXACT, "m/s"),
-    "curvature": _ArrayType(_EXACT, "1/m"),
-    "heading": _ArrayType(_EXACT, "rad"),
-    "depth": _ArrayType(_EXACT, "m"),
-    "profile": _ArrayType(_EXACT, "m"),
-    "station": _ArrayType(_EXACT, "m"),
-    "half_width": _ArrayType(_EXACT, "m"),
-    "base_height": _ArrayType(_EXACT, "m"),
-    "thickness": _ArrayType(_EXACT, "m"),
-    "middle": _ArrayType(_EXACT, "m"),
-    "bending": _ArrayType(_COARSE, "m"),
-    "twist": _ArrayType(_COARSE, "rad"),
-    "edge_depth": _ArrayType(_COARSE, "m"),
-    "force_per_length": _ArrayType(_COARSE, "N/m"),
-    "force": _ArrayType(_EXACT, "N"),
-    "normal_force": _ArrayType(_EXACT, "N"),
-    "groove_middle": _ArrayType(_EXACT, "m"),
-    "groove_left": _ArrayType(_COARSE, "1"),
-    "groove_width": _ArrayType(_COARSE, "m"),
-    "groove_depth": _ArrayType(_COARSE, "m"),
-    "groove_residual_depth": _ArrayType(_COARSE, "m"),
-    "groove_time": _ArrayType(_EXACT, "s"),
-    "groove_ski": _ArrayType(_COARSE, "1"),
-    "track_place": _ArrayType(_EXACT, "m"),
-    "track_time": _ArrayType(_EXACT, "s"),
-    "gate_place": _ArrayType(_EXACT, "m"),
-    "gate_time": _ArrayType(_EXACT, "s"),
-    "boot_place": _ArrayType(_EXACT, "m"),
-    "boot_attitude": _ArrayType(_EXACT, "1"),
-    "terrain_x": _ArrayType(_EXACT, "m"),
-    "terrain_y": _ArrayType(_EXACT, "m"),
-    "terrain_height": _ArrayType(_EXACT, "m"),
-    "skier_joints": _ArrayType(_COARSE, "m"),
-    "skier_vertices": _ArrayType(_COARSE, "m"),
-    "skier_colours": _ArrayType(_COARSE, "1"),
-    "skier_triangles": _ArrayType(_COARSE, "1"),
+_NAMES: Final[dict[tuple[str, str], str]] = {
+    (_EXACT, "s"): "time groove_time track_time gate_time",
+    (_EXACT, "m"): (
+        "place depth profile station half_width base_height thickness middle groove_middle "
+        "track_place gate_place boot_place terrain_x terrain_y terrain_height"
+    ),
+    (_EXACT, "1"): "attitude boot_attitude",
+    (_EXACT, "m/s"): "speed",
+    (_EXACT, "1/m"): "curvature",
+    (_EXACT, "rad"): "heading",
+    (_COARSE, "m"): "bending edge_depth groove_width groove_depth groove_residual_depth skier_joints skier_vertices",
+    (_COARSE, "rad"): "twist",
+    (_COARSE, "N/m"): "force_per_length",
+    (_EXACT, "N"): "force normal_force",
+    (_COARSE, "1"): "groove_left groove_ski skier_colours skier_triangles",
 }
+ARRAY_TYPES: Final = {name: _ArrayType(*of) for of, names in _NAMES.items() for name in names.split()}
 """Types of all arrays of a file; uint16 has an error of at most half a step, 1/131070 of the array's range."""
 _OF_SHAPE: Final = ("station", "half_width", "base_height", "middle")
 _OVER_TIME: Final = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")

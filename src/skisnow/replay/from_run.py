@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -33,11 +33,10 @@ from .skier import replay_skier
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from ..scenario.terrain import Slope
     from ..simulation.run import Run
     from ..ski import Ski
     from ..track.course import Course
-
-Slope: TypeAlias = Plane | Profile | Terrain
 
 _AROUND: Final = 30.0
 """Distance around a run with measured heights (m); beyond it the slope is a plane."""

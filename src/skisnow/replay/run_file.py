@@ -24,9 +24,9 @@ from ..track.course import read_course
 from .from_run import Setting, assemble_replay, facts_of, moving_boots, skis_words
 
 if TYPE_CHECKING:
+    from ..scenario.terrain import Slope
     from ..ski import Ski
     from ..track.course import Course
-    from .from_run import Slope
     from .replay import Replay, ReplayBoots, ReplayTrack
 
 

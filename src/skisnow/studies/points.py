@@ -25,14 +25,42 @@ MOST_POINTS: Final = 1_000_000
 """Of one study: a table of about half a gigabyte on disk; memory does not grow with it."""
 
 
-class Points(Sequence[Point], ABC):
-    """Inputs by name, for each number, 0 or more; never a list of them all."""
+class LazySequence(Sequence[Point], ABC):
+    """Values by name for each number, 0 or more, made as they are asked for; equal to any sequence of equal values."""
 
     __slots__ = ()
 
     @abstractmethod
     def point(self, number: int) -> Point:
-        """The inputs of one point; `number` is within the range."""
+        """The values with this number, which is within the range."""
+
+    @overload
+    def __getitem__(self, place: int) -> Point: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Point]: ...
+    def __getitem__(self, place: int | slice) -> Point | list[Point]:
+        """The values at one place, or at some as a list."""
+        if isinstance(place, slice):
+            return [self.point(number) for number in range(len(self))[place]]
+        return self.point(range(len(self))[place])
+
+    def __iter__(self) -> Iterator[Point]:
+        """One after the other."""
+        return (self.point(number) for number in range(len(self)))
+
+    def __eq__(self, other: object) -> bool:
+        """Whether a sequence has the same values in the same order."""
+        if not isinstance(other, Sequence):
+            return NotImplemented
+        return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
+
+    __hash__ = None  # type: ignore[assignment]  # as of a list
+
+
+class Points(LazySequence):
+    """Inputs of the points of a study; never a list of them all."""
+
+    __slots__ = ()
 
     @abstractmethod
     def distinct(self, name: str) -> list[Any]:
@@ -41,28 +69,6 @@ class Points(Sequence[Point], ABC):
     @abstractmethod
     def json_texts(self) -> Iterator[str]:
         """What `json.dumps` writes for the list of all points between its brackets, in pieces parted by ``", "``."""
-
-    @overload
-    def __getitem__(self, place: int) -> Point: ...
-    @overload
-    def __getitem__(self, place: slice) -> list[Point]: ...
-    def __getitem__(self, place: int | slice) -> Point | list[Point]:
-        """One point, or some of them as a list."""
-        if isinstance(place, slice):
-            return [self.point(number) for number in range(len(self))[place]]
-        return self.point(range(len(self))[place])
-
-    def __iter__(self) -> Iterator[Point]:
-        """Every point, made as it is reached."""
-        return (self.point(number) for number in range(len(self)))
-
-    def __eq__(self, other: object) -> bool:
-        """Whether a sequence has the same points in the same order."""
-        if not isinstance(other, Sequence):
-            return NotImplemented
-        return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
-
-    __hash__ = None  # type: ignore[assignment]  # as of a list
 
 
 @dataclass(frozen=True, slots=True, eq=False)

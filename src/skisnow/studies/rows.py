@@ -7,12 +7,12 @@ import io
 import itertools
 import sqlite3
 import weakref
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any, Final, overload
+from typing import IO, Any, Final
 
 from .._support.environment import needed
 from .._support.errors import ParameterError
@@ -22,13 +22,14 @@ from .._support.sqlite_file import connect, first_damage, place_reason, require_
 from .._support.user_files import own_json
 from ..parameters import Quantity
 from .cells import Reader, is_text, require_kinds, row_of
+from .points import LazySequence
 
 ROWS_OF_A_BLOCK: Final = 1000
 """Rows that are read at once: a few megabytes."""
 
 
-class StoredRows(Sequence[Row], ABC):
-    """Rows in their order; the block that was read last is remembered. It is a sequence, equal to any of equal rows."""
+class StoredRows(LazySequence):
+    """Rows in their order; the block that was read last is remembered."""
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -42,15 +43,9 @@ class StoredRows(Sequence[Row], ABC):
         """How many there are."""
         return self._count
 
-    @overload
-    def __getitem__(self, place: int) -> Row: ...
-    @overload
-    def __getitem__(self, place: slice) -> list[Row]: ...
-    def __getitem__(self, place: int | slice) -> Row | list[Row]:
-        """One row, or some of them as a list."""
-        if isinstance(place, slice):
-            return [self[number] for number in range(self._count)[place]]
-        block, row = divmod(range(self._count)[place], ROWS_OF_A_BLOCK)
+    def point(self, number: int) -> Row:
+        """The row of one point."""
+        block, row = divmod(number, ROWS_OF_A_BLOCK)
         if self._last[0] != block:
             self._last = (block, self.block(block))
         return self._last[1][row]
@@ -59,14 +54,6 @@ class StoredRows(Sequence[Row], ABC):
         """Block after block."""
         for number in range(-(-self._count // ROWS_OF_A_BLOCK)):
             yield from self.block(number)
-
-    def __eq__(self, other: object) -> bool:
-        """Whether a sequence has the same rows in the same order."""
-        if not isinstance(other, Sequence):
-            return NotImplemented
-        return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
-
-    __hash__ = None  # type: ignore[assignment]  # as of a list
 
 
 class CsvRows(StoredRows):
