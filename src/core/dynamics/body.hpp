@@ -84,6 +84,8 @@ void fill_motion(const FlexibleSki& ski, const BodyState& state, int first, Moti
 
 struct Energies {
   double kinetic, potential, elastic;  // (J)
+
+  double sum() const { return kinetic + potential + elastic; }
 };
 Energies energies(const Body& body, const Layout& layout, const BodyState& state);
 double drag_power(const Body& body, const BodyState& state);                           // (W), taken by the air

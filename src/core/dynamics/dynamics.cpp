@@ -19,7 +19,9 @@ constexpr double OVERSHOOT = 0.3;    // work of the residual along a change, of 
 constexpr double LEAST_SHARE_BACK = 0.1, MOST_SHARE_BACK = 0.9;  // shares of the change that may be kept
 constexpr int MOST_BACKTRACKS = 2;                               // for one change
 constexpr double FARTHEST = 1.0;  // way (m), turn (rad), bend beyond which a step has diverged
-constexpr double MILNE = 0.35;    // error of BDF2 over its distance from the predictor, at equal steps 8/23
+// work of what a step leaves of its equations, as a share of the energy exchanged, and at least (J)
+constexpr double WORK_LEFT = 2e-5, LEAST_LEFT = 1e-5;
+constexpr double MILNE = 0.35;  // error of BDF2 over its distance from the predictor, at equal steps 8/23
 
 }  // namespace
 
@@ -180,9 +182,18 @@ bool Dynamics::solve_step(const Formula& f) {
     const double contraction = iteration > 0 ? contraction_ : std::max(contraction_, UNSEEN);
     // the change that is left is small beside the step's own error, or beside the tolerance where that is smaller
     const double own = std::clamp(error(f), LEAST_ERROR * tolerance(), tolerance());
-    if (contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement)) return true;
+    const bool is_close = contraction / (1.0 - contraction) * size < std::min(rule_.closeness * own, displacement);
+    if (is_close && work_left(f) < WORK_LEFT * exchanged_ + LEAST_LEFT) return true;
   }
   return false;
+}
+
+// [work left] Work (J) of the residual in the step. The changes of the rates can be small, and yet the forces, of which
+// the account of energy is made, far from those that move the body: in snow that is stiff or has a strong dashpot.
+double Dynamics::work_left(const Formula& f) const {
+  double power = 0.0;
+  for (std::size_t i = 0; i < residual_.size(); i++) power += residual_[i] * next_.rate[i];
+  return f.reach * std::fabs(power);
 }
 
 // The change W⁻¹ β g of the rates; returns the work β g·δ of the residual along it.
@@ -210,7 +221,7 @@ double Dynamics::error(const Formula& f) const {
 
 // [powers] Each work W is integrated with the formula of the motion, a₁ W₁ - (1 + ω) W₀ + a₋ W₋₁ = h P₁. The power P
 // jumps where a base meets the snow. The trapezoidal rule would count half of a jump before the motion feels it.
-void Dynamics::add_work(const Formula& f) {
+Work Dynamics::work_of_step(const Formula& f) const {
   Work power;
   for (std::size_t k = 0; k < body_.skis.size(); k++) {
     const ContactPower snow = contact_->power(int(k), end_.poses[k], end_.motions[k]);
@@ -223,10 +234,9 @@ void Dynamics::add_work(const Formula& f) {
   power.damping = damping_power(body_, layout_, next_);
   power.push = push_power(body_, next_);
   for (std::size_t k = 0; k < skis_.size() && !motions_.empty(); k++) power.boots += skis_[k].power(body_.skis[k]);
-  for (double Work::* each : Work::PARTS) {
-    last_work_.*each = f.reach * power.*each + f.keep * last_work_.*each;
-    work_.*each += last_work_.*each;
-  }
+  Work out;
+  for (double Work::* each : Work::PARTS) out.*each = f.reach * power.*each + f.keep * last_work_.*each;
+  return out;
 }
 
 // Losses to the snow in the step that was accepted last: what its forces took less what the snow has stored of that.
@@ -255,7 +265,8 @@ void Dynamics::accept(const Formula& f, bool observed) {
     feel_boots(f.newest, f.now, f.before);
   else
     follow_skis();
-  add_work(f);
+  last_work_ = work_of_step(f);
+  for (double Work::* each : Work::PARTS) work_.*each += last_work_.*each;
   const double pressure = contact_->elastic_energy(), shear = contact_->held_energy();
   const double friction = contact_->stuck_energy();
   if (observed) observe();
@@ -270,7 +281,9 @@ void Dynamics::accept(const Formula& f, bool observed) {
   last_step_ = f.h;
   counts_.steps++;
   for (MovingSki& each : skis_) each.accept();
-  if (!rule_.fixed) follow_balance();
+  const EnergyBalance balance = energy_balance();
+  exchanged_ = balance.exchanged;
+  if (!rule_.fixed) follow_balance(balance);
 }
 
 bool Dynamics::is_sound(double h) const {

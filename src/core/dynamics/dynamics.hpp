@@ -30,6 +30,7 @@ struct Work {
   double shear = 0.0, friction = 0.0, normal = 0.0, drag = 0.0, damping = 0.0, snow_damping = 0.0;
   double boots = 0.0, push = 0.0;
 
+  double taken() const { return shear + friction - normal + drag + damping - boots - push; }  // from the body and skis
   static constexpr double Work::* PARTS[] = {&Work::shear,   &Work::friction,     &Work::normal, &Work::drag,
                                              &Work::damping, &Work::snow_damping, &Work::boots,  &Work::push};
 };
@@ -96,6 +97,7 @@ class Dynamics {
   Energies start_{0.0, 0.0, 0.0};
   SnowStore store_;
   SnowAccount losses_;
+  double exchanged_ = 0.0;  // energy (J) until the last step
   int narrowed_ = 0;
   // skis as separate bodies; boots that move; the body without skis
   std::vector<MovingSki> skis_;
@@ -139,14 +141,20 @@ class Dynamics {
   void fill_beams(const BeamWeights& weights);
   double size_of(const Numbers& rates, double reach) const;
   double find_change(const Formula& f);
+  double work_left(const Formula& f) const;
   void limit_overshoot(const Formula& f, double begun, double share, bool with_tangent);
   bool solve_step(const Formula& f);
   double error(const Formula& f) const;
   void accept(const Formula& f, bool observed);
   void observe();
-  void add_work(const Formula& f);
+  Work work_of_step(const Formula& f) const;
+  bool loses_energy(const Formula& f) const;
   void add_losses(double pressure, double shear, double friction);
-  void follow_balance();
+  struct EnergyBalance {
+    double open, exchanged;  // (J)
+  };
+  EnergyBalance energy_balance() const;
+  void follow_balance(const EnergyBalance& balance);
   double tolerance() const;
   double longest() const;
   bool is_sound(double h) const;

@@ -16,25 +16,34 @@ constexpr double ROUNDING = 1e-9;                        // share of a step's le
 // share of the energy exchanged by which a balance may be open before steps get shorter; and the smallest open energy
 // (J)
 constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
-constexpr int MOST_NARROWED = 12;  // rungs by which steps get shorter: three octaves
+constexpr double STEP_OPEN = 2e-4;  // of the energy exchanged, open after one step, which is repeated shorter
+constexpr double SHORT = 5.0;       // steps that are not repeated, over the shortest
+constexpr int MOST_NARROWED = 12;   // rungs by which steps get shorter: three octaves
 
 }  // namespace
+
+Dynamics::EnergyBalance Dynamics::energy_balance() const {
+  const Energies now = total_energies();
+  const double taken = work_.taken(), open = std::fabs(now.sum() - start_.sum() + taken);
+  return {open, start_.kinetic + std::max(taken, 0.0) + std::max(start_.potential - now.potential, 0.0)};
+}
 
 // [balance] BDF2 damps vibrations that its steps do not resolve. The open balance of energy shows by how much. Where it
 // exceeds its share of the energy exchanged, steps get shorter by a rung of the ladder; they get longer again where it
 // is well below.
-void Dynamics::follow_balance() {
-  const Energies now = total_energies();
-  const Work& w = work_;
-  const double taken = w.shear + w.friction - w.normal + w.drag + w.damping - w.boots - w.push;
-  const double open =
-      std::fabs(now.kinetic + now.potential + now.elastic - start_.kinetic - start_.potential - start_.elastic + taken);
-  const double fallen = std::max(start_.potential - now.potential, 0.0);
-  const double most = MOST_OPEN * (start_.kinetic + std::max(taken, 0.0) + fallen) + LEAST_OPEN;
-  if (open > most)
+void Dynamics::follow_balance(const EnergyBalance& balance) {
+  const double most = MOST_OPEN * balance.exchanged + LEAST_OPEN;
+  if (balance.open > most)
     narrowed_ = std::min(narrowed_ + 1, MOST_NARROWED);
-  else if (open < 0.5 * most)
+  else if (balance.open < 0.5 * most)
     narrowed_ = std::max(narrowed_ - 1, 0);
+}
+
+// [step balance] Whether a step leaves much of the energy open: one that passes over a vibration or a strong dashpot.
+bool Dynamics::loses_energy(const Formula& f) const {
+  if (!motions_.empty() || f.h < SHORT * rule_.shortest) return false;
+  const double open = energies(body_, layout_, next_).sum() - total_energies().sum() + work_of_step(f).taken();
+  return std::fabs(open) > STEP_OPEN * exchanged_ + LEAST_OPEN;
 }
 
 double Dynamics::tolerance() const { return rule_.tolerance * std::exp2(-0.75 * narrowed_); }
@@ -64,8 +73,9 @@ Dynamics::Tried Dynamics::after_fixed(bool solved) {
 
 // After a step h under error control: the next one's length.
 Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solved) {
-  const double wanted = solved ? SAFETY * std::cbrt(tolerance() / std::max(error(f), 1e-30)) : 0.5;
-  if (!solved || wanted < SAFETY) {
+  double wanted = solved ? SAFETY * std::cbrt(tolerance() / std::max(error(f), 1e-30)) : 0.5;
+  if (solved && wanted >= SAFETY && loses_energy(f)) wanted = 0.5;
+  if (wanted < SAFETY) {
     reject();
     step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
     return step_ < rule_.shortest ? Tried::GIVEN_UP : Tried::AGAIN;
@@ -80,6 +90,7 @@ Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solv
 
 Advance Dynamics::advance(double until, long most) {
   const auto entered = std::chrono::steady_clock::now();
+  exchanged_ = energy_balance().exchanged;
   for (long tries = 0; time < until; tries++) {
     if (tries == most) return Advance::PAUSED;
     if (tries > 0 && std::chrono::steady_clock::now() - entered > LONGEST_STAY) return Advance::PAUSED;

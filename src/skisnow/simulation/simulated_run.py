@@ -45,6 +45,10 @@ CLEAR: Final = 1.0
 """Distance (m) of the boots behind the last gate at which a course is over: whatever counts has crossed its line."""
 _COMPUTED_WRONG: Final = ("step_too_small", "not_finite", "interrupted")
 """Outcomes that an open balance does not take the place of."""
+CLOSER: Final = 4.0
+"""Factor by which lines of snow are closer when a run is repeated because its energy balance is open."""
+CLOSEST: Final = 2e-3
+"""Distance (m) of lines of snow below which a run is not repeated."""
 _REACHED: Final = 1e-6
 """Run length (m) that counts as none left."""
 
@@ -149,10 +153,39 @@ def simulate(
         warnings.warn(ModelLimitWarning(text, code=code), stacklevel=2)
     if controller is not None:
         boots = _led(scenario, controller, boots)
+    run, setup = _run_once(scenario, progress, laws=laws, boots=boots, strength_along=strength_along)
+    if run.outcome == "energy_open" and boots is None and not scenario.solver.fixed:
+        spacing = run.numbers["line_spacing_m"]
+        solver = replace(scenario.solver, line_spacing=max(spacing / CLOSER, min(CLOSEST, spacing)))
+        closer = replace(scenario, solver=solver)
+        other, other_setup = _run_once(closer, progress, laws=laws, boots=boots, strength_along=strength_along)
+        if other.outcome not in ("energy_open", *_COMPUTED_WRONG):
+            run, setup = replace(other, scenario=scenario), other_setup
+            _warn_of_closer_lines(spacing, run.numbers["line_spacing_m"])
+    _warn_of_zero_friction(run)
+    _warn_of_unseen_tracks(setup)
+    return replace(run, laws=laws, strength_along=strength_along)
+
+
+def _run_once(
+    scenario: Scenario,
+    progress: Progress | None,
+    *,
+    laws: Laws | None,
+    boots: BootControl | None,
+    strength_along: Strength | None,
+) -> tuple[Run, Setup]:
+    """The run, and its setup at its end.
+
+    Raises
+    ------
+    SolverError
+        The sledge finds no equilibrium to start from.
+    """
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):
-        return replace(computed_run(setup, record, "sunk", 0.0), laws=laws, strength_along=strength_along)
+        return computed_run(setup, record, "sunk", 0.0), setup
     if not setup.static_residual <= AT_REST:
         setup.dynamics.contact.require_finite_laws()
         raise SolverError(why_no_start(setup), code="no_start")
@@ -161,10 +194,18 @@ def simulate(
         outcome = _loop(setup, record, progress)
     except KeyboardInterrupt:
         outcome = "interrupted"
-    run = computed_run(setup, record, outcome, time.perf_counter() - begin)
-    _warn_of_zero_friction(run)
-    _warn_of_unseen_tracks(setup)
-    return replace(run, laws=laws, strength_along=strength_along)
+    return computed_run(setup, record, outcome, time.perf_counter() - begin), setup
+
+
+def _warn_of_closer_lines(spacing: float, closer: float) -> None:
+    """Warn that the run was repeated because its lines of snow were too far apart."""
+    text = Message(
+        "with lines of snow {spacing:.3g} mm apart the energy balance stayed open. The run was repeated with lines "
+        "{closer:.3g} mm apart. Set solver.line_spacing_mm to {closer:.3g} or less",
+        spacing=spacing / MM,
+        closer=closer / MM,
+    )
+    warnings.warn(ModelLimitWarning(text, code="repeated_with_closer_lines"), stacklevel=3)
 
 
 def _warn_of_unseen_tracks(setup: Setup) -> None:

@@ -129,3 +129,35 @@ def test_friction_that_falls_with_speed_never_drives_the_ski() -> None:
     assert np.diff(lost).min() >= 0.0
     assert np.ptp(lost[fast]) <= 1e-3 * lost.max()
     closes(run, changes)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        # a dashpot whose force changes much within the error of a step
+        {"snow.damping_N_s_per_mm3": 1.6, "snow.compaction_resistance": False, "solver.tolerance_mm": 0.48,
+         "start.heading_deg": -145.0},
+        # a start that the dashpot brakes within a first step
+        {"snow.damping_N_s_per_mm3": 4.8, "snow.H_V_N_per_mm3": 0.004, "sledge.mass_kg": 11.0,
+         "sledge.edge_angle_deg": -80.0, "sledge.inertia_kg_m2": [6.6, 6.6, 6.6], "start.speed_m_per_s": 1.0},
+    ],
+)  # fmt: skip
+def test_a_strong_dashpot_closes(changes: dict[str, object]) -> None:
+    run = simulate(load_scenario("carved-46m", changes={**changes, "run.duration_s": 0.1, "solver.method": "fast"}))
+    closes(run, changes)
+    assert run.energies["snow_damping"][-1] > 0.01
+
+
+def test_a_run_is_repeated_with_closer_lines() -> None:
+    """A light sledge on few lines: each that tip or tail passes counts for much of it."""
+    changes = {
+        "sledge.mass_kg": 0.6, "solver.line_spacing_mm": 150.0, "run.duration_s": 0.5, "solver.method": "fast",
+        "shear.law": "machining", "shear.transverse_friction": 0.085, "shear.least_shear_plane_deg": 2.2,
+    }  # fmt: skip
+    given = load_scenario("carved-46m", changes=changes)
+    with pytest.warns(ModelLimitWarning) as caught:
+        run = simulate(given)
+    assert "repeated_with_closer_lines" in {getattr(each.message, "code", None) for each in caught}
+    assert run.numbers["line_spacing_m"] == pytest.approx(0.150 / 4.0)
+    assert run.scenario == given
+    closes(run, changes)
