@@ -118,23 +118,11 @@ class _Posterior:
     Cdd: FloatArray
 
 
-def fit_series(
-    readings: Readings,
-    hardness: FloatArray,
-    uncertainty: ReadingUncertainty,
-    priors: Priors,
-    *,
-    seen: BoolArray,
-    counts: BoolArray,
-    group: IntArray,
-    G: int,
-) -> FittedSeries:
-    """Fit all series; ``seen`` is the mask of the readings in contact, the rest as in `fit_campaign`."""
-    return _Fit(readings, hardness, uncertainty, priors, seen, counts, group, G).solve()
+class SeriesFit:
+    """The iteration, all series at once.
 
-
-class _Fit:
-    """The iteration, all series at once."""
+    ``seen`` is the mask of the readings in contact, ``n_groups`` the number of groups; the rest as in `fit_campaign`.
+    """
 
     def __init__(
         self,
@@ -142,6 +130,7 @@ class _Fit:
         hardness: FloatArray,
         uncertainty: ReadingUncertainty,
         priors: Priors,
+        *,
         seen: BoolArray,
         counts: BoolArray,
         group: IntArray,

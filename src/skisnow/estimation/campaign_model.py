@@ -22,7 +22,7 @@ import numpy as np
 from .._support.display import ShownFields
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
-from .campaign_fit import Freedom, Priors, Spreads, fit_series
+from .campaign_fit import Freedom, Priors, SeriesFit, Spreads
 
 if TYPE_CHECKING:
     from .._support.arrays import BoolArray, FloatArray, IntArray
@@ -184,9 +184,10 @@ def fit_campaign(
     n_groups = int(group.max(initial=0)) + 1
     mine = readings.of(usable)
     seen = contact if usable.all() else contact[usable[readings.series]]
-    fit = fit_series(
-        mine, hardness[usable], uncertainty, priors, seen=seen, counts=counts[usable], group=group[usable], G=n_groups
-    )
+    counted, groups = counts[usable], group[usable]
+    fit = SeriesFit(
+        mine, hardness[usable], uncertainty, priors, seen=seen, counts=counted, group=groups, n_groups=n_groups
+    ).solve()
 
     def everywhere(values: FloatArray) -> FloatArray:
         result = np.full((m, *values.shape[1:]), np.nan)

@@ -85,15 +85,6 @@ class AddedCampaign:
     check_failure: str | None
 
 
-@dataclass(frozen=True, slots=True)
-class _Check:
-    """Outcome of checking a campaign before it is stored."""
-
-    n_errors: int | None
-    n_warnings: int | None
-    failure: str | None
-
-
 class Store(Shown):
     """An open store, from `Store.open`; it is closed at the end of its ``with`` block.
 
@@ -178,7 +169,7 @@ class Store(Shown):
             before = self._files_to_add(folder)
             n_bytes = sum(state.size for state in before.values())
             files = _hashed_files(folder, before, lambda done: progress(done, 2 * n_bytes))
-            name, check = campaign_name(folder), _check(folder)
+            name, (counts, failure) = campaign_name(folder), _check(folder)
             sha256 = manifest_sha256(files)
             with database_errors(self.path, "could not take the campaign in"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
@@ -186,7 +177,7 @@ class Store(Shown):
                     n_repaired += store_content(connection, folder, file)
                     done += file.size
                     progress(done, 2 * n_bytes)
-                is_new = store_campaign(connection, files, sha256, name, (check.n_errors, check.n_warnings))
+                is_new = store_campaign(connection, files, sha256, name, counts)
                 refuse_changed(changed_files(before, list_files(folder)))
         return AddedCampaign(
             id=sha256[:ID_DIGITS],
@@ -196,9 +187,9 @@ class Store(Shown):
             sha256=sha256,
             already_stored=not is_new,
             n_repaired=n_repaired,
-            n_errors=check.n_errors,
-            n_warnings=check.n_warnings,
-            check_failure=check.failure,
+            n_errors=counts[0],
+            n_warnings=counts[1],
+            check_failure=failure,
         )
 
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
@@ -335,12 +326,13 @@ def _hashed_files(
     return tuple(files)
 
 
-def _check(folder: Path) -> _Check:
+def _check(folder: Path) -> tuple[tuple[int | None, int | None], str | None]:
+    """Numbers of errors and warnings of a campaign, and the reason why its check failed; None where unknown."""
     from ..reading.campaign import check_campaign
 
     try:
         problems = check_campaign(folder)
     except Exception as error:  # whatever breaks in the check, raw data are kept; the caller gets the error
-        return _Check(None, None, f"{type(error).__name__}: {error}")
+        return (None, None), f"{type(error).__name__}: {error}"
     severities = [problem.severity for problem in problems]
-    return _Check(severities.count("error"), severities.count("warning"), None)
+    return (severities.count("error"), severities.count("warning")), None
