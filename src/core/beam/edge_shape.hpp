@@ -16,7 +16,7 @@ namespace skisnow {
 class EdgeShape {
  public:
   static constexpr double SQUARE = 0.5 * std::numbers::pi;  // a side at right angles to the base (rad)
-  static constexpr int HINGES = 2;  // of the strip and of the rounding, which is the narrower one
+  static constexpr int HINGES = 2;  // at the inner ends of strip and rounding; the rounding is narrower
 
   EdgeShape() = default;
   // Angle (rad) and width (m) of the strip; angle between base and side (rad); radius of the corner (m).
@@ -49,7 +49,7 @@ class EdgeShape {
     out[1] = is_raised ? strip_cosine - strip_sine * half_tangent_ : 0.0;
   }
 
-  // What the edge itself loses of its depth (m).
+  // Loss of depth at the edge itself (m).
   template <class V>
   SKISNOW_INLINE V lost(V sine, V cosine) const {
     V rises[HINGES];

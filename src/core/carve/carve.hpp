@@ -44,7 +44,7 @@ struct CarveConditions {
   double edge_angle, hardness, excess;  // ϑ (rad), H_V, k_u - H_V (N/m³)
   double load, moment, side_force;      // at the boot (N, N m, N)
   bool side_force_bending, twists;
-  double bevel, bevel_width, side, radius;  // of the edge, see `EdgeShape`
+  double bevel, bevel_width, side, radius;  // the ground edge, see `EdgeShape`
   double pitch_of_force, pitch_of_shear;    // shares of snow force and side force in the balance of moments
   bool by_reaction = false;         // the side force goes along the edge as the force on the base, not as its depth
   const CarveLaws* laws = nullptr;  // from outside; hardness and excess are then where the search begins

@@ -25,7 +25,7 @@ struct CarveSection {
     shape.find_growth(sine, cosine, rise_by_angle);
     depth = base_depth(0.0);
   }
-  // Depth ε of the base: a straight line, but for what is ground off along the edge.
+  // Depth ε of the base: a straight line except for the ground strip along the edge.
   double base_depth(double xi) const {
     double out = corner - xi * tangent;
     for (int h = 0; edge != nullptr && h < EdgeShape::HINGES; h++)

@@ -42,7 +42,7 @@ double depth_change(const CarvedSki& ski, const CarveConditions& conditions, con
   return std::sqrt(total / double(ski.stations.size()));
 }
 
-// Of the edge depth (m), and of the shear stress, as a depth.
+// Length of a step: of the edge depth (m), and of the shear stress as a depth.
 double CarveNewton::length_of(const CarveConditions& conditions, const CarveState& step) const {
   const double by_stress = STRESS_AS_DEPTH * step.border[2] / std::max(std::fabs(state.border[2]), 1.0);
   const double by_depth = depth_change(ski_, conditions, step);

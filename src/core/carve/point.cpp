@@ -17,7 +17,7 @@ constexpr int MOST_CORRECTIONS = 6;
 constexpr double ALMOST = 1e-10, ROUNDING = 1e-15;  // (m) last corrections
 constexpr double FAR_ABOVE = -1e3;                  // depth (m) that marks untouched snow
 
-// Directions in which the forces on a section are differentiated; from GROOVE on: depth of the groove at each place.
+// Directions in which the forces on a section are differentiated; GROOVE and above: depth of the groove at each place.
 enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, LINE, REACH, BEVEL_END, ROUND_END, GROOVE };
 constexpr int DIRECTIONS = GROOVE + MOST_PLACES;
 using Number = Slopes<DIRECTIONS>;
@@ -198,7 +198,7 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
       out.pitch_of_shear += w * mu[1] * s.place * stress * bite;
       by_state.border[2] += w * ((mu[1] * s.place * by_shear - bends * shears * sine) * bite +
                                  turns * shears * half * f.sine * turned + (reacts ? 0.0 : mu[2] * bite));
-    } else if (seed.depth[i] != 0.0) {  // a depth that is asked for above the snow
+    } else if (seed.depth[i] != 0.0) {  // a prescribed depth above the snow
       const Number edge = section(s, f).edge_depth();
       for (int along = 0; along < GROOVE; along++) by[along] += seed.depth[i] * edge.by[along];
     }

@@ -79,8 +79,8 @@ Vector<V> aside_of(const Cut<V>& c, const Snow& snow) {
   return scaled(raw, 1.0 / root(dot(raw, raw)));
 }
 
-// Way of the base over a line, along the edge and aside, from where the friction was 0. The place of the base is told
-// by where the ski's axis passes the line, and by where a point does that is `arm` across from the axis.
+// Way of the base over a line, along the edge and aside, from where the friction was 0. Two points give the place
+// of the base: where the ski's axis passes the line, and where a point at the distance `arm` across the ski does.
 template <class V>
 struct Way {
   V ahead, aside;
@@ -180,7 +180,7 @@ struct Acting {
 // the depth of the deeper edge, to either side.
 template <class V>
 struct EdgeForces {
-  V shear[2], upright{};        // of each edge; the part of all that is square to the base
+  V shear[2], upright{};        // shear of each edge; the sum's part along the base's normal
   Vector<V> force{}, moment{};  // about the boot, in the ski's axes
   V turning{};                  // moment about the ski's middle, by which the beam twists
 

@@ -11,7 +11,7 @@ namespace skisnow {
 
 namespace {
 
-constexpr LineField SLIPS[3] = {LEFT_ANCHOR, RIGHT_ANCHOR, SLIPPED};  // what a slip changes
+constexpr LineField SLIPS[3] = {LEFT_ANCHOR, RIGHT_ANCHOR, SLIPPED};  // fields that a slip changes
 
 }  // namespace
 
@@ -98,7 +98,7 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
   return ground.press(place.data(), depth.data(), int(place.size()));
 }
 
-// Of a section when its pose is accepted.
+// Update of a section when its pose is accepted.
 struct Touch {
   const Base& s;
   int i;
@@ -136,7 +136,7 @@ Pressing Touch::base_and_way(int k) const {
   return out;
 }
 
-// The way of an edge alone, up to where it left the snow.
+// The way of one edge up to where it left the snow.
 Pressing Touch::way_of(int k) const {
   const double mark = of_line(LEFT_MARK, k), before = of_line(LEFT_MARK_DEPTH, k), depth = edge_depth(k);
   const double left_at = mark + before / (before - std::min(depth, 0.0)) * (edge_place(k) - mark);
@@ -144,8 +144,8 @@ Pressing Touch::way_of(int k) const {
   return mark < edge ? Pressing{{mark, edge}, {before, deep}, 2} : Pressing{{edge, mark}, {deep, before}, 2};
 }
 
-// Keep the base that touches a line: everything under it, and the ways of its edges. Of a base that lies in the snow
-// with both edges one after the other: left and right then have the same bits.
+// Keep the base that touches a line: everything under it, and the ways of its edges. A base with both edges in the
+// snow is kept one edge after the other: left and right then have the same bits.
 void Touch::press_base() const {
   Ground ground = lines.ground(slot);
   const DelayedGround& delayed = lines.delayed[std::size_t(slot)];

@@ -41,7 +41,7 @@ struct CutGround {
 // Additional sums for the derivatives. Over the parts that bear on ground that was pressed deeper: minus the
 // derivatives of its lift by the depth of the grip and by the fall of the depth, and that by the grip's place, each
 // integrated with 1 and with x. And what virgin snow's pressure has more than the ground's, E lift at most, at the ends
-// of the pieces.
+// of each piece.
 template <class V>
 struct GrowthSums {
   V wet_from, wet_to;

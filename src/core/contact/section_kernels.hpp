@@ -187,7 +187,7 @@ struct Cut {
   V side;                               // the grip's place across, over the half width
   Vector<V> from, ahead, normal, left;  // the line
   V sine, deepest, reach, grip_depth, grip_left, grip_up, place;
-  V depth[2], x[2];  // of the left and the right edge
+  V depth[2], x[2];  // depth and place of the left and the right edge
   V fall, climb, widening, wet_from, wet_to;
   Vector<V> across, along;
   V size;  // one over the length of `along` before it was made a unit

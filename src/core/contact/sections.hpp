@@ -85,7 +85,7 @@ enum ForceField {
 
 struct Base : Columns<BaseField, BASE_FIELDS> {
   std::int64_t first_block = 0;  // first block of lines
-  EdgeShape edge_shape;          // of the runner
+  EdgeShape edge_shape;          // shape of the runner's edges
   int blocks = 0;
 
   int count() const { return blocks * BLOCK; }

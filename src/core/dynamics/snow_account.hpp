@@ -31,7 +31,7 @@ struct Loss {
 
 // The forces on a ski do not pay each account separately: sideways motion presses snow at no cost but the shear
 // strength, and an edge that is pressed deeper stores more energy in its shear. If one account owes more than a share
-// of the energy that the snow stores, the others' losses of the same step pay for it, the shear first.
+// of the stored energy of the snow, the others' losses of the same step pay for it, the shear first.
 struct SnowAccount {
   Loss penetration, shear, rate, friction;
 

@@ -24,7 +24,7 @@ void require_unit(const Vector3& direction) {
   if (!(std::fabs(dot(direction, direction) - 1.0) < UNIT)) refuse_bytes("a direction in them is none");
 }
 
-// What follows writes with a `ByteWriter` and reads with a `ByteReader`.
+// Pairs of functions: one writes with a `ByteWriter`, one reads with a `ByteReader`.
 
 template <class Stream, class Direction>
 void pass_direction(Stream& stream, Direction& direction) {

@@ -40,7 +40,7 @@ struct DelayedRecall {
 // lie between two of them all the way. Their greatest width is found (m).
 struct UnseenTracks {
   Vector3 ahead;   // direction in which the neighbours follow
-  double spacing;  // of the lines (m)
+  double spacing;  // spacing of the lines (m)
   double widest = 0.0;
 
   void add(const Track& before, const Track& after, const Vector3& origin, const Vector3& lateral, double from,
@@ -75,8 +75,8 @@ class Archive {
   Mark mark() const { return {tracks_.size(), strips_, energy_, time, last(tracks_.size())}; }
   void forget_since(const Mark& mark);
 
-  // All up to a mark, as bytes; another archive from them; and that one in place of this: every mark of this one that
-  // has a track is refused from then on. Each throws std::invalid_argument, and changes nothing.
+  // All up to a mark, as bytes; another archive from them; replace this archive by that one, after which every mark
+  // of this one that has a track is refused. Each throws std::invalid_argument, and changes nothing.
   void write(const Mark& mark, ByteWriter& out) const;
   static Archive read(ByteReader& in);
   void replace(Archive&& other);

@@ -11,7 +11,7 @@ namespace skisnow {
 struct FrictionLaw {
   double constant = 0.0, linear = 0.0, square = 0.0, film = 0.0, film_speed = 1.0;
   double stick = 0.02e-3;   // way of the base to full friction (m): until then it sticks, as by a spring
-  bool is_vector = true;    // against the sliding velocity; else by its part along the ski alone, and along the ski
+  bool is_vector = true;    // against the sliding velocity; false: along the ski, by the velocity along the ski
   bool acts_across = true;  // its part across the ski; else the shear law has that
 };
 

@@ -142,7 +142,7 @@ def answer_dict(answer: CarveAnswer) -> dict[str, Any]:
 
 
 def _half_intervals(answer: CarveAnswer) -> dict[str, Any]:
-    """Half the 95 % interval of each output by the snow's intervals; nothing where there are none."""
+    """Half the 95 % interval of each output by the snow's intervals; empty for a snow without intervals."""
     if answer.equilibrium.request is None or answer.snow.snow_hardness_interval is None:
         return {}
     exact = answer.equilibrium.derivatives()

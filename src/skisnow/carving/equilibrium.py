@@ -100,8 +100,8 @@ def carve(
         "edge": the groove of the forebody is under the edge of the afterbody. "path": it is on the circle through
         the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
     moment_balance
-        "boot": `moment` is about the horizontal cross axis and balances the load alone; what the side force does about
-        the ski's cross axis, boot and skier hold besides: `Equilibrium.boot_pitch_moment` tells how much. "free":
+        "boot": `moment` is about the horizontal cross axis and balances the load without the side force, whose
+        moment boot and skier hold in addition: `Equilibrium.boot_pitch_moment`. "free":
         `moment` is about the ski's own cross axis, and all that boot and skier hold there.
     twist
         Whether the ski twists (GJ) or keeps its edge angle everywhere.
@@ -235,8 +235,8 @@ def rest(
 
     References
     ----------
-    * Hetényi (1946), Beams on Elastic Foundation, University of Michigan Press: what a flat ski of one stiffness is
-      held to.
+    * Hetényi (1946), Beams on Elastic Foundation, University of Michigan Press: the solution that a flat ski of one
+      stiffness is compared with.
     * The page docs/methods/carved-turn.md.
     """
     require_kinds(ski, snow)

@@ -214,7 +214,7 @@ class CarveQuestion:
         Literal["edge", "path"],
         Quantity(
             "groove",
-            "whether the groove lies under the edge of the afterbody, or on the circle of the turn",
+            "edge: the groove is under the edge of the afterbody; path: on the circle of the turn",
             origin="choice: a carved track is one edge wide",
         ),
     ] = "edge"
@@ -237,7 +237,7 @@ class CarveQuestion:
         bool,
         Quantity(
             "at_rest",
-            "set down on virgin snow, without side force, in place of carving",
+            "the ski is set down on virgin snow, without side force, instead of carving",
             origin="the question is the turn",
         ),
     ] = False

@@ -71,7 +71,7 @@ class Sensitivity:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CarveRequest:
-    """What an equilibrium was computed from."""
+    """Ski, snow and conditions of an equilibrium."""
 
     model: ClampedSki
     conditions: Conditions
@@ -112,7 +112,7 @@ class CarveDerivatives:
     Parameters
     ----------
     request
-        Of a carve with the groove along the edge, by the snow's own numbers.
+        The request of a carve with the groove along the edge and numbers for the snow.
     """
 
     request: CarveRequest
@@ -194,7 +194,7 @@ class CarveDerivatives:
         return None if growth_and_gradient is None else growth_and_gradient[0].value
 
     def half_interval(self, output: str, snow: SnowProperties) -> float | None:
-        """Half the 95 % interval of an output by those of H_V and S_f, to first order; None where the snow has none."""
+        """Half the 95 % interval of an output by those of H_V and S_f, to first order; None if they lack one."""
         growth = {
             "snow.H_V_N_per_mm3": (snow.snow_hardness_interval, N_PER_MM3),
             "snow.S_f_N_per_mm2": (snow.failure_shear_stress_interval, N_PER_MM2),

@@ -1,4 +1,4 @@
-"""What a clamped ski is to the equations of a carve, and how it grows with a parameter of the ski."""
+"""Shape and stiffness of a clamped ski as the equations of a carve need them, and their derivatives."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _GAUSS_PLACES: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / 
 _FREE: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # keys without effect on linear growths
 _MOST_KEPT: Final = 256
 _LINEAR_GROWTHS: Final[dict[tuple[object, ...], Shape]] = {}
-_STEP: Final = 1e-3  # of a parameter; in mm of a length
+_STEP: Final = 1e-3  # step of a parameter; lengths in mm
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +38,7 @@ class Shape:
     Attributes
     ----------
     node, length
-        Of the beam, and of its n elements.
+        Nodes of the beam, and the lengths of its n elements.
     place, width, base_height
         At two stations of each element.
     bending, torsion
@@ -87,14 +87,15 @@ def shape_of(ski: Ski, clamp_length: float, elements: int, edge: FloatArray) -> 
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int, edge: tuple[float, ...]) -> Shape:
     """Growth of the shape with a parameter of the ski, per its unit; meshes and tables keep their numbers of rows.
 
-    Central differences of the ski alone, exact where it is linear in the parameter; else extrapolated (Richardson).
+    Central differences of the ski, without an equilibrium: exact where it is linear in the parameter, otherwise
+    extrapolated (Richardson).
     """
     key = name.removeprefix("ski.")
     if not name.startswith("ski.") or not ski.keys or not is_linear(ski.keys, key):
         return _growth_of(ski, name, clamp_length, elements, edge)
     shape_value(ski, name)  # the name is checked
     require_own_tables(ski)
-    # what a linear parameter does is the same for all skis of these lengths
+    # the derivative by a linear parameter is the same for all skis of these lengths
     same = tuple((k, str(v)) for k, v in ski.keys.items() if k not in _FREE)
     widest = int(np.argmax(ski.width))
     if (same, widest, key, clamp_length, elements, edge) not in _LINEAR_GROWTHS:

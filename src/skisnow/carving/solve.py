@@ -34,7 +34,7 @@ class Conditions(NamedTuple):
     bevel: float
     bevel_width: float
     side: float  # angle between base and side at the edge
-    radius: float  # of the corner between them
+    radius: float  # radius of the corner between them
     pitch_of_force: float  # share with which the snow's force takes part in the balance of moments about the boot
     pitch_of_shear: float  # share of the side force
     by_reaction: bool  # the side force goes along the edge as the snow's force, not as the depth

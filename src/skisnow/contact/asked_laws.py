@@ -55,7 +55,7 @@ class AskedStrength:
 
 
 class AskedPressure:
-    """What a penetration law gives back and bears, for arrays over places; a law without finite answers is refused."""
+    """Stress and largest stress of a penetration law, for arrays over places; answers must be finite."""
 
     def __init__(self, law: PointLaw) -> None:
         self.law = law

@@ -57,8 +57,8 @@ class SnowField(Shown):
         included.
     friction_direction
         ``vector``: against the sliding velocity, in the surface, or where μ acts on what presses on the base, in the
-        base's plane; ``along-ski``: μ times the load along the ski, at any slip angle. `MachiningShear` has a friction
-        across the ski of its own: with it the vector's part across the ski is left out.
+        base's plane; ``along-ski``: μ times the load along the ski, at any slip angle. `MachiningShear` contains
+        the friction across the ski: with it the vector's part across the ski is left out.
     residual_ratio, slip_weakening
         Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
     shear_bearing

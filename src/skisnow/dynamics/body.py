@@ -86,7 +86,7 @@ class FlexibleSki(ShownFields):
             )
 
     def compiled(self) -> core.FlexibleSki:
-        """What the core takes."""
+        """The same as an object of the core."""
         boot, axes, unknown, mass, stiffness, coupling = (
             np.ascontiguousarray(each, float)
             for each in (self.boot, self.axes, self.unknown, self.mass, self.stiffness, self.coupling)
@@ -133,7 +133,7 @@ class Body(ShownFields):
             raise ParameterError("Body: it needs one ski or more", code="missing")
 
     def compiled(self) -> core.Body:
-        """What the core takes."""
+        """The same as an object of the core."""
         inertia, moment, gravity = (
             np.ascontiguousarray(each, float) for each in (self.inertia, self.first_moment, self.gravity)
         )

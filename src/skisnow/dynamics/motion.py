@@ -167,7 +167,7 @@ class Dynamics:
             Skis and motions differ in number, or a ski has no inertia.
         """
         if not self.feels_boots:
-            raise ParameterError("boots can move where each FlexibleSki has its inertia; one has none", code="no_data")
+            raise ParameterError("boots can move where each FlexibleSki has its inertia; one lacks it", code="no_data")
         if len(motions) != len(self.body.skis):
             raise ParameterError(
                 "there are {n_motions} motions of boots for {n_skis} skis",

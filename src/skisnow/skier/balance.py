@@ -1,4 +1,4 @@
-"""A skier that moves the boots of a run: it stands on the snow, looks, decides, moves its body."""
+"""A skier that moves the boots of a run: it measures its state, decides and moves its body."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class BalanceRecord:
     seen
         Measured state.
     balance
-        What a built-in control made of it; None with another controller.
+        Plan and command of the built-in control; None with another controller.
     posture
         Numbers of the posture at the end of the period.
     """
@@ -58,7 +58,7 @@ class BalancedSkier:
     scenario
         With a skier, whose numbers the control has.
     controller
-        Decides in place of the built-in control.
+        Replaces the built-in control.
 
     Attributes
     ----------

@@ -19,17 +19,17 @@ EDGE_CHANGE: Final = 10.0
 EDGE_RATE: Final = 19.0
 """Corner frequency of the edge angle, and of what balance asks of it (1/s) (found by trial)."""
 LOAD_RATE: Final = 25.0
-"""Corner frequency of what is learnt from the loads (1/s) (found by trial)."""
+"""Corner frequency of the filter of the loads (1/s) (found by trial)."""
 LEAN_MORE: Final = 1.1
 """Capture point wanted, over that of balance (found by trial)."""
 REACH: Final = 0.8
-"""Share of half the stance within which the centre of pressure is asked for (found by trial)."""
+"""Share of half the stance that bounds the wanted centre of pressure (found by trial)."""
 LAG: Final = 0.6
 """Way after which the path has the edge's curvature (m) (found by trial)."""
 CORRECTION: Final = 0.12
 """By how much the loads may correct the planned place of the centre of mass (m) (found by trial)."""
 TRUSTED_EDGE: Final = math.radians(10.0)
-"""Edge angle from which on loads are believed in full, with its square below: flatter skis follow the feet (rad)."""
+"""Edge angle (rad) above which the measured loads count fully; below it they count by its square."""
 BY_EDGES: Final = 2.0
 """Gain of the edges over that of a skid (found by trial)."""
 FORESIGHT, FORESIGHT_STEP = 1.6, 0.02
@@ -120,7 +120,7 @@ class CarveControl:
     _turn: list[float] = field(default_factory=lambda: [0.0, 0.0])  # over that of a carve in balance, with its rate
     _growth: float = 0.0  # planned acceleration of the centre of mass aside
     _asked: float = 0.0  # acceleration that balance asks for
-    _acceleration: float = 0.0  # of the feet to the left
+    _acceleration: float = 0.0  # acceleration of the feet to the left (m/s²)
     _correction: float = 0.0
     _slip: float = 0.0  # angle between skis and path, since the snow did not hold what was wanted (rad)
     _holds: float = field(init=False)  # share of the load aside, edged for balance
@@ -134,7 +134,7 @@ class CarveControl:
         return self.body.mass * 9.81
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """What the body shall do until the next call."""
+        """Command to the body until the next call."""
         now, height = seen.time + dt, self.body.height
         aside, rate = float(posture.numbers[1]), posture.aside_rate
         roll = self.roll * height**2 / (height**2 + aside**2)

@@ -33,7 +33,7 @@ GAIN_TIME: Final = 0.02
 EDGE_AHEAD: Final = 0.06
 """Time (s) by which the edge leads, since its filter lags (derived: two over the filter's rate)."""
 REACH: Final = 0.85
-"""Share of half the stance within which the centre of pressure is asked for (modelling assumption)."""
+"""Share of half the stance that bounds the wanted centre of pressure (modelling assumption)."""
 BY_EDGE: Final = 0.03
 """Shift of the pressure by the loaded edges to the inside, half a ski's width (m)."""
 SLIDING: Final = math.radians(12.0)
@@ -49,11 +49,11 @@ AIR: Final = 0.004
 class Controller(Protocol):
     """Moves a skier: `skisnow.simulate` takes one.
 
-    Called every ``skier.control_period_ms`` with what is seen, the posture and the period (s).
+    Called every ``skier.control_period_ms`` with the observed state, the posture and the period (s).
     """
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """What the body shall do until the next call."""
+        """Command to the body until the next call."""
 
 
 @dataclass(slots=True)
@@ -82,7 +82,7 @@ class Balance:
     pressure
         Centre of pressure that follows (m).
     rate
-        Of the pendulum (1/s).
+        Rate of the pendulum (1/s).
     """
 
     balanced: float
@@ -122,7 +122,7 @@ class SkidControl:
         self._loads = (Smoothed(FORCE_TIME, half), Smoothed(FORCE_TIME, half))
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
-        """What the body shall do until the next call."""
+        """Command to the body until the next call."""
         self._learn(seen, posture)
         planned = self._planned(seen)
         slips = self._slips(seen, planned)

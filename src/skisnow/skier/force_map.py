@@ -13,7 +13,7 @@ LEAST_LOAD = 20.0
 
 @dataclass(frozen=True, slots=True)
 class ForceMap:
-    """What a skier assumes of ski and snow.
+    """Model of ski and snow that a skier assumes.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a skier plans for the next 1.2 s: a line through gates, turns over time, or a side-slip."""
+"""Plan of a skier for the next 1.2 s: a line through gates, turns over time, or a side-slip."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ FASTEST_SHIFT: Final = 25.0
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """What a control asks of the body for the next period; angles in rad, positive to the left.
+    """Command of a control to the body for the next period; angles in rad, positive to the left.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Posture:
         Centre of mass ahead of and to the left of the feet, yaw of the body against the skis, edge angles, toes and
         stance, and their rates.
     acceleration
-        Of the centre of mass to the left of the feet in the last period (m/s²).
+        Acceleration of the centre of mass, relative to the feet, to the left, in the last period (m/s²).
     """
 
     skier: Skier
@@ -99,7 +99,7 @@ class Posture:
     numbers: FloatArray = field(init=False)
     rates: FloatArray = field(default_factory=lambda: np.zeros(8))
     acceleration: float = 0.0
-    _moment: float = 0.0  # of the snow on the boots, smoothed (N m)
+    _moment: float = 0.0  # smoothed moment of the snow on the boots (N m)
     _gives: float = 0.0  # rate to the left by legs that give way (m/s)
 
     def __post_init__(self) -> None:

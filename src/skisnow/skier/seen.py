@@ -55,15 +55,15 @@ class Seen:
     across, along
         Force of the snow to the left and ahead (N).
     moment
-        Of the snow about the normal, on both boots (N m).
+        Moment of the snow on both boots about the normal (N m).
     place, speed, course
-        Of the centre of mass: x, y (m), (m/s), heading of its path from the fall line (rad).
+        Centre of mass: x, y (m), (m/s), heading of its path from the fall line (rad).
     feet, feet_speed, feet_course
         The same of the middle of the feet.
     heading, turn_rate, slip
-        Of the skis: from the fall line (rad), its rate (rad/s), heading less the course of the feet (rad).
+        Skis: from the fall line (rad), its rate (rad/s), heading less the course of the feet (rad).
     body_heading, body_rate, yaw_inertia
-        Of the body: from the fall line (rad), its rate (rad/s), moment of inertia (kg m²).
+        Body: from the fall line (rad), its rate (rad/s), moment of inertia (kg m²).
     edge
         Edge angles of the left and the right ski against the snow (rad).
     bears, lifted
@@ -118,9 +118,9 @@ def seen_at(
     normal
         Normal of the snow, (3,).
     weight
-        Of the skier (N).
+        Weight of the skier (N).
     yaw_inertia
-        Of the body (kg m²).
+        Moment of inertia of the body (kg m²).
     """
     rotation, boots, spin = moment.rotation, moment.boots, moment.velocity[3:]
     up = normal @ rotation
@@ -139,7 +139,7 @@ def seen_at(
     bears = load > BEARING * weight
     down, aside = (each @ rotation for each in down_and_left(normal))
     way = moment.velocity[:3] + np.cross(spin, centre)
-    step = way - leg_rate  # of the feet
+    step = way - leg_rate  # velocity of the feet
     course = math.atan2(step @ aside, step @ down)
     heading = math.atan2(ahead @ aside, ahead @ down)
     place, foot = moment.position + rotation @ centre, moment.position + rotation @ middle

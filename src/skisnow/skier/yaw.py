@@ -31,7 +31,7 @@ FACING: Final = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Of a skier: mass (kg), pitch and yaw inertia (kg m²), height of its centre of mass over the snow (m)."""
+    """Body of a skier: mass (kg), pitch and yaw inertia (kg m²), height of its centre of mass over the snow (m)."""
 
     mass: float
     pitch: float
@@ -104,7 +104,7 @@ def _dynamics(force: float, turns: float, damping: float, inertia: float) -> tup
 
 
 def _cost(slip: float, heading: float, facing: float) -> FloatArray:
-    """Of a state, with the weight of the slip, for headings of skis and body (rad)."""
+    """Cost matrix of a state, with the weight of the slip, for headings of skis and body (rad)."""
     hips, body = 1.0 / HIPS**2, 1.0 / BODY**2
     q = np.zeros((7, 7))
     q[0, 0], q[2, 2], q[0, 2], q[2, 0] = slip + hips, hips + body, -hips, -hips

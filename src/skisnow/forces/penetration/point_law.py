@@ -26,7 +26,7 @@ class PointLaw(abc.ABC):
     __slots__ = ()
     along_base_normal: ClassVar[bool] = False
     """Whether the snow's force is one along the normal of the base. Its part across, tan ϑ times the stress, is then
-    what an edge holds at most; it comes in with the displacement across, as every strength does in a contact."""
+    the maximum side force of an edge; it grows with the displacement across, as every strength in a contact."""
 
     @property
     def exceptions(self) -> Mapping[str, str]:

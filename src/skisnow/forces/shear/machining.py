@@ -74,7 +74,9 @@ class MachiningShear(ShearLaw):
     @property
     def exceptions(self) -> Mapping[str, str]:
         """See `ShearLaw.exceptions`."""
-        return {"finite at every edge angle": "the force grows without bound as ϑ falls to β; below there is none"}
+        return {
+            "finite at every edge angle": "the force grows without bound as ϑ falls to β; below β there is no force"
+        }
 
     def thrust_force(
         self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
