@@ -124,8 +124,9 @@ def test_strength_is_that_of_the_law_times_its_share() -> None:
 
 @pytest.mark.parametrize("spacing", [0.0, -0.01, math.nan, math.inf])
 def test_a_contact_needs_a_spacing_and_a_runner(spacing: float) -> None:
-    with pytest.raises(ParameterError, match=rf"spacing is {spacing} m; it must be above 0"):
+    with raises(ParameterError, "out_of_range") as caught:
         SnowContact(snow(), [SKI], spacing=spacing)
+    assert str(caught.value.fields["spacing"]) == str(spacing)
     with raises(ParameterError, "missing"):
         SnowContact(snow(), [])
     with raises(ParameterError, "unknown_name", instruction_set="abacus"):

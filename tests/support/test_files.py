@@ -1,10 +1,18 @@
-"""Files are complete or not there."""
+"""What the program asks of the machine: complete files, memory, further packages, certificates."""
 
+import gc
+import math
+import shutil
+import ssl
+import subprocess
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from skisnow._support.errors import OutputError
+from skisnow._support.environment import load_certificate, needed, paused_collector
+from skisnow._support.errors import OutputError, ParameterError
+from skisnow._support.messages import Message
 from skisnow._support.staging import place_to_write, require_writable, write_file
 from tests.coded import raises
 
@@ -72,3 +80,73 @@ def test_a_folder_is_tried_before_long_work(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with raises(OutputError, "cannot_write"):
         require_writable(tmp_path / "file")
+
+
+@pytest.fixture(autouse=True)
+def _as_before() -> Iterator[None]:
+    yield
+    gc.enable()
+
+
+def test_it_rests_and_works_again_even_after_an_error() -> None:
+    with paused_collector():
+        assert not gc.isenabled()
+    assert gc.isenabled()
+
+    def failed() -> None:
+        with paused_collector():
+            raise ValueError
+
+    with pytest.raises(ValueError):
+        failed()
+    assert gc.isenabled()
+
+
+def test_one_that_rested_before_goes_on_resting() -> None:
+    gc.disable()
+    with paused_collector():
+        pass
+    assert not gc.isenabled()
+
+
+def test_a_package_that_is_there_is_given() -> None:
+    assert needed("math", extra="none", what=Message("nothing")) is math
+
+
+def test_a_missing_one_is_named_with_its_extra_and_what_else_can_be_done() -> None:
+    with raises(ParameterError, "package_missing", module="skisnow_nowhere", extra="far") as caught:
+        needed("skisnow_nowhere", extra="far", what=Message("A far thing"), instead=Message("Or stay here."))
+    assert str(caught.value) == (
+        "A far thing needs skisnow_nowhere, which cannot be loaded (No module named 'skisnow_nowhere'). "
+        "Install it: pip install 'skisnow[far]'. Or stay here."
+    )
+
+
+OPENSSL = shutil.which("openssl")
+needs_openssl = pytest.mark.skipif(OPENSSL is None, reason="openssl is not there, which makes the certificates")
+
+
+def made(folder: Path, *key: str) -> tuple[Path, Path]:
+    """A certificate and its private key."""
+    cert, own = folder / "cert.pem", folder / "key.pem"
+    words = ["req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-subj", "/CN=skisnow", *key]
+    subprocess.run([str(OPENSSL), *words, "-keyout", own, "-out", cert], check=True, capture_output=True)
+    return cert, own
+
+
+@needs_openssl
+def test_a_certificate_and_its_key_in_two_files_and_in_one(tmp_path: Path) -> None:
+    cert, key = made(tmp_path, "-nodes")
+    both = tmp_path / "both.pem"
+    both.write_bytes(cert.read_bytes() + key.read_bytes())
+    for files in ((cert, key), (both,)):
+        load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), *files)
+    with pytest.raises(ssl.SSLError):
+        load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), cert)
+
+
+@needs_openssl
+def test_a_key_with_a_password_is_refused(tmp_path: Path) -> None:
+    cert, key = made(tmp_path, "-passout", "pass:secret")
+    with pytest.raises(ValueError, match="password"):
+        load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), cert, key)

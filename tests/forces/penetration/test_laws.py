@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from tests.coded import raises
 
 from skisnow._support.errors import ParameterError, RangeWarning
+from skisnow._support.messages import Message
 from skisnow.forces.penetration import (
     AreaLaw,
     BilinearLaw,
@@ -148,13 +149,14 @@ def test_any_tool_will_do() -> None:
     ],
 )
 def test_what_no_snow_can_have_is_refused(make: Callable[[], object]) -> None:
-    with pytest.raises(ParameterError, match="it must be a finite number"):
+    with pytest.raises(ParameterError) as caught:
         make()
+    assert caught.value.code in {"out_of_range", "not_a_number"}
 
 
 @pytest.mark.filterwarnings("error::skisnow._support.errors.RangeWarning")
 @pytest.mark.parametrize("name", federolf_2006.PRESSURE_LAWS)
-def test_the_pressure_laws_of_the_paper_lie_in_its_range(name: str) -> None:
+def test_the_pressure_laws_of_the_paper_lie_in_its_range(name: Message) -> None:
     """The slopes go from 0.0036 to 0.034 N/mm³, the offsets from 0.058 to 0.35 N/mm²; beyond is warned of."""
     slope, offset = federolf_2006.PRESSURE_LAWS[name]
     MeanPressureLaw(slope * 1e9, offset * 1e6)

@@ -13,6 +13,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.replay import replay_of_run, ski_edges
 from skisnow.scenario.boots import read_boots
 from skisnow.simulation.run_tables import boots_text, write_boots
+from tests.coded import Coded, coded, raises
 
 
 def turn(**changes: object) -> Scenario:
@@ -120,22 +121,25 @@ SLOPE = "time_s," + ",".join(
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "told"),
     [
-        ("time_s,left_edge_angel_deg\n0,1\n", "left_edge_angle_deg"),
-        (f"{HEAD}\n0,1\n1,x\n2,3\n3,4\n", "row 3, column left_edge_angle_deg: 'x'"),
-        (f"{HEAD}\n0,1\n1,2\n", "4 rows"),
-        (f"{HEAD}\n0,1\n1,2\n1,3\n2,4\n", "must rise"),
-        ("left_edge_angle_deg\n0\n", "time_s"),
-        (f"{HEAD}\n0,1,2\n", "row 2"),
-        (SLOPE.replace(",left_pitch_deg", "") + "\n", "left_pitch_deg is missing"),
-        (SLOPE.replace("time_s", "distance_m") + "\n" + "\n".join(f"{i}" + ",0" * 12 for i in range(4)), "over time"),
+        ("time_s,left_edge_angel_deg\n0,1\n", coded("missing", name="left_edge_angel_deg")),
+        (f"{HEAD}\n0,1\n1,x\n2,3\n3,4\n", coded("not_a_number", value="x", line=3, head="left_edge_angle_deg")),
+        (f"{HEAD}\n0,1\n1,2\n", coded("out_of_range", n_rows=2, fewest_poses=4)),
+        (f"{HEAD}\n0,1\n1,2\n1,3\n2,4\n", coded("not_rising", line=4, clock="time_s")),
+        ("left_edge_angle_deg\n0\n", "missing"),
+        (f"{HEAD}\n0,1,2\n", coded("wrong_number_of_cells", line=2, n_row=3, n_head=2)),
+        (SLOPE.replace(",left_pitch_deg", "") + "\n", coded("missing", name="left_pitch_deg")),
+        (
+            SLOPE.replace("time_s", "distance_m") + "\n" + "\n".join(f"{i}" + ",0" * 12 for i in range(4)),
+            "contradiction",
+        ),
     ],
 )
-def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, said: str) -> None:
+def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, told: str | Coded) -> None:
     file = tmp_path / "boots.csv"
     file.write_text(text, encoding="utf-8")
-    with pytest.raises(ParameterError, match=said):
+    with raises(ParameterError, told):
         read_boots(file)
 
 

@@ -1,12 +1,18 @@
-"""Messages show parts of a text and a place, and limits at their edges."""
+"""Files of users: texts, JSON and values at the edges of their limits, and how messages name a place in them."""
 
 from __future__ import annotations
 
+import json
 import math
+import os
+import re
+from pathlib import Path
 
 import pytest
 
-from skisnow._support.user_files import GivenError, workbook
+import skisnow
+from skisnow._support.errors import SkisnowError
+from skisnow._support.user_files import GivenError, json_value, plain_bytes, plain_text, workbook
 from skisnow._support.user_files.text_files import (
     DEEPEST,
     LARGEST_WHOLE,
@@ -17,6 +23,10 @@ from skisnow._support.user_files.text_files import (
     shown,
     too_deep,
 )
+from skisnow.scenario import load_scenario, read_profile
+from skisnow.ski import read_ski
+from skisnow.snow.from_results import snow_from_results
+from skisnow.studies.study import read_study
 from tests.coded import Coded, coded, raises
 
 
@@ -77,3 +87,88 @@ def test_letters_beside_the_halves_are_sound_and_infinite_numbers_where_they_are
 
 def test_a_sheet_has_as_many_rows_as_excel_writes() -> None:
     assert workbook.MOST_ROWS == 1_048_576
+
+
+def test_what_is_within_the_limits_is_as_json_reads_it() -> None:
+    text = '{"a": [1, -9223372036854775808, 1.5e-3, null, true, "\\u00e9 \\ud83c\\udfbf"], "b": {"a": {}}}'
+    assert json_value(text) == json.loads(text)
+    assert json_value(text.encode()) == json.loads(text)
+    edge = "[" * DEEPEST + "]" * DEEPEST
+    assert json_value(edge) == json.loads(edge)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), coded("nested_too_deep", deepest=32)),
+        ('{"a":' * 100_000, coded("nested_too_deep", deepest=32)),
+        ("9" * 5000, coded("number_too_large", count=5000)),
+        ('{"a": [0, 9223372036854775808]}', coded("number_too_large", place="a[2]")),
+        ('{"a": 1e400}', coded("number_too_large", place="a")),
+        ("[NaN]", coded("not_json", word="NaN")),
+        ("-Infinity", coded("not_json", word="-Infinity")),
+        ('{"a": 1, "b": 2, "a": 3}', coded("repeated_key", key="a")),
+        (r'{"a": "\u0000"}', coded("invalid_character", place="a")),
+        (r'{"a": "\ud800"}', coded("invalid_character", place="a")),
+        ('{"a": 1', "not_json"),
+        ("", "not_json"),
+    ],
+)
+def test_beyond_the_limits(text: str, told: str | Coded) -> None:
+    with raises(GivenError, told) as error:
+        json_value(text, title="some.json")
+    assert str(error.value).startswith("some.json")
+
+
+def test_bytes_up_to_the_limit_are_read_and_not_one_more(tmp_path: Path) -> None:
+    path = tmp_path / "some"
+    path.write_bytes(b"12345678")
+    assert plain_bytes(path, most_bytes=8) == b"12345678"
+    with raises(GivenError, "too_large"):
+        plain_bytes(path, most_bytes=7)
+
+
+def test_lines_end_with_a_line_feed_however_they_did(tmp_path: Path) -> None:
+    path = tmp_path / "some"
+    path.write_bytes(b"\xef\xbb\xbfa\r\nb\rc\n")
+    assert plain_text(path, most_bytes=100) == "a\nb\nc\n"
+
+
+def test_text_of_another_encoding_names_its_byte(tmp_path: Path) -> None:
+    path = tmp_path / "some"
+    path.write_bytes("Höhe".encode("latin-1"))
+    with raises(GivenError, "not_text", byte=2):
+        plain_text(path, most_bytes=100)
+
+
+@pytest.mark.parametrize(
+    ("path", "told"), [("a\0b", "invalid_character"), ("\ud800", "cannot_read"), ("x" * 300, "cannot_read")]
+)
+def test_names_that_no_file_has(path: str, told: str | Coded) -> None:
+    with raises(GivenError, told):
+        plain_bytes(path, most_bytes=1)
+
+
+@pytest.mark.parametrize("read", [load_scenario, read_ski, read_study, snow_from_results, read_profile])
+def test_device_without_end_and_pipe_that_nobody_fills(
+    tmp_path: Path, read: object, noted_errors: list[SkisnowError]
+) -> None:
+    assert callable(read)
+    pipe = tmp_path / "pipe.toml"
+    os.mkfifo(pipe)
+    for place in (Path("/dev/zero"), pipe):
+        noted_errors.clear()
+        with pytest.raises(SkisnowError):
+            read(place)
+        assert noted_errors[0].code == "cannot_read"
+
+
+READERS = re.compile(r"\b(tomllib|json|orjson)\.loads?\(|\bfrom (tomllib|json|orjson) import|JSONDecoder")
+ITS_OWN = {Path("_support/user_files/text_files.py"), Path("_support/user_files/json_text.py")}
+
+
+def test_toml_and_json_are_read_in_one_place() -> None:
+    root = Path(skisnow.__file__).parent
+    found = {path.relative_to(root) for path in root.rglob("*.py") if READERS.search(path.read_text(encoding="utf-8"))}
+    assert found - ITS_OWN == set()
+    assert found  # the pattern finds what it looks for
