@@ -34,11 +34,20 @@ PICTURES: Final = DOCS / "_static" / "gallery"
 PAGES: Final = DOCS / "gallery"
 START, END = "<!-- examples -->", "<!-- end of examples -->"
 THEMES: Final = {
-    "tests": ("Tests on the slope", ("one_series", "gauge_offset", "which_law", "two_sites", "shear_blade")),
-    "snow": ("Snow that remembers", ("unloading", "second_in_the_groove", "own_force_law")),
-    "skis": ("A ski in snow", ("more_waist", "does_it_hold")),
-    "turns": ("Turns", ("across_a_pipe", "energy_of_a_turn", "skid_to_carve")),
-    "tracks": ("Measured tracks", ("radius_of_a_track", "two_tracks", "friction_from_photo_cells")),
+    "snow": (
+        "Tests on the slope, and snow that remembers",
+        (
+            *("one_series", "gauge_offset", "which_law", "two_sites", "shear_blade"),
+            *("unloading", "second_in_the_groove", "own_force_law"),
+        ),
+    ),
+    "turns": (
+        "Skis, turns and tracks",
+        (
+            *("more_waist", "does_it_hold", "across_a_pipe", "energy_of_a_turn", "skid_to_carve"),
+            *("radius_of_a_track", "two_tracks", "friction_from_photo_cells"),
+        ),
+    ),
 }
 """Title and examples of each page."""
 STYLE: Final[dict[str, Any]] = {

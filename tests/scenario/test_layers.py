@@ -122,7 +122,7 @@ def difference(earlier: Any, today: Any) -> str:
 
 
 def test_answers_differ_from_the_earlier_version_only_by_the_rules(answers: Resolved) -> None:
-    """The table of docs/decisions.md."""
+    """Every difference follows from a rule; docs/decisions.md has the counts."""
     counts: Counter[str] = Counter()
     for (combination, today), earlier in zip(answers, json.loads(ANSWERS.read_text()), strict=True):
         if today == earlier:
