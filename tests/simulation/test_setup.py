@@ -109,6 +109,28 @@ def test_elements_and_lines_follow_from_the_waves_of_a_beam_on_an_elastic_founda
     assert found["elements"] == math.ceil(5.0 * 1.6 / wave) > 40.0
 
 
+@pytest.mark.parametrize(
+    ("changes", "is_coarse"),
+    [
+        ({"snow.H_V_N_per_mm3": 0.06}, False),
+        ({"snow.H_V_N_per_mm3": 0.2}, True),
+        ({"snow.H_V_N_per_mm3": 1.0}, True),
+        ({"snow.H_V_N_per_mm3": 20.0}, False),
+        ({"sledge.edge_angle_deg": 0.0}, False),
+    ],
+)
+def test_the_fast_method_has_a_coarse_mesh_on_a_shallow_edge(changes: dict[str, float], is_coarse: bool) -> None:
+    """416 N at 30°: 2.4 mm deep in 0.06 N/mm³, 1.3 mm in 0.2; hard snow and a flat base have short waves."""
+    default, fast = (
+        laid_out(load_scenario("carved-46m", changes={**changes, "solver.method": method})).numbers
+        for method in ("default", "fast")
+    )
+    chosen = {name: fast[name] for name in ("elements", "line_spacing_m")}
+    assert chosen == (
+        {"elements": 24.0, "line_spacing_m": 0.025} if is_coarse else {name: default[name] for name in chosen}
+    )
+
+
 def test_in_soft_snow_an_element_is_four_and_a_half_centimetres_long() -> None:
     """1.8 m of giant-slalom ski, and a line of snow every two centimetres."""
     found = laid_out(load_scenario("carved-46m", changes={"snow.H_V_N_per_mm3": 0.02})).numbers

@@ -10,7 +10,7 @@ from typing import Annotated, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, cross
 from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -245,7 +245,7 @@ def down_and_left(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Unit vectors (…, 3) in surfaces with these normals (…, 3): towards x as seen from above, and to the left."""
     ahead = np.stack([normal[..., 2], np.zeros_like(normal[..., 0]), -normal[..., 0]], axis=-1)
     ahead = ahead / np.linalg.norm(ahead, axis=-1, keepdims=True)
-    return ahead, np.cross(normal, ahead)
+    return ahead, cross(normal, ahead)
 
 
 def reach_of(slope: Slope) -> tuple[tuple[float, float], tuple[float, float]]:

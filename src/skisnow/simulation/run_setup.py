@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, cross
 from .._support.errors import ParameterError
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
@@ -17,7 +17,7 @@ from ..dynamics import Dynamics, Ended, StepControl
 from ..dynamics.motion import LONGEST_STEP, DynamicsState
 from ..forces.friction import LinearFriction
 from ..geometry.surfaces import Grid
-from ..scenario import Plane, Scenario, SnowMap
+from ..scenario import Plane, Scenario, SnowMap, Solver
 from ..scenario.terrain import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam import clamped
 from ..skier import BalancedSkier
@@ -32,6 +32,14 @@ LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines."""
 FAST: Final = 10.0
 """Times the tolerance, to which the fast method controls a step's error."""
+LONG_ELEMENT: Final = 0.075
+"""Length (m) of a finite element of the fast method on a shallow edge."""
+FAST_SPACING: Final = 0.025
+"""Spacing (m) of the snow's lines of the fast method under a shallow edge."""
+SHALLOW: Final = 2e-3
+"""Depth (m) of an edge at the start, as if the ski were rigid, below which it is shallow."""
+LONG_WAVE: Final = 0.15
+"""1/λ (m) of a contact above which its waves are long: two elements of the fast method."""
 FAST_LONGEST: Final = 10e-3
 """Longest step (s) of the fast method (that of outputs)."""
 FAST_GROOVE: Final = 3.0
@@ -115,7 +123,7 @@ class Setup:
         if self.drive is None:
             return rotation @ rates[:3]
         boots = self.dynamics.boots.mean(axis=0)
-        return np.asarray(rotation @ (rates[:3] + np.cross(rates[3:], boots[0]) + boots[4]))
+        return np.asarray(rotation @ (rates[:3] + cross(rates[3:], boots[0]) + boots[4]))
 
     @property
     def attitude(self) -> FloatArray:
@@ -247,8 +255,7 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     load, depth, wavelength = _contact(scenario)
     solver, air = scenario.solver, scenario.air
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
-    elements = solver.elements or max(ELEMENTS, math.ceil(5.0 * length / wavelength))
-    spacing = solver.line_spacing or min(LINE_SPACING, wavelength / 10.0)  # two to an element
+    elements, spacing = _mesh(solver, length, wavelength, depth)
     ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness)
     body = sledge_body(
         scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
@@ -260,6 +267,18 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     dynamics = Dynamics(body, contact, *_start(scenario, depth), _control(scenario))
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "load_N": load}
     return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf)
+
+
+def _mesh(solver: Solver, length: float, wavelength: float, depth: float) -> tuple[int, float]:
+    """Number of elements of a ski and spacing (m) of the lines, as given or by depth and 1/λ of the contact (m).
+
+    Two lines lie on an element. The fast method has fewer of both on a shallow edge that bends in long waves. In deep
+    grooves fewer lines move the end of a turn by 1 cm; a flat base meets each new line with a jolt.
+    """
+    elements, spacing = max(ELEMENTS, math.ceil(5.0 * length / wavelength)), min(LINE_SPACING, wavelength / 10.0)
+    if solver.method == "fast" and depth < SHALLOW and wavelength > LONG_WAVE:
+        elements, spacing = math.ceil(length / LONG_ELEMENT), FAST_SPACING
+    return solver.elements or elements, solver.line_spacing or spacing
 
 
 def _control(scenario: Scenario) -> StepControl:

@@ -162,9 +162,12 @@ class CarveControl:
         """Acceleration of a carve in balance (m/s²)."""
         return min(self.edges.carving_acceleration(speed), self._steepest)
 
-    def _planned(self, at: Underway, most: float) -> float:
-        """Acceleration that is planned, over that of a carve in balance; at most that with the greatest edge angle."""
-        limit = min(at.speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
+    def _limit(self, speed: float) -> float:
+        """Acceleration (m/s²) of a carve with the greatest edge angle, at most that at the greatest lean."""
+        return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
+
+    def _planned(self, at: Underway, most: float, limit: float) -> float:
+        """Acceleration that is planned, up to a limit, over that of a carve in balance."""
         return max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
 
     def _foreseen(self, now: float, seen: Seen, omega: float) -> tuple[float, float]:
@@ -173,15 +176,15 @@ class CarveControl:
         lag, fading = self._lag(seen.feet_speed), self.skier.leg_gain * omega
         most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
         at = Underway(now, *seen.feet, seen.feet_course, seen.feet_speed, acceleration)
-        total = weights = first = 0.0
+        limit, weight_of_body, total, weights, first = self._limit(seen.feet_speed), self._weight, 0.0, 0.0, 0.0
         for i in range(round(FORESIGHT / step)):
             later = (i + 0.5) * step
             at.time = now + later
-            rate += step * (EDGE_CHANGE**2 * (self._planned(at, most) - turn) - 2.0 * EDGE_CHANGE * rate)
+            rate += step * (EDGE_CHANGE**2 * (self._planned(at, most, limit) - turn) - 2.0 * EDGE_CHANGE * rate)
             turn += step * rate
             wished = most * turn + self._asked * math.exp(-fading * later)
             slope = self.gravity.down * math.sin(at.heading)
-            acceleration += (self.edges.held(wished, slope, self._weight) - acceleration) * step / (lag + step)
+            acceleration += (self.edges.held(wished, slope, weight_of_body) - acceleration) * step / (lag + step)
             balanced = self.body.height * (acceleration + slope) / self.gravity.normal
             first = balanced if i == 0 else first
             weight = math.exp(-omega * later)
@@ -205,7 +208,8 @@ class CarveControl:
         """Edge angle (rad), by a filter of the planned turn."""
         (turn, rate), speed = self._turn, seen.feet_speed
         most, gravity = self._most(speed), self.gravity.normal
-        planned = self._planned(Underway(now, *seen.feet, seen.feet_course, speed, self._acceleration), most)
+        at = Underway(now, *seen.feet, seen.feet_course, speed, self._acceleration)
+        planned = self._planned(at, most, self._limit(speed))
         rate += dt * (EDGE_CHANGE**2 * (planned - turn) - 2.0 * EDGE_CHANGE * rate)
         self._turn = [turn + rate * dt, rate]
         asked = BY_EDGES * self.skier.edge_gain * gravity * error / self.body.height

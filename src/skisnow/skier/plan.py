@@ -110,7 +110,7 @@ class TurnsOverTime:
 
 def half_waves(apexes: Sequence[tuple[float, float]], x: float) -> tuple[float, float, float]:
     """Place aside, slope and second derivative of half waves from apex to apex, at a place down the slope (m)."""
-    i = min(max(bisect.bisect_left(apexes, x, key=lambda apex: apex[0]) - 1, 0), len(apexes) - 2)
+    i = min(max(bisect.bisect_left(apexes, (x, -math.inf)) - 1, 0), len(apexes) - 2)
     (x0, y0), (x1, y1) = apexes[i], apexes[i + 1]
     rate, half = math.pi / (x1 - x0), 0.5 * (y1 - y0)
     phase = min(math.pi, max(0.0, rate * (x - x0)))

@@ -8,7 +8,7 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, cross
 from ..scenario.terrain import down_and_left
 
 BEARING: Final = 0.2
@@ -124,21 +124,22 @@ def seen_at(
     """
     rotation, boots, spin = moment.rotation, moment.boots, moment.velocity[3:]
     up = normal @ rotation
-    ahead = boots[:, 1].mean(axis=0)
+    mean = boots.mean(axis=0)
+    ahead = mean[1]
     ahead = ahead - (ahead @ up) * up
     ahead /= np.linalg.norm(ahead)
-    left = np.cross(up, ahead)
+    left = cross(up, ahead)
     force, turning = (np.einsum("kca,kc->ka", boots[:, 1:4], part) for part in np.split(moment.wrench, 2, axis=1))
-    middle = boots[:, 0].mean(axis=0)
+    middle = mean[0]
     centre = np.array([centre_of_mass[0], 0.0, centre_of_mass[1]])
     leg = centre - middle
-    leg_rate = np.cross(spin, leg) - boots[:, 4].mean(axis=0)
+    leg_rate = cross(spin, leg) - mean[4]
     loads, total = force @ up, force.sum(axis=0)
     load = float(loads.sum())
-    twist = (np.cross(boots[:, 0] - middle, force) + turning).sum(axis=0)
+    twist = (cross(boots[:, 0] - middle, force) + turning).sum(axis=0)
     bears = load > BEARING * weight
     down, aside = (each @ rotation for each in down_and_left(normal))
-    way = moment.velocity[:3] + np.cross(spin, centre)
+    way = moment.velocity[:3] + cross(spin, centre)
     step = way - leg_rate  # velocity of the feet
     course = math.atan2(step @ aside, step @ down)
     heading = math.atan2(ahead @ aside, ahead @ down)
