@@ -142,9 +142,9 @@ def test_less_overlap_is_no_advantage() -> None:
 
 
 def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> None:
-    """Of 40 intervals with a coverage of 95 % at least 34 contain the truth in 997 of 1000 cases."""
+    """Of 20 intervals with a coverage of 95 % at least 16 contain the truth in 997 of 1000 cases."""
     inside, errors = [], []
-    for seed in range(20):
+    for seed in range(10):
         for size in (0.01, 0.1):
             noise = size * np.random.default_rng(seed).normal(size=(100, 2))
             measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
@@ -152,7 +152,7 @@ def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> Non
             assert motion.turned_error is not None
             inside.append(abs(motion.turned - 0.4) < motion.turned_error)
             errors.append(motion.turned_error)
-    assert sum(inside) >= 34
+    assert sum(inside) >= 16
     assert np.mean(errors[1::2]) == pytest.approx(10.0 * np.mean(errors[::2]), rel=0.3)
 
 
