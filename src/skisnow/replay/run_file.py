@@ -30,7 +30,12 @@ if TYPE_CHECKING:
     from .replay import Replay, ReplayBoots, ReplayTrack
 
 
-_DAMAGE: Final = (TypeError, ValueError, LookupError, AttributeError, ArithmeticError, AssertionError, MemoryError)
+_DAMAGE: Final = (
+    TypeError, ValueError, LookupError, AttributeError, ArithmeticError, AssertionError, MemoryError,
+    SyntaxError,  # of a damaged name of a type
+)  # fmt: skip
+_SHORTEST_STEP: Final = 1e-9
+"""Time (s) between two moments below which they are damaged."""
 RUN_FILE: Final = "run.nc"
 _PLAIN: Final = (
     "time", "speed", "heading", "turn_radius", "depth", "station", "bending", "twist", "edge_depth",
@@ -239,7 +244,7 @@ def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
         A number is not finite or too large, times do not rise, or an attitude is not a rotation.
     """
     require_finite(arrays)
-    if np.any(np.diff(arrays["time"]) <= 0.0):
+    if np.any(np.diff(arrays["time"]) < _SHORTEST_STEP):
         raise ParameterError("time does not rise", code="not_rising")
     if np.any(np.diff(arrays["station"]) >= 0.0):
         raise ParameterError("station does not fall from tip to tail", code="not_falling")

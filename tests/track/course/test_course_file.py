@@ -124,6 +124,12 @@ def test_sides_that_are_not_told_are_those_of_the_bends(tmp_path: Path) -> None:
         read_course(written(tmp_path, straight, "course.gpx"))
 
 
+@pytest.mark.parametrize("type_", ["<type>left</type>", ""])
+def test_one_waypoint_is_rejected(type_: str, tmp_path: Path) -> None:
+    with pytest.raises(ParameterError):
+        read_course(written(tmp_path, gpx([(0.0, 0.0, type_)]), "course.gpx"))
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

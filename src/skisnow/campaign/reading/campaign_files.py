@@ -17,6 +17,7 @@ from ..smet import CampaignWeather, parse_smet
 from ..snow_micro_pen import parse_snow_micro_pen
 from ..snow_micro_pen_records import SnowMicroPenRecordings
 from .campaign_file import CAMPAIGN_FILE
+from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN
 
 if TYPE_CHECKING:
@@ -174,14 +175,15 @@ ENDING: Final = ".pnt"
 
 
 def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]:
-    """Read and check all files that the table names; problems are reported with the row."""
+    """Read and check all files that the table names; problems are reported with the row, up to `MOST_LISTED`."""
     contents: dict[str, bytes] = {}
     if table is None or table.absent:
         return contents
     for name in (SNOW_MICRO_PEN.key, "file"):
         files.problems.extend(_repeated_names(table, name))
+    most = len(files.problems) + MOST_LISTED
     for row, name in enumerate(table.names["file"].cells()):
-        if name and name not in contents:
+        if name and name not in contents and len(files.problems) < most:
             data = _content(table, row, name, files)
             if data is not None:
                 contents[name] = data
@@ -213,12 +215,12 @@ def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None
 
 
 def _repeated_names(table: Table, column: str) -> list[Problem]:
-    """Errors for recordings and files that are repeated in a later row, because they would count twice."""
+    """Errors for recordings and files that are repeated, as they would count twice; at most `MOST_LISTED`."""
     first: dict[str, int] = {}
-    problems = []
+    problems: list[Problem] = []
     for row, name in enumerate(table.names[column].cells()):
         reference = first.setdefault(name, row)
-        if name and reference != row:
+        if name and reference != row and len(problems) < MOST_LISTED:
             allowed = Message("each {column} once; row {row} has it, too", column=column, row=int(table.row[reference]))
             action = Message("Correct the cell, or take one of the rows out.")
             problems.append(table.error(row, "mixed_experiment", column, table.names[column][row], allowed, action))

@@ -173,7 +173,7 @@ def _bends(place: FloatArray) -> list[Side | None]:
     ]
     other: dict[Side | None, Side | None] = {"left": "right", "right": "left", None: None}
     ends = [other[inner[0]], other[inner[-1]]] if inner else [None, None]
-    return [ends[0], *inner, ends[1]]
+    return [ends[0], *inner, ends[1]][: len(place)]
 
 
 def on_slope(course: Course, *, slope_angle: float | None) -> Course:
