@@ -3,7 +3,7 @@
 ``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
 identifications, ``web`` those of the web lab in a browser, ``contact`` those of the contact in the compiled core.
 ``scenarios`` runs random scenarios and counts how they end, ``frontier`` sets error against cost of a turn, ``former``
-builds a former commit and compares the processor time of turns with it.
+builds a former commit and compares the processor time of turns with it, ``ends`` the ends of the built-in scenarios.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import sys
 from pathlib import Path
 
 TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
-SCENARIOS, FRONTIER, FORMER = "scenarios", "frontier", "former"
+SCENARIOS, FRONTIER, FORMER, ENDS = "scenarios", "frontier", "former", "ends"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
     parser.add_argument(
-        "part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER, FORMER], help="these alone; left out: everything"
+        "part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS], help="these alone; left out: everything"
     )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
@@ -58,6 +58,10 @@ def main() -> None:
         from .turns import former
 
         former.print_table(options.out or Path("former"), options.repeats)
+    elif options.part == ENDS:
+        from .turns import former
+
+        former.print_ends(options.out or Path("former"))
     else:
         _everything_else(options.rows)
         print(flush=True)

@@ -1,15 +1,16 @@
-"""Processor time of turns beside that of a former commit, which is built into a separate environment."""
+"""Processor time and ends of turns beside those of a former commit, which is built into a separate environment."""
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import statistics
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from .cases import FIRM, HARD_SNOW, SCENARIO, SKID, SOFT
 
@@ -46,9 +47,10 @@ Dynamics.advance = timed
 scenario = load(sys.argv[1], changes=json.loads(sys.argv[2]))
 begin = time.process_time()
 run = simulate(scenario)
-print(json.dumps([in_core, time.process_time() - begin, run.steps, run.rejected_steps, *run.place[-1].tolist()]))
+numbers = [in_core, time.process_time() - begin, run.steps, run.rejected_steps]
+print(json.dumps([*numbers, *run.place[-1].tolist(), run.outcome]))
 """
-"""Prints seconds in the core and in all, steps, rejected steps, and the end of the boots' path (m)."""
+"""Prints seconds in the core and in all, steps, rejected steps, the end of the boots' path (m), and the outcome."""
 
 
 def build(commit: str, folder: Path) -> Path:
@@ -84,9 +86,26 @@ def _cells(name: str, places: Sequence[Path], repeats: int) -> Iterator[str]:
 
 
 def _numbers(name: str, place: Path) -> list[float]:
-    scenario, changes = CASES[name]
+    *numbers, _ = _numbers_and_outcome(*CASES[name], place)
+    return numbers
+
+
+def print_ends(folder: Path) -> None:
+    """Print a Markdown table of the ends of built-in scenarios with both builds, by the default method."""
+    places = (build(COMMIT, folder / COMMIT), ROOT / "src")
+    print(f"| scenario | {COMMIT} (m) | now (m) | moved by (m) | outcome |")
+    print("| --- | --- | --- | ---: | --- |")
+    for file in sorted((places[0] / "skisnow/scenario/catalogue").glob("*.toml")):
+        rows = [_numbers_and_outcome(file.stem, {}, place) for place in places]
+        ends = [row[4:6] for row in rows]
+        outcomes = " → ".join(dict.fromkeys(row[-1].replace("_", " ") for row in rows))
+        cells = " | ".join(f"{x:.3f}, {y:.3f}" for x, y in ends)
+        print(f"| `{file.stem}` | {cells} | {math.dist(*ends):.3f} | {outcomes} |", flush=True)
+
+
+def _numbers_and_outcome(scenario: str, changes: Mapping[str, object], place: Path) -> list[Any]:
     words = [sys.executable, "-W", "ignore", "-c", _RUN, scenario, json.dumps(dict(changes))]
     environment = os.environ | {"PYTHONPATH": str(place)}
     done = subprocess.run(words, check=True, capture_output=True, text=True, env=environment, cwd=place)
-    numbers: list[float] = json.loads(done.stdout)
-    return numbers
+    row: list[Any] = json.loads(done.stdout)
+    return row
