@@ -20,7 +20,7 @@ from skisnow.estimation.hardness import DEFINITIONS, hardness, hardness_at_large
 from skisnow.estimation.readings import ReadingUncertainty, readings_of
 from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.screening import quality_flags, series_estimates
-from skisnow.estimation.unloading import Unloading, site_unloading, unloading
+from skisnow.estimation.unloading import Unloading, _reciprocal, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
 
 from .conftest import MakeCampaign
@@ -251,3 +251,10 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
         shift = np.where(np.arange(6) % 3 == j, step, 0.0)
         squares += ((fitted(returning=shift).rebound_ratio - fitted(returning=-shift).rebound_ratio) / (2 * step)) ** 2
     np.testing.assert_allclose(fitted().rebound_ratio_error, u * np.sqrt(squares), rtol=2e-3)
+
+
+def test_an_interval_that_reaches_zero_has_no_reciprocal() -> None:
+    ratio, ends = _reciprocal(np.array([0.1, 0.1]), np.array([[-0.1, 0.3], [0.05, 0.2]]))
+    assert ratio.tolist() == [10.0, 10.0]
+    assert np.isnan(ends[0]).all()
+    assert ends[1].tolist() == [5.0, 20.0]
