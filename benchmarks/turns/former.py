@@ -5,18 +5,22 @@ from __future__ import annotations
 import json
 import math
 import os
-import statistics
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from .cases import FIRM, HARD_SNOW, SCENARIO, SKID, SOFT
+from .cases import FINE, FIRM, HARD_SNOW, SCENARIO, SKID, SOFT, Runs
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 COMMIT: Final = "58cc12bf"
 """Commit to which the goals for speed relate."""
+DURATION: Final = 5.0
+"""Simulated time (s) of a turn."""
+PAGE: Final = ROOT / "docs" / "benchmarks.md"
+BEGIN: Final = "<!-- table of python -m benchmarks former -->"
+END: Final = "<!-- end of the table of former -->"
 CASES: Final[Mapping[str, tuple[str, Mapping[str, object]]]] = {
     "fast": (SCENARIO, {"solver.method": "fast"}),
     "default": (SCENARIO, {}),
@@ -66,23 +70,33 @@ def build(commit: str, folder: Path) -> Path:
 
 
 def print_table(folder: Path, repeats: int) -> None:
-    """Run every case in turn with both builds and print a Markdown table."""
-    places = (build(COMMIT, folder / COMMIT), ROOT / "src")
-    print(f"| run | {COMMIT}, core (ms) | now, core (ms) | ratio | ratio of the whole run | steps | rejected |")
-    print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
+    """Run every case in turn with both builds, print a Markdown table, and write it into the page of benchmarks."""
+    places, runs = (build(COMMIT, folder / COMMIT), ROOT / "src"), Runs(DURATION)
+    lines = [
+        f"| run | {COMMIT}, ms | now, ms | ratio | ratio of the whole run | end off (mm) |",
+        "| --- | ---: | ---: | ---: | ---: | ---: |",
+    ]
+    print(*lines, sep="\n")
     for name in CASES:
-        print(f"| {name} | {' | '.join(_cells(name, places, repeats))} |", flush=True)
+        lines.append(f"| {name} | {' | '.join(_cells(name, places, repeats, runs))} |")
+        print(lines[-1], flush=True)
+    before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
+    page = "\n".join([before + BEGIN, *lines, END + rest.split(END, 1)[1]])
+    PAGE.write_text(page, encoding="utf-8")
 
 
-def _cells(name: str, places: Sequence[Path], repeats: int) -> Iterator[str]:
-    """Medians of the runs of both builds, taken in turn A B A B …"""
+def _cells(name: str, places: Sequence[Path], repeats: int, runs: Runs) -> Iterator[str]:
+    """Shortest runs of both builds, taken in turn A B A B …"""
     rows = [[_numbers(name, place) for place in places] for _ in range(repeats)]
-    former, now = (
-        [statistics.median(column) for column in zip(*runs, strict=True)] for runs in zip(*rows, strict=True)
-    )
-    yield from (f"{1e3 * former[0]:.0f}", f"{1e3 * now[0]:.0f}")
+    former, now = ([min(column) for column in zip(*each, strict=True)] for each in zip(*rows, strict=True))
+    yield from (f"{1e3 * former[0]:,.0f}", f"{1e3 * now[0]:,.0f}")
     yield from (f"{former[part] / now[part]:.2f}" for part in range(2))
-    yield from (f"{now[2]:,.0f}", f"{now[3]:,.0f}")
+    scenario, changes = CASES[name]
+    if scenario != SCENARIO:
+        yield ""
+        return
+    fine = runs.reference({**changes, "solver.method": "default", **FINE}).place[-1]
+    yield f"{1e3 * math.dist(now[4:6], fine[:2]):.1f}"
 
 
 def _numbers(name: str, place: Path) -> list[float]:
