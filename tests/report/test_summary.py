@@ -74,6 +74,14 @@ def test_many_regressions_and_sites_are_cut_and_the_rest_counted(reference: Repo
     assert max(counts) > 8
 
 
+def test_a_campaign_with_nothing_has_a_summary(campaign: Campaign) -> None:
+    silent = replace(campaign, penetration=None, shear=None, gauge_resolution=None, load_uncertainty=None)
+    text = summary(results_of(silent))
+    assert "penetration experiments: none" in text
+    assert "no depth uncertainty" in text
+    assert "load_uncertainty_N" in text
+
+
 def test_it_prints_on_a_western_terminal(reference: Reported) -> None:
     text = summary(reference.results)
     assert text.encode("cp1252").decode("cp1252") == text
