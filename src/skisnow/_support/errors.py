@@ -163,8 +163,11 @@ def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
     words = list(choices)
     if value not in words:
         raise ParameterError(
-            Message("{name} is {value!r}. {allowed}", name=name, value=value, allowed=nearest(str(value), words)),
+            "{name} is {value!r}. {allowed}",
             code="unknown_choice",
+            name=name,
+            value=value,
+            allowed=nearest(str(value), words),
         )
 
 

@@ -253,16 +253,14 @@ class CsvRow:
     def refused(self, column: str, problem: Message, *, code: str, action: Message | None = None) -> ParameterError:
         """The error of a cell: whole sentences for the problem and for what to do."""
         return ParameterError(
-            Message(
-                "{path}, row {row}, column {column}: {value!r}: {problem} {action}",
-                path=self.path,
-                row=self.row,
-                column=column,
-                value=self.cells[column],
-                problem=problem,
-                action=action or self.action,
-            ),
+            "{path}, row {row}, column {column}: {value!r}: {problem} {action}",
             code=code,
+            path=self.path,
+            row=self.row,
+            column=column,
+            value=self.cells[column],
+            problem=problem,
+            action=action or self.action,
         )
 
 
@@ -298,7 +296,7 @@ def csv_rows(
         yield from _rows(path, lines, columns, further, action, mark)
     except csv.Error as error:
         raise ParameterError(
-            Message("{path} is not CSV text ({error}). {action}", path=path, error=error, action=action), code="not_csv"
+            "{path} is not CSV text ({error}). {action}", code="not_csv", path=path, error=error, action=action
         ) from error
 
 
@@ -309,35 +307,33 @@ def _rows(
     missing = [name for name in columns if name not in head]
     if missing:
         raise ParameterError(
-            Message(
-                "{path}, row 1: column {column} is missing among {columns}. {action}",
-                path=path,
-                column=missing[0],
-                columns=head,
-                action=action,
-            ),
+            "{path}, row 1: column {column} is missing among {columns}. {action}",
             code="missing_column",
+            path=path,
+            column=missing[0],
+            columns=head,
+            action=action,
         )
     twice = [name for name in (*columns, *further) if head.count(name) > 1]
     if twice:
         raise ParameterError(
-            Message("{path}, row 1: the column {column} is there twice. Keep one of them.", path=path, column=twice[0]),
+            "{path}, row 1: the column {column} is there twice. Keep one of them.",
             code="repeated_column",
+            path=path,
+            column=twice[0],
         )
     places = {name: head.index(name) for name in (*columns, *further) if name in head}
     for row, cells in enumerate(lines, start=2):
         if any(cell.strip() for cell in cells[len(head) :]):
             raise ParameterError(
-                Message(
-                    "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps "
-                    "because of decimal commas. {action}",
-                    path=path,
-                    row=row,
-                    count=len(cells),
-                    columns=len(head),
-                    action=action,
-                ),
+                "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps because of "
+                "decimal commas. {action}",
                 code="too_many_cells",
+                path=path,
+                row=row,
+                count=len(cells),
+                columns=len(head),
+                action=action,
             )
         if any(cell.strip() for cell in cells):
             values = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}

@@ -20,7 +20,6 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Final
 
 from .errors import OutputError
-from .messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -262,8 +261,8 @@ def cannot_write(path: str | Path, error: OSError) -> OutputError:
     """The sentence for a place that cannot be written."""
     reason = error.strerror or error
     return OutputError(
-        Message(
-            "{path} cannot be written: {reason}. Choose another place or free some space.", path=path, reason=reason
-        ),
+        "{path} cannot be written: {reason}. Choose another place or free some space.",
         code="cannot_write",
+        path=path,
+        reason=reason,
     )

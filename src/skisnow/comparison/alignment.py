@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import stdtrit
 
-from .._support.arrays import FloatArray
+from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import FitError, ParameterError
 from .._support.units import CONFIDENCE, DEGREE
 from .distances import EXACTNESS, Polyline, polyline
@@ -268,7 +267,7 @@ def _nearest_places(path: Path, places: FloatArray, motion: Motion) -> tuple[Flo
 
 
 def _equations(
-    path: Path, local: FloatArray, nearest: NearestPlaces, inside: npt.NDArray[np.bool_], motion: Motion,
+    path: Path, local: FloatArray, nearest: NearestPlaces, inside: BoolArray, motion: Motion,
     *, start: bool, heading: bool,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Matrix and right side of the linear equations for a step; only offsets across the simulated track count."""

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import BoolArray, FloatArray
 from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from ..track.track import Track
@@ -247,7 +247,7 @@ def interpolate(at: FloatArray, abscissa: FloatArray, values: FloatArray) -> Flo
     return np.stack([np.interp(at, abscissa, column) for column in values.T], axis=1)
 
 
-def compared_points(track: Track, *, dimensions: int) -> npt.NDArray[np.bool_]:
+def compared_points(track: Track, *, dimensions: int) -> BoolArray:
     """True (n,) for points that are usable and have all coordinates."""
     return track.usable & np.isfinite(track.place[:, :dimensions]).all(axis=1)
 

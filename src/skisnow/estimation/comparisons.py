@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import IntArray
 from .._support.content import index_names
 from .._support.errors import FitError
 from .._support.messages import Message
@@ -115,7 +115,7 @@ def site_values(values: FloatArray, used: BoolArray, site: Sequence[str]) -> tup
     return tuple(rows)
 
 
-def _half_width(data: FloatArray, sites: npt.NDArray[np.int64]) -> float:
+def _half_width(data: FloatArray, sites: IntArray) -> float:
     """Half of the 95 % interval of the mean; NaN for one value, and for more than one site but fewer than four."""
     n_sites = len(np.unique(sites))
     if n_sites >= FEWEST_SITES:

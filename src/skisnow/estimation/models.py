@@ -12,8 +12,8 @@ from functools import cache
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import BoolArray
 from .._support.display import ShownFields
 from .._support.messages import Message
 from ..statistics.bounded import Condensed, condensed
@@ -214,7 +214,7 @@ def _row(
     basis: EndBasis,
     model: Model,
     ends: FloatArray,
-    bound: npt.NDArray[np.bool_],
+    bound: BoolArray,
     n_parameters: int,
     residual: FloatArray,
 ) -> ModelFit:
@@ -250,7 +250,7 @@ def _root(sse: float, count: int) -> float:
     return float(np.sqrt(sse / count)) if count > 0 else float("nan")
 
 
-def _bounds(model: Model, basis: EndBasis, bound: npt.NDArray[np.bool_]) -> tuple[str, ...]:
+def _bounds(model: Model, basis: EndBasis, bound: BoolArray) -> tuple[str, ...]:
     names: list[str] = []
     for term, name, start in ((model.a, "a", 0), (model.b, "b", 2)):
         if term == "constant" or (term == "linear" and basis.flat):

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.content import index_names
 from .._support.display import ShownFields
 from .._support.errors import FitError
@@ -209,7 +209,7 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
     return tuple(rows)
 
 
-def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: npt.NDArray[np.int64]) -> Regression:
+def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: IntArray) -> Regression:
     fit = _fit(y, x)
     by_site = None
     if fit is not None and len(np.unique(sites)) > 1:
@@ -226,9 +226,7 @@ def _fit(response: FloatArray, predictor: FloatArray) -> LinearFit | None:
         return None
 
 
-def fit_warnings(
-    fits: tuple[ModelFit, ...], selected: ModelFit | None, load: npt.NDArray[np.float64]
-) -> tuple[str, ...]:
+def fit_warnings(fits: tuple[ModelFit, ...], selected: ModelFit | None, load: FloatArray) -> tuple[str, ...]:
     """Sentence about a selected model that misses the loads (N), or about all models where none fits them."""
     size = float(np.sqrt(np.mean(load**2)))
     if fits and all(fit.rmse > size for fit in fits):

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.outcomes import outcome_words
 from .._support.units import MM
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Json: TypeAlias = Mapping[str, Any]
-FloatArray = npt.NDArray[np.float64]
 
 _PANELS: Final = (
     ("edge_depth_mm", Message("edge depth $e$ (mm)")),

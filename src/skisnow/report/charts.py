@@ -12,12 +12,9 @@ from ..geometry import in_form
 from .formatting import significant
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
+    from .._support.arrays import FloatArray
     from ..campaign.records import Campaign, PenetrationTests
     from ..geometry import GeometryForm, Tool
-
-    FloatArray = npt.NDArray[np.float64]
     from ..ski import Ski
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from markupsafe import Markup
 from matplotlib.lines import Line2D
 
+from .._support.arrays import BoolArray
 from .._support.errors import require_language
 from .._support.messages import ENGLISH, Message, in_language, template
 from .._support.outcomes import outcome_words
@@ -342,7 +342,7 @@ def draw_residuals(fits: Sequence[Fit]) -> Figure:
     return figure
 
 
-def _measured_mask(fit: Fit, i: int) -> npt.NDArray[np.bool_]:
+def _measured_mask(fit: Fit, i: int) -> BoolArray:
     return np.isfinite(fit.measured[:, i]) & np.isfinite(fit.sd[:, i])
 
 

@@ -8,11 +8,9 @@ import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-import numpy.typing as npt
-
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message, local_number
+from .._support.messages import local_number
 from ..carving.question import CARVE_KEYS
 from ..studies import StudyTable
 from .symbols import figure_text
@@ -24,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Json = dict[str, Any]
-FloatArray = npt.NDArray[np.float64]
 
 MOST_PANELS: Final = 12
 MOST_LINES: Final = 7
@@ -71,7 +68,7 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     numbers = [name for name in varied if all(_is_number(row[name]) for row in table.rows)]
     if not numbers:
         raise ParameterError(
-            Message("the map needs a number that varies, such as edge_angle_deg; only names and switches vary"),
+            "the map needs a number that varies, such as edge_angle_deg; only names and switches vary",
             code="nothing_varies",
         )
     x = "edge_angle_deg" if "edge_angle_deg" in numbers else numbers[0]
@@ -86,14 +83,12 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     if count > MOST_PANELS:
         counts = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
         raise ParameterError(
-            Message(
-                "the map would have {count} panels ({counts}); at most {most} are readable. The table is written; make "
-                "a study of fewer of them for the map",
-                count=count,
-                counts=counts,
-                most=MOST_PANELS,
-            ),
+            "the map would have {count} panels ({counts}); at most {most} are readable. The table is written; make a "
+            "study of fewer of them for the map",
             code="too_many_panels",
+            count=count,
+            counts=counts,
+            most=MOST_PANELS,
         )
     return MapLayout(x, second, tuple(left), sampled)
 
@@ -109,7 +104,7 @@ def drawn_table(table: StudyTable) -> StudyTable:
     rows = table.answers()
     if not rows:
         raise ParameterError(
-            Message("the map has nothing to draw: not one point of this table could be asked"), code="nothing_to_draw"
+            "the map has nothing to draw: not one point of this table could be asked", code="nothing_to_draw"
         )
     pairs = {(row.get("ski"), row.get("ski_name")) for row in rows}
     names = {name for _, name in pairs}

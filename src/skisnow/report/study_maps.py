@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.lines import Line2D
 
+from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.units import DEGREE
 from .figures.style import (
@@ -52,7 +52,6 @@ if TYPE_CHECKING:
     from .study_layout import MapLayout
 
 Json = dict[str, Any]
-FloatArray = npt.NDArray[np.float64]
 
 LEVELS: Final = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Grip utilisations at which the colour changes; at 1 the edge loses grip."""

@@ -19,8 +19,6 @@ from ..track.slope_frame import slope_axes
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy.typing as npt
-
     from .._support.arrays import FloatArray
 
 
@@ -193,7 +191,7 @@ def photo_cell_times(random: np.random.Generator) -> str:
     return "\n".join((*rows, ""))
 
 
-def glide_time(station: npt.NDArray[np.float64], *, speed: float, slope_angle: float) -> npt.NDArray[np.float64]:
+def glide_time(station: FloatArray, *, speed: float, slope_angle: float) -> FloatArray:
     """Times (s) at distances (m) from a start below the terminal speed, with Coulomb friction and quadratic drag.
 
     With v∞² = a/k, a = g (sin α − μ cos α), k = ρ C_dA/(2 m) the speed is v∞ tanh φ, φ grows by k v∞ per second, and

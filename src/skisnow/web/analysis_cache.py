@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Final
 from nicegui import run
 
 from .._support.errors import StoreError
-from .._support.messages import Message
 from ..campaign.store import Journals
 from .campaign_analysis import N_FIGURES, Choice, Numbers, Refusal, analyse_files, figure
 from .transfer import entry_files, kept_files
@@ -120,7 +119,7 @@ class AnalysisCache:
             state = self._state(kind, id_)  # before reading: a later entry makes the cached state old
             source = await run.io_bound(CampaignSource, self._lab, kind, id_)
             if source is None:
-                raise StoreError(Message("The lab is about to end."), code="lab_ends")
+                raise StoreError("The lab is about to end.", code="lab_ends")
             self._subjects[(kind, id_)] = (state, source)
             self._subjects.move_to_end((kind, id_))
             while len(self._subjects) > MOST_CAMPAIGNS:
@@ -135,8 +134,9 @@ class AnalysisCache:
         counts = {head.id: head.n_entries for head in Journals(self._lab.store).list()}
         if id_ not in counts:
             raise StoreError(
-                Message("The store has no campaign with the id {id!r}; the list of campaigns names all.", id=id_),
+                "The store has no campaign with the id {id!r}; the list of campaigns names all.",
                 code="unknown_campaign",
+                id=id_,
             )
         return counts[id_]
 

@@ -182,11 +182,9 @@ class CorrectionSession(EditSession):
             text = decode(self._tables.read(CAMPAIGN_FILE) or b"").text
         except (FileNotFoundError, UnreadableTextError) as error:
             raise StoreError(
-                Message(
-                    "{file} of this campaign cannot be read, so nothing in it can be.",
-                    file=CAMPAIGN_FILE,
-                ),
+                "{file} of this campaign cannot be read, so nothing in it can be.",
                 code="cannot_read",
+                file=CAMPAIGN_FILE,
             ) from error
         described = read_campaign_file(text, problems)
         if described is None:

@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..campaign.importing import RECORD, Answers, Proposal, parse_template, propose, write_import
 from ..campaign.reading.campaign import campaign_of_files
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
@@ -68,7 +67,7 @@ class FileImports:
         """
         place = self._folder / required_id(id_) / "name"
         if not place.is_file():
-            raise ParameterError(Message("This upload was imported already. Choose the file again."), code="no_upload")
+            raise ParameterError("This upload was imported already. Choose the file again.", code="no_upload")
         return place.read_text(encoding="utf-8")
 
     def content(self, id_: str) -> tuple[str, bytes]:

@@ -13,7 +13,6 @@ from tempfile import TemporaryDirectory, mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import OutputError, ParameterError
-from .._support.messages import Message
 from .._support.staging import cannot_write, write_file
 from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
@@ -65,7 +64,7 @@ class LabSkis:
             return name
         if name not in self.saved():
             raise ParameterError(
-                Message("the lab has no ski named {name!r}. Choose one from the list", name=name), code="unknown_ski"
+                "the lab has no ski named {name!r}. Choose one from the list", code="unknown_ski", name=name
             )
         return str((self._folder / name / FILE).absolute())
 
@@ -98,8 +97,7 @@ class LabSkis:
         ski, _ = ski_of_texts(named, table)
         if ski.name != name:
             raise ParameterError(
-                Message("write the name into the file yourself, on a separate line: {line}", line=line),
-                code="no_place_for_name",
+                "write the name into the file yourself, on a separate line: {line}", code="no_place_for_name", line=line
             )
 
         def write(folder: Path) -> None:
@@ -113,22 +111,20 @@ class LabSkis:
         """Reject a name that exists or is not a valid name of a folder on every system."""
         if not _NAME.fullmatch(name) or _DEVICES.fullmatch(name):
             raise ParameterError(
-                Message("a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one"),
+                "a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one",
                 code="name_not_allowed",
             )
         if name.casefold() in (NOTHING, EDITED):
             raise ParameterError(
-                Message(
-                    "{name} already means something else in the lists of skis; give this one another name", name=name
-                ),
+                "{name} already means something else in the lists of skis; give this one another name",
                 code="name_not_allowed",
+                name=name,
             )
         if name.casefold() in (other.casefold() for other in self.names()):
             raise ParameterError(
-                Message(
-                    "there is a ski {name} already, and none is overwritten; give this one another name", name=name
-                ),
+                "there is a ski {name} already, and none is overwritten; give this one another name",
                 code="already_there",
+                name=name,
             )
 
     def _save(self, name: str, write: Writing) -> None:
@@ -144,12 +140,10 @@ class LabSkis:
             made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
         except OSError as error:
             raise OutputError(
-                Message(
-                    "the ski {name} cannot be saved: {error}. Try another name",
-                    name=name,
-                    error=error.strerror or error,
-                ),
+                "the ski {name} cannot be saved: {error}. Try another name",
                 code="cannot_write",
+                name=name,
+                error=error.strerror or error,
             ) from error
         finally:
             shutil.rmtree(made, ignore_errors=True)
@@ -196,19 +190,16 @@ def _require_no_other_file(text: str) -> None:
         return  # the reader reports it with its line
     if "shape" in keys:
         raise ParameterError(
-            Message(
-                "{file}: a shape of another program cannot be read here. Use read_ski or the command line", file=FILE
-            ),
+            "{file}: a shape of another program cannot be read here. Use read_ski or the command line",
             code="foreign_shape",
+            file=FILE,
         )
     if keys.get("table", TABLE) != TABLE:
         raise ParameterError(
-            Message(
-                '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"',
-                file=FILE,
-                table=TABLE,
-            ),
+            '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"',
             code="wrong_table",
+            file=FILE,
+            table=TABLE,
         )
 
 
@@ -336,17 +327,14 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
         _require_own_files(place, names)
     elif not files and not designs and names:
         raise ParameterError(
-            Message(
-                "a table alone tells neither length nor mass of a ski; choose it together with a .toml "
-                "file that names it (table = '{table}'): “Download the file” on the page gives one to "
-                "begin with",
-                table=names[0],
-            ),
+            "a table alone tells neither length nor mass of a ski; choose it together with a .toml file that names "
+            "it (table = '{table}'): “Download the file” on the page gives one to begin with",
             code="table_alone",
+            table=names[0],
         )
     else:
         raise ParameterError(
-            Message("choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"),
+            "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM",
             code="not_one_ski",
         )
     with warnings.catch_warnings(record=True) as caught:
@@ -367,11 +355,9 @@ def _require_own_files(place: Path, names: Sequence[str]) -> None:
     for key in ("table", "shape"):
         if (named := keys.get(key)) is not None and named not in names:
             raise ParameterError(
-                Message(
-                    "{file}: {key} is {needed!r}; choose that file, too, and name it without a folder",
-                    file=place.name,
-                    key=key,
-                    needed=named,
-                ),
+                "{file}: {key} is {needed!r}; choose that file, too, and name it without a folder",
                 code="missing_file",
+                file=place.name,
+                key=key,
+                needed=named,
             )

@@ -11,7 +11,6 @@ from tempfile import mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, ParameterError
-from .._support.messages import Message
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
 from .._support.user_files import read_record
@@ -98,12 +97,10 @@ class TrackFolders:
         _require_allowed(placing)
         if len(self.names()) >= MOST_TRACKS:
             raise ParameterError(
-                Message(
-                    "{most} tracks are kept already; take some out of the folder {folder} of the lab",
-                    most=MOST_TRACKS,
-                    folder=TRACKS_FOLDER,
-                ),
+                "{most} tracks are kept already; take some out of the folder {folder} of the lab",
                 code="too_many_files",
+                most=MOST_TRACKS,
+                folder=TRACKS_FOLDER,
             )
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -141,15 +138,16 @@ class TrackFolders:
         """
         if name not in self.names():
             raise ParameterError(
-                Message("there is no track {name!r} here. Choose one from the list", name=name), code="unknown_track"
+                "there is no track {name!r} here. Choose one from the list", code="unknown_track", name=name
             )
         placing = read_record(self._folder / name / ABOUT, Placing)
         _require_allowed(placing)
         places = [path for path in (self._folder / name).iterdir() if path.name != ABOUT]
         if len(places) != 1:
             raise ParameterError(
-                Message("the folder of the track {name} is damaged. Remove it and upload the track again", name=name),
+                "the folder of the track {name} is damaged. Remove it and upload the track again",
                 code="damaged",
+                name=name,
             )
         angle = replay.tilt if replay.profile is None else None
         return (read or track_on_slope)(places[0], placing, angle)
@@ -174,30 +172,27 @@ def _require_allowed(placing: Placing) -> None:
     azimuth, start = placing.fall_line_azimuth_deg, placing.starts_at_s
     if azimuth is not None and not -360.0 <= azimuth <= 360.0:
         raise ParameterError(
-            Message("the fall line's direction is {azimuth:g}°; it must be from −360 to 360", azimuth=azimuth),
+            "the fall line's direction is {azimuth:g}°; it must be from −360 to 360",
             code="out_of_range",
+            azimuth=azimuth,
         )
     if not abs(start) <= LONGEST_WAIT_S:
         raise ParameterError(
-            Message(
-                "the start of the track is {start:g} s; it must be within {longest:g} s of the run's",
-                start=start,
-                longest=LONGEST_WAIT_S,
-            ),
+            "the start of the track is {start:g} s; it must be within {longest:g} s of the run's",
             code="out_of_range",
+            start=start,
+            longest=LONGEST_WAIT_S,
         )
 
 
 def _require_few_points(track: Track) -> None:
     if len(track.time) > MOST_POINTS:
         raise ParameterError(
-            Message(
-                "{track} has {points} points; at most {most} are drawn beside a run. Cut the turn out",
-                track=track.name,
-                points=len(track.time),
-                most=MOST_POINTS,
-            ),
+            "{track} has {points} points; at most {most} are drawn beside a run. Cut the turn out",
             code="too_many_points",
+            track=track.name,
+            points=len(track.time),
+            most=MOST_POINTS,
         )
 
 
@@ -208,11 +203,9 @@ def _copy_limited(content: IO[bytes], place: Path) -> None:
             taken += len(piece)
             if taken > LARGEST_TRACK_BYTES:
                 raise ParameterError(
-                    Message(
-                        "a track of more than {most} MB is not accepted",
-                        most=LARGEST_TRACK_BYTES // 1_000_000,
-                    ),
+                    "a track of more than {most} MB is not accepted",
                     code="too_large",
+                    most=LARGEST_TRACK_BYTES // 1_000_000,
                 )
             file.write(piece)
 
@@ -236,17 +229,16 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
     if azimuth is None:
         if track.axes == "east_north_up":
             raise ParameterError(
-                Message(
-                    "{track} is in latitude and longitude: say in which compass direction the slope falls",
-                    track=placing.called,
-                ),
+                "{track} is in latitude and longitude: say in which compass direction the slope falls",
                 code="no_direction",
+                track=placing.called,
             )
         return track
     if track.axes == "slope":
         raise ParameterError(
-            Message("{track} is in the axes of the slope already: leave the direction out", track=placing.called),
+            "{track} is in the axes of the slope already: leave the direction out",
             code="needless_direction",
+            track=placing.called,
         )
     return in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=slope_angle, missing_height="on_slope")
 
@@ -296,8 +288,7 @@ class LabCourses:
             return "course.name", name
         if name not in self.kept():
             raise ParameterError(
-                Message("the lab has no course named {name!r}. Choose one from the list", name=name),
-                code="unknown_course",
+                "the lab has no course named {name!r}. Choose one from the list", code="unknown_course", name=name
             )
         return "course.file", str((self._folder / name).absolute())
 
@@ -314,25 +305,21 @@ class LabCourses:
         suffix = PurePosixPath(called.lower()).suffix
         if suffix not in COURSE_SUFFIXES:
             raise ParameterError(
-                Message("{file} is not a course: choose a .csv or .gpx file", file=called), code="unknown_ending"
+                "{file} is not a course: choose a .csv or .gpx file", code="unknown_ending", file=called
             )
         if len(self.kept()) >= MOST_COURSES:
             raise ParameterError(
-                Message(
-                    "{most} courses are kept already; take some out of the folder {folder} of the lab",
-                    most=MOST_COURSES,
-                    folder=COURSES_FOLDER,
-                ),
+                "{most} courses are kept already; take some out of the folder {folder} of the lab",
                 code="too_many_files",
+                most=MOST_COURSES,
+                folder=COURSES_FOLDER,
             )
         data = content.read(LARGEST_COURSE_BYTES + 1)
         if len(data) > LARGEST_COURSE_BYTES:
             raise ParameterError(
-                Message(
-                    "a course of more than {most} MB is not accepted",
-                    most=LARGEST_COURSE_BYTES // 1_000_000,
-                ),
+                "a course of more than {most} MB is not accepted",
                 code="too_large",
+                most=LARGEST_COURSE_BYTES // 1_000_000,
             )
         place = self._folder / f"{plain_stem(called, 'course')}-{secrets.token_hex(2)}{suffix}"
         made = place.with_name(f".partial-{place.name}")

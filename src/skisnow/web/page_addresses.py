@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 from urllib.parse import quote
 
 from .._support.errors import StoreError
-from .._support.messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -66,7 +65,5 @@ def required_id(text: str) -> str:
         The text is not an id.
     """
     if not _ID.fullmatch(text):
-        raise StoreError(
-            Message("This address names no campaign; the list of campaigns names all."), code="no_campaign"
-        )
+        raise StoreError("This address names no campaign; the list of campaigns names all.", code="no_campaign")
     return text

@@ -80,7 +80,7 @@ class RunFolders:
         """
         if name not in self.names():
             raise ParameterError(
-                Message("there is no run {name!r} here. Choose one from the list", name=name), code="unknown_run"
+                "there is no run {name!r} here. Choose one from the list", code="unknown_run", name=name
             )
         return self.folder / name
 

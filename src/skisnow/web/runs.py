@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.language import ENGLISH
-from .._support.messages import Message
 from .._support.outcomes import outcome_words
 from .._support.staging import write_file
 from .._support.user_files import GivenError, read_json, read_record
@@ -170,11 +169,9 @@ class Runs:
         title = " ".join(title.split())
         job = self._job(name)
         if not 0 < len(title) <= LONGEST_TITLE:
-            raise ParameterError(
-                Message("Give the run a name of 1 to {most} characters.", most=LONGEST_TITLE), code="bad_title"
-            )
+            raise ParameterError("Give the run a name of 1 to {most} characters.", code="bad_title", most=LONGEST_TITLE)
         if job is None:
-            raise ParameterError(Message("There is no run {name}.", name=name), code="unknown_run")
+            raise ParameterError("There is no run {name}.", code="unknown_run", name=name)
         self._keep(replace(job, title=title))
 
     def _job(self, name: str) -> Job | None:
@@ -196,7 +193,7 @@ class Runs:
             if self._process is not None:
                 self._process.terminate()
         else:
-            raise ParameterError(Message("this run is over already; there is nothing to cancel"), code="run_is_over")
+            raise ParameterError("this run is over already; there is nothing to cancel", code="run_is_over")
 
     async def work(self) -> None:
         """Run the jobs of the queue until `end`."""

@@ -129,13 +129,11 @@ class ScenarioField:
         try:
             if not self.text:
                 raise ParameterError(
-                    Message(
-                        "{key} is empty; {file} has {before}",
-                        key=self.key.name,
-                        file=self.where,
-                        before=self.before,
-                    ),
+                    "{key} is empty; {file} has {before}",
                     code="empty",
+                    key=self.key.name,
+                    file=self.where,
+                    before=self.before,
                 )
             return self.key.in_range(self.typed_value())
         except ParameterError as error:

@@ -16,7 +16,6 @@ import uvicorn
 
 from .._support.environment import load_certificate
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .application import lab_application
 from .guard import is_loopback
 
@@ -41,16 +40,14 @@ def require_allowed(host: str, token: str | None) -> None:
     """
     if token is not None and not token.strip():
         raise ParameterError(
-            Message("the token is blank; give one that is hard to guess, or leave --token out"), code="blank_token"
+            "the token is blank; give one that is hard to guess, or leave --token out", code="blank_token"
         )
     if token is None and not is_loopback(host):
         raise ParameterError(
-            Message(
-                "on {host} other machines could open the lab; add --token with a word that is hard to "
-                "guess, or leave --host out",
-                host=host,
-            ),
+            "on {host} other machines could open the lab; add --token with a word that is hard to guess, or leave "
+            "--host out",
             code="no_token",
+            host=host,
         )
 
 
@@ -66,13 +63,11 @@ class Certificate:
             load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), self.file, self.key)
         except (OSError, ssl.SSLError, ValueError) as error:
             raise ParameterError(
-                Message(
-                    "{file}: no certificate with its private key can be read ({error}); give a PEM file with "
-                    "both, or the key's file with --certificate-key",
-                    file=self.file,
-                    error=error,
-                ),
+                "{file}: no certificate with its private key can be read ({error}); give a PEM file with both, or "
+                "the key's file with --certificate-key",
                 code="cannot_read",
+                file=self.file,
+                error=error,
             ) from error
 
 

@@ -11,7 +11,6 @@ import numpy as np
 from nicegui import ui
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
 from .elements import Words, button, field, named
@@ -87,7 +86,7 @@ class SkiEditor:
         """Reject an edit while the text of the file differs from the drawn one."""
         if self._typed_texts() != self._base:
             raise ParameterError(
-                Message("the file below was changed since it was drawn; press Draw the file first"), code="file_changed"
+                "the file below was changed since it was drawn; press Draw the file first", code="file_changed"
             )
 
     async def begin(self, name: str) -> None:

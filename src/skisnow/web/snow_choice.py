@@ -210,7 +210,7 @@ def campaign_snow(lab: Lab, key: str) -> Analysis:
     kind, id_ = key.split("-", 1)
     numbers = analyse_files((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
     if isinstance(numbers, Refusal):
-        raise ParameterError(Message("this campaign gives no snow yet. {said}", said=numbers.said), code="no_snow")
+        raise ParameterError("this campaign gives no snow yet. {said}", code="no_snow", said=numbers.said)
     return numbers.analysis
 
 

@@ -133,8 +133,7 @@ class Studies(Runs):
         job = next((job for job in self.study_jobs() if job.name == name), None)
         if job is None or job.state not in ("cancelled", "failed"):
             raise ParameterError(
-                Message("this study waits, is computed or is done; there is nothing to go on with"),
-                code="not_stopped",
+                "this study waits, is computed or is done; there is nothing to go on with", code="not_stopped"
             )
         self._keep(replace(job, state="waiting", said="", workers=self.workers))
 
@@ -149,10 +148,10 @@ class Studies(Runs):
         names = {job.name for job in self.jobs()}
         if name not in names or file not in (STUDY, TABLE, FIGURE) or not (self.folder / name / file).is_file():
             raise ParameterError(
-                Message(
-                    "there is no {file!r} of a study {study!r} here. Choose one from the list", file=file, study=name
-                ),
+                "there is no {file!r} of a study {study!r} here. Choose one from the list",
                 code="unknown_file",
+                file=file,
+                study=name,
             )
         return self.folder / name / file
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from .._support.errors import ParameterError
-from .._support.messages import Message
 from .._support.user_files import natural_number
 from ..carving.question import CARVE_KEYS
 from .elements import choice, field, named
@@ -139,13 +138,11 @@ def require_few_points(points: int) -> None:
     """
     if points > MOST_POINTS:
         raise ParameterError(
-            Message(
-                "the study has {points} points; the lab takes at most {most}. Take fewer values, "
-                "or the command skisnow study, which takes a million",
-                points=points,
-                most=MOST_POINTS,
-            ),
+            "the study has {points} points; the lab takes at most {most}. Take fewer values, or the command skisnow "
+            "study, which takes a million",
             code="too_many_points",
+            points=points,
+            most=MOST_POINTS,
         )
 
 
@@ -275,7 +272,7 @@ class AxisFields:
         key = self._keys[self.name]
         words = called(key)
         if not all(str(field_.value or "").strip() for field_ in self._ends):
-            raise ParameterError(Message("{input}: type both ends of its range", input=words), code="missing")
+            raise ParameterError("{input}: type both ends of its range", code="missing", input=words)
         low, high = (
             typed_number(f"{words}, the {end} end", str(field_.value or ""))
             for field_, end in zip(self._ends, ("lower", "upper"), strict=True)
@@ -288,20 +285,18 @@ class AxisFields:
                 raise ParameterError(message, code=error.code) from error
         if not low < high:
             raise ParameterError(
-                Message(
-                    "{input}: it goes from {low:g} to {high:g}; the first end must be the smaller one",
-                    input=words,
-                    low=low,
-                    high=high,
-                ),
+                "{input}: it goes from {low:g} to {high:g}; the first end must be the smaller one",
                 code="not_rising",
+                input=words,
+                low=low,
+                high=high,
             )
         if self._log.value and low <= 0.0:
             raise ParameterError(
-                Message(
-                    "{input}: even in the logarithm, it must begin above 0; it begins at {low:g}", input=words, low=low
-                ),
+                "{input}: even in the logarithm, it must begin above 0; it begins at {low:g}",
                 code="not_positive",
+                input=words,
+                low=low,
             )
         return Range(low, high, self.count(), bool(self._log.value))
 
@@ -319,12 +314,10 @@ class AxisFields:
         number = natural_number(text)
         if number is None or not 2 <= number <= MOST_POINTS:
             raise ParameterError(
-                Message(
-                    "{input}: the number of values is {value!r}; it must be from 2 to {most}",
-                    input=called(self._keys[self.name]),
-                    value=text,
-                    most=MOST_POINTS,
-                ),
+                "{input}: the number of values is {value!r}; it must be from 2 to {most}",
                 code="out_of_range",
+                input=called(self._keys[self.name]),
+                value=text,
+                most=MOST_POINTS,
             )
         return number

@@ -17,7 +17,6 @@ from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
 
 from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
-from .._support.messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,10 +58,9 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
     try:
         if not hears.poll(bounds.seconds):
             raise ParameterError(
-                Message(
-                    "it was not read within {seconds:g} s; give less of it, or check the file", seconds=bounds.seconds
-                ),
+                "it was not read within {seconds:g} s; give less of it, or check the file",
                 code="too_slow",
+                seconds=bounds.seconds,
             )
         answer, trace = hears.recv()
     except EOFError as end:
@@ -81,13 +79,11 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
 
 def _failure(bounds: Bounds) -> ParameterError:
     return ParameterError(
-        Message(
-            "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
-            "check the file",
-            seconds=bounds.seconds,
-            megabytes=bounds.memory_bytes // 1_000_000,
-        ),
+        "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
+        "check the file",
         code="cannot_read",
+        seconds=bounds.seconds,
+        megabytes=bounds.memory_bytes // 1_000_000,
     )
 
 

@@ -70,8 +70,7 @@ class Unpacking:
             members = [member for member in archive.infolist() if not member.filename.endswith("/")]
             if len(members) > self.limits.files:
                 raise ParameterError(
-                    Message("more than {most} files at once are not accepted", most=self.limits.files),
-                    code="too_many_files",
+                    "more than {most} files at once are not accepted", code="too_many_files", most=self.limits.files
                 )
             for member in members:
                 _require_plain(member)
@@ -88,8 +87,7 @@ class Unpacking:
             *_, listed, _start, _comment = _END_RECORD.unpack_from(tail, at)
         if listed > self.limits.files * _BYTES_PER_NAME:
             raise ParameterError(
-                Message("more than {most} files at once are not accepted", most=self.limits.files),
-                code="too_many_files",
+                "more than {most} files at once are not accepted", code="too_many_files", most=self.limits.files
             )
 
     def _write(self, name: str, pieces: Iterable[bytes]) -> None:
@@ -97,8 +95,7 @@ class Unpacking:
         self._files += 1
         if self._files > self.limits.files:
             raise ParameterError(
-                Message("more than {most} files at once are not accepted", most=self.limits.files),
-                code="too_many_files",
+                "more than {most} files at once are not accepted", code="too_many_files", most=self.limits.files
             )
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -107,38 +104,34 @@ class Unpacking:
                     self._bytes += len(piece)
                     if self._bytes > self.limits.unpacked_bytes:
                         raise ParameterError(
-                            Message(
-                                "more than {most} bytes at once are not accepted",
-                                most=self.limits.unpacked_bytes,
-                            ),
+                            "more than {most} bytes at once are not accepted",
                             code="too_large",
+                            most=self.limits.unpacked_bytes,
                         )
                     file.write(piece)
         except (FileExistsError, NotADirectoryError) as error:
             raise ParameterError(
-                Message("two files of the upload are called {file}", file=shown(name)), code="same_name"
+                "two files of the upload are called {file}", code="same_name", file=shown(name)
             ) from error
         except OSError as error:
             if error.errno != errno.ENAMETOOLONG:
                 raise
             raise ParameterError(
-                Message("the file {file} is not accepted: its name is too long", file=shown(name)), code="name_too_long"
+                "the file {file} is not accepted: its name is too long", code="name_too_long", file=shown(name)
             ) from error
 
     def _place(self, name: str) -> Path:
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
             raise ParameterError(
-                Message("the file {file} is not accepted: {why}", file=shown(name), why=why), code="not_taken_in"
+                "the file {file} is not accepted: {why}", code="not_taken_in", file=shown(name), why=why
             )
         if path.count("/") > DEEPEST:
             raise ParameterError(
-                Message(
-                    "the file {file} is not accepted: it is in more than {most} folders",
-                    file=shown(name),
-                    most=DEEPEST,
-                ),
+                "the file {file} is not accepted: it is in more than {most} folders",
                 code="too_deep",
+                file=shown(name),
+                most=DEEPEST,
             )
         return self.folder.joinpath(*PurePosixPath(path).parts)
 
@@ -147,18 +140,21 @@ def _require_plain(member: zipfile.ZipInfo) -> None:
     kind = stat.S_IFMT(member.external_attr >> 16)
     if kind not in (0, stat.S_IFREG):
         raise ParameterError(
-            Message("{file} in the zip file is a link or the like, not a plain file", file=shown(member.filename)),
+            "{file} in the zip file is a link or the like, not a plain file",
             code="not_a_plain_file",
+            file=shown(member.filename),
         )
     if member.flag_bits & 1:
         raise ParameterError(
-            Message("{file} in the zip file is encrypted; pack it without a password", file=shown(member.filename)),
+            "{file} in the zip file is encrypted; pack it without a password",
             code="encrypted",
+            file=shown(member.filename),
         )
     if member.compress_type not in _METHODS:
         raise ParameterError(
-            Message("{file} in the zip file is packed in an unusual way; choose Deflate", file=shown(member.filename)),
+            "{file} in the zip file is packed in an unusual way; choose Deflate",
             code="unknown_compression",
+            file=shown(member.filename),
         )
 
 

@@ -148,7 +148,6 @@ def typed_number(what: str, text: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise ParameterError(
-            Message("{field}: {value!r} is not a number. Correct it", field=what, value=text.strip()),
-            code="not_a_number",
+            "{field}: {value!r} is not a number. Correct it", code="not_a_number", field=what, value=text.strip()
         )
     return value

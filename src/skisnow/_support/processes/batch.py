@@ -169,7 +169,7 @@ class Pool:
             return ([(number, row_text(self._function(point)))] for number, point in points)
         if count is None:
             if not isinstance(points, Collection):
-                raise ParameterError(Message("count, the number of points, is missing."), code="count_missing")
+                raise ParameterError("count, the number of points, is missing.", code="count_missing")
             count = len(points)
         if count == 0:
             return iter(())
@@ -221,7 +221,7 @@ class Pool:
             if message is None:
                 raise
             raise SkisnowError(
-                Message("{problem} {advice}", problem=message, advice=self._advice), code="pool_failed"
+                "{problem} {advice}", code="pool_failed", problem=message, advice=self._advice
             ) from error
 
 
@@ -236,9 +236,7 @@ def workers_in_force(workers: int | None) -> int:
     if workers is None:
         return available_cores()
     if workers < 1:
-        raise ParameterError(
-            Message("workers is {workers}; at least 1 is needed.", workers=workers), code="too_few_workers"
-        )
+        raise ParameterError("workers is {workers}; at least 1 is needed.", code="too_few_workers", workers=workers)
     return workers
 
 

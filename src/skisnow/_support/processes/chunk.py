@@ -15,7 +15,6 @@ from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from ...compiled import core
 from ..errors import SkisnowError
-from ..messages import Message
 from .kept_rows import NumberedText, Row, row_text
 
 PointFunction: TypeAlias = Callable[[Any], Row | list[Any]]
@@ -93,13 +92,11 @@ def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: S
     """
     if identity != own_identity():
         raise SkisnowError(
-            Message(
-                "The worker on {node} has {installed}, this computer has {expected}. Install the same on both.",
-                node=platform.node(),
-                installed=own_identity(),
-                expected=identity,
-            ),
+            "The worker on {node} has {installed}, this computer has {expected}. Install the same on both.",
             code="different_versions",
+            node=platform.node(),
+            installed=own_identity(),
+            expected=identity,
         )
     return compute_rows(_unpacked(packed, folder), points)
 

@@ -188,7 +188,7 @@ def _begin(function: PointFunction, alive: Connection) -> None:
 
 def _in_worker(points: list[Numbered]) -> Done:
     if _Worker.function is None:
-        raise SkisnowError(Message("A worker was not started by a Pool."), code="no_pool")
+        raise SkisnowError("A worker was not started by a Pool.", code="no_pool")
     return compute_rows(_Worker.function, points)
 
 

@@ -126,12 +126,10 @@ def scheduler_of(scheduler: str | Path) -> SchedulerFile:
         return SchedulerFile(address=scheduler)
     if Path(scheduler).suffix.lower() != ".toml":
         raise ParameterError(
-            Message(
-                "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, a file "
-                "that ends in .toml, threads or processes.",
-                scheduler=scheduler,
-            ),
+            "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, a file that ends in "
+            ".toml, threads or processes.",
             code="unknown_executor",
+            scheduler=scheduler,
         )
     try:
         return _of_table(read_toml(scheduler), Path(scheduler).parent)
@@ -144,8 +142,7 @@ def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
     for key in table:
         if key not in keys:
             raise ParameterError(
-                Message("{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, keys)),
-                code="unknown_key",
+                "{key} is not a key of a scheduler. {allowed}", code="unknown_key", key=key, allowed=nearest(key, keys)
             )
     places = [key for key in table if key == "address" or key in BATCH_SYSTEMS]
     if len(places) != 1:
@@ -159,15 +156,14 @@ def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
     (place,) = places
     wait = table.get("wait_s", WAIT_S)
     if isinstance(wait, bool) or not isinstance(wait, int | float) or not wait > 0:
-        raise ParameterError(
-            Message("wait_s is {wait!r}. It must be a number above 0.", wait=wait), code="out_of_range"
-        )
+        raise ParameterError("wait_s is {wait!r}. It must be a number above 0.", code="out_of_range", wait=wait)
     tls = _tls(table.get("tls"), folder)
     if place == "address":
         if not isinstance(table[place], str) or "://" not in table[place]:
             raise ParameterError(
-                Message('address is {value!r}. It must be a text such as "tcp://host:8786".', value=table[place]),
+                'address is {value!r}. It must be a text such as "tcp://host:8786".',
                 code="wrong_kind",
+                value=table[place],
             )
         return SchedulerFile(table[place], wait, tls)
     return _of_batch_system(place, table[place], wait, tls)
@@ -176,27 +172,27 @@ def _of_table(table: Mapping[str, Any], folder: Path) -> SchedulerFile:
 def _of_batch_system(system: str, entries: object, wait: float, tls: Mapping[str, str] | None) -> SchedulerFile:
     if not isinstance(entries, dict):
         raise ParameterError(
-            Message(
-                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key=system, value=entries
-            ),
+            "{key} is {value!r}. It must be a table that begins with the line [{key}].",
             code="wrong_kind",
+            key=system,
+            value=entries,
         )
     options = dict(entries)
     jobs = options.pop("jobs", 1)
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
         raise ParameterError(
-            Message("{system}.jobs is {jobs!r}. It must be a whole number of 1 or more.", system=system, jobs=jobs),
+            "{system}.jobs is {jobs!r}. It must be a whole number of 1 or more.",
             code="out_of_range",
+            system=system,
+            jobs=jobs,
         )
     for name in ("cores", "memory"):
         if name not in options:
             raise ParameterError(
-                Message(
-                    '{system}.{name} is missing. It is what one job has, such as cores = 16, memory = "32GB".',
-                    system=system,
-                    name=name,
-                ),
+                '{system}.{name} is missing. It is what one job has, such as cores = 16, memory = "32GB".',
                 code="missing_key",
+                system=system,
+                name=name,
             )
     # one process for each core: see docs/decisions.md
     return SchedulerFile(None, wait, tls, system, {"processes": options["cores"], **options}, jobs)
@@ -208,22 +204,21 @@ def _tls(entries: object, folder: Path) -> Mapping[str, str] | None:
         return None
     if not isinstance(entries, dict):
         raise ParameterError(
-            Message(
-                "{key} is {value!r}. It must be a table that begins with the line [{key}].", key="tls", value=entries
-            ),
+            "{key} is {value!r}. It must be a table that begins with the line [{key}].",
             code="wrong_kind",
+            key="tls",
+            value=entries,
         )
     for key, value in entries.items():
         if key not in TLS_KEYS:
             raise ParameterError(
-                Message("tls.{key} is not a key of a scheduler. {allowed}", key=key, allowed=nearest(key, TLS_KEYS)),
+                "tls.{key} is not a key of a scheduler. {allowed}",
                 code="unknown_key",
+                key=key,
+                allowed=nearest(key, TLS_KEYS),
             )
         if not isinstance(value, str):
-            raise ParameterError(
-                Message(_MEANINGS.get(key, _PATH), key=key, value=value),
-                code="wrong_kind",
-            )
+            raise ParameterError(_MEANINGS.get(key, _PATH), code="wrong_kind", key=key, value=value)
     return {key: value if key == "ciphers" else str(folder / value) for key, value in entries.items()}
 
 
@@ -268,13 +263,11 @@ def _require_certificates(tls: Mapping[str, str]) -> None:
             load_certificate(context, what, tls.get("key"))
     except (OSError, ssl.SSLError, ValueError) as error:
         raise ParameterError(
-            Message(
-                "{file}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the "
-                "authority; cert and key, a certificate that it signed and its private key.",
-                file=what,
-                error=error,
-            ),
+            "{file}: no certificate can be read ({error}). [tls] needs PEM files: ca_file, the authority; cert and "
+            "key, a certificate that it signed and its private key.",
             code="no_certificate",
+            file=what,
+            error=error,
         ) from error
 
 
@@ -309,8 +302,10 @@ def batch_cluster(settings: SchedulerFile) -> Any:
         return getattr(jobqueue, BATCH_SYSTEMS[settings.system or ""])(**options)
     except (TypeError, ValueError) as error:
         raise ParameterError(
-            Message("[{system}]: dask-jobqueue rejects it: {error}", system=settings.system, error=error),
+            "[{system}]: dask-jobqueue rejects it: {error}",
             code="rejected_by_dask",
+            system=settings.system,
+            error=error,
         ) from error
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 from ..errors import ParameterError
-from ..messages import Message
 from .chunk import PointFunction
 from .crews import Crew, GivenCrew, ProcessCrew, ThreadCrew
 
@@ -50,13 +49,11 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     if hasattr(executor, "get_executor"):
         return crew_of_client(executor, function)
     raise ParameterError(
-        Message(
-            "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a "
-            "Dask client, the address of a Dask scheduler or a TOML file of one",
-            executor=executor,
-            names=list(LOCAL),
-        ),
+        "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a Dask client, the "
+        "address of a Dask scheduler or a TOML file of one",
         code="unknown_executor",
+        executor=executor,
+        names=list(LOCAL),
     )
 
 

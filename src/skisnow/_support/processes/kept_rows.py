@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
-from ..messages import Message
 from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_schema, require_sound_pages
 from ..staging import cannot_write
 from ..user_files import own_json
@@ -108,7 +107,7 @@ class KeptRows:
         """
         if not path.is_file():
             raise ParameterError(
-                Message("{path} cannot be read: there is no such file. Check the path.", path=path), code="cannot_read"
+                "{path} cannot be read: there is no such file. Check the path.", code="cannot_read", path=path
             )
         with _errors(path):
             rows = cls(path)
@@ -284,8 +283,9 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
     except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
         if primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
             raise OutputError(
-                Message("{path} is being written by another run of this study. Wait for it or stop it.", path=path),
+                "{path} is being written by another run of this study. Wait for it or stop it.",
                 code="in_use",
+                path=path,
             ) from None
         if place_reason(error) is not None:
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
@@ -295,23 +295,18 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
 
 def _another(path: Path) -> ParameterError:
     return ParameterError(
-        Message(
-            "{path} holds the finished points of another study, or of this one before its inputs, "
-            "one of its files or skisnow changed. Undo the change to go on with them, or remove that "
-            "file to begin again.",
-            path=path,
-        ),
+        "{path} holds the finished points of another study, or of this one before its inputs, one of its files or "
+        "skisnow changed. Undo the change to go on with them, or remove that file to begin again.",
         code="another_study",
+        path=path,
     )
 
 
 def _damaged(path: Path | None, why: str) -> ParameterError:
     return ParameterError(
-        Message(
-            "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute "
-            "its points again, or move it away.",
-            path=path,
-            reason=why,
-        ),
+        "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute its points again, "
+        "or move it away.",
         code="damaged",
+        path=path,
+        reason=why,
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from ..errors import ParameterError
-from ..messages import Message
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -40,10 +39,10 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
         return None
     if word.lower() not in _WORDS:
         raise ParameterError(
-            Message(
-                "{path}: the head says inDegrees={word}. Allowed: yes, no. Correct the line.", path=path, word=word
-            ),
+            "{path}: the head says inDegrees={word}. Allowed: yes, no. Correct the line.",
             code="head_says_indegrees",
+            path=path,
+            word=word,
         )
     return _WORDS[word.lower()]
 
@@ -59,12 +58,10 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
     stated = degrees_stated(path, head)
     if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
         raise ParameterError(
-            Message(
-                "{path}: the head says neither whether angles are in degrees nor a version. Add the line "
-                "inDegrees=yes or inDegrees=no before endheader.",
-                path=path,
-            ),
+            "{path}: the head says neither whether angles are in degrees nor a version. Add the line inDegrees=yes "
+            "or inDegrees=no before endheader.",
             code="head_says_neither_whether",
+            path=path,
         )
     return stated is True
 
@@ -76,14 +73,12 @@ def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, colum
         word = said.get(key.lower(), "")
         if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
             raise ParameterError(
-                Message(
-                    "{path}: the head says {key}={word}, there are {there}; it is cut or joined, or its head wrong",
-                    path=path,
-                    key=key,
-                    word=word[:_LONGEST_SHOWN],
-                    there=there,
-                ),
+                "{path}: the head says {key}={word}, there are {there}; it is cut or joined, or its head wrong",
                 code="head_says",
+                path=path,
+                key=key,
+                word=word[:_LONGEST_SHOWN],
+                there=there,
             )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import BoolArray, FloatArray
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
 from ...estimation.regressions import DENSITY_KEY
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from ...estimation.regressions import Observations, Source
     from ...geometry import GeometryForm
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 TextArray: TypeAlias = npt.NDArray[np.str_]
 Json: TypeAlias = dict[str, Any]
 

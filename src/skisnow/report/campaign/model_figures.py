@@ -32,10 +32,11 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from ..._support.arrays import FloatArray
     from ...estimation.models import ModelFit
     from ...estimation.readings import Readings
     from ..figures.style import SiteStyle
-    from .data import FloatArray, Json, ReportData
+    from .data import Json, ReportData
 
 MOST_GROUPS: Final = 12
 TOO_FEW: Final = Message("the series are too few, or all at one edge angle")

@@ -33,17 +33,13 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
     drawers = {drawer.__name__: drawer for drawer in (*DRAWERS, *recordings)}
     if what not in drawers:
         raise ParameterError(
-            Message("No figure {what!r} of an analysis. {names}", what=what, names=nearest(what, drawers)),
-            code="unknown_figure",
+            "No figure {what!r} of an analysis. {names}", code="unknown_figure", what=what, names=nearest(what, drawers)
         )
     data = ReportData(analysis)
     with journal_style():
         drawing = drawers[what](data, site_styles(data))
     if not isinstance(drawing, Drawing):
-        raise ParameterError(
-            Message("The campaign has no data for the figure {what}.", what=what),
-            code="no_data",
-        )
+        raise ParameterError("The campaign has no data for the figure {what}.", code="no_data", what=what)
     return drawing.figure
 
 
@@ -52,7 +48,7 @@ def analysis_dataframe(analysis: Analysis, kind: str) -> DataFrame:
     pandas = needed("pandas", extra="pandas", what=Message("An analysis as a DataFrame"))
     if kind not in KINDS:
         raise ParameterError(
-            Message("No experiments {kind!r}. {names}", kind=kind, names=nearest(kind, KINDS)), code="unknown_kind"
+            "No experiments {kind!r}. {names}", code="unknown_kind", kind=kind, names=nearest(kind, KINDS)
         )
     return pandas.DataFrame(_rows(analysis, kind))
 

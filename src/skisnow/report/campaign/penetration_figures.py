@@ -39,9 +39,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+    from ..._support.arrays import FloatArray
     from ...campaign.records import PenetrationTests
     from ..figures.style import SiteStyle
-    from .data import FloatArray, Json, ReportData
+    from .data import Json, ReportData
 
 MOST_SERIES: Final = 40
 """Maximum number of series in one panel of Fig 5."""

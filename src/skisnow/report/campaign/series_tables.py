@@ -12,7 +12,8 @@ from ..table import Column, Table, record_table
 from .data import numbers, pairs
 
 if TYPE_CHECKING:
-    from .data import FloatArray, Json, ReportData
+    from ..._support.arrays import FloatArray
+    from .data import Json, ReportData
 
 QUANTILES: Final = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
 LARGEST: Final = 12

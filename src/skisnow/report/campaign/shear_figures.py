@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from markupsafe import Markup
     from matplotlib.axes import Axes
 
+    from ..._support.arrays import FloatArray
     from ..figures.style import SiteStyle
-    from .data import FloatArray, Json, ReportData
+    from .data import Json, ReportData
 
 SIGNIFICANT: Final = 0.05
 MOST_SENTENCES: Final = 6

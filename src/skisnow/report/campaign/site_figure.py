@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
+    from ..._support.arrays import FloatArray
     from ..figures.style import SiteStyle
-    from .data import FloatArray, Json, ReportData, TextArray
+    from .data import Json, ReportData, TextArray
 
 MOST_SITES: Final = 40
 _ROW_MM: Final = 4.6

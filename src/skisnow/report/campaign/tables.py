@@ -28,7 +28,8 @@ from .series_tables import (
 )
 
 if TYPE_CHECKING:
-    from .data import FloatArray, Json, ReportData, TextArray
+    from ..._support.arrays import FloatArray
+    from .data import Json, ReportData, TextArray
 
 QUANTITY: Final = {
     "S_f_N_per_mm2": ("S_f", "N/mm²"),

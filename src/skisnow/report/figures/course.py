@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.units import DEGREE
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from ...simulation.run import Run
     from ...track.course import CourseResult
 
-FloatArray = npt.NDArray[np.float64]
 
 STRETCHED: Final = 5.0
 """Ratio of length to width of a course above which both axes have different scales."""
@@ -138,8 +137,7 @@ def run_course(run: Run) -> Figure:
     result = run_gates(run)
     if result is None:
         raise ParameterError(
-            Message("the run has no course, or ended before its first step; give the scenario course.file"),
-            code="no_course",
+            "the run has no course, or ended before its first step; give the scenario course.file", code="no_course"
         )
     level = isinstance(run.scenario.slope, Plane)
     words = Message("distance down the fall line $x$ (m)") if level else Message("horizontal distance $x$ (m)")

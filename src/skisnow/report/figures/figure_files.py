@@ -127,12 +127,10 @@ def require_drawable(path: Path) -> None:
     """
     if path.suffix.lower() not in SUFFIXES:
         raise ParameterError(
-            Message(
-                "{path}: a figure is a file that ends in {suffixes}. Change its ending",
-                path=path,
-                suffixes=list(SUFFIXES),
-            ),
+            "{path}: a figure is a file that ends in {suffixes}. Change its ending",
             code="unknown_ending",
+            path=path,
+            suffixes=list(SUFFIXES),
         )
     require_writable(path.parent)
 

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-    from ..campaign.data import BoolArray, FloatArray, ReportData, TextArray
+    from ..._support.arrays import BoolArray, FloatArray
+    from ..campaign.data import ReportData, TextArray
 
 MM_PER_INCH: Final = 25.4
 SINGLE_MM: Final = 85.0

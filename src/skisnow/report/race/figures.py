@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message, joined
 from ..figures.drawing import Drawing
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMILLION, legend_below, new_figure
@@ -52,7 +52,7 @@ def _draw_lines(axes: Axes, result: QuickestLine) -> None:
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=3))
 
 
-def _points_of_line(line: RacingLine) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _points_of_line(line: RacingLine) -> tuple[FloatArray, FloatArray]:
     x = np.arange(line.start[0], line.apexes[-1][0] + 2.0, 0.1)
     return x, np.array([line.at(float(distance))[0] for distance in x])
 

@@ -139,12 +139,10 @@ def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
     gaps, names = read_gate_gaps(folder, other), (folder.name, other.name)
     if gaps is None:
         raise ParameterError(
-            Message(
-                "{first} and {second} did not go through the same gates: choose two runs on one course",
-                first=names[0],
-                second=names[1],
-            ),
+            "{first} and {second} did not go through the same gates: choose two runs on one course",
             code="different_courses",
+            first=names[0],
+            second=names[1],
         )
     pictures = render_pictures(_drawings(gaps, names), language=language)
     return gaps_page(gaps, names, pictures, language=language)

@@ -209,13 +209,16 @@ def run_figure(run: Run, what: str) -> Figure:
     """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
     if what not in _FIGURES:
         raise ParameterError(
-            Message("there is no figure {figure!r} of a run. {nearest}", figure=what, nearest=nearest(what, _FIGURES)),
+            "there is no figure {figure!r} of a run. {nearest}",
             code="unknown_figure",
+            figure=what,
+            nearest=nearest(what, _FIGURES),
         )
     if len(run.time) < 2:
         raise ParameterError(
-            Message("the run ended before its first step ({outcome}); there is nothing to draw", outcome=run.outcome),
+            "the run ended before its first step ({outcome}); there is nothing to draw",
             code="nothing_to_draw",
+            outcome=run.outcome,
         )
     with journal_style():
         return _FIGURES[what](run)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..._support.errors import OutputError, require_language
-from ..._support.messages import ENGLISH, Message, in_language, languages
+from ..._support.messages import ENGLISH, in_language, languages
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import GivenError, plain_text
 from ...scenario.plausibility import implausible_values
@@ -120,10 +120,10 @@ def link_replay(folder: str | Path) -> Path | None:
         page = plain_text(path, most_bytes=MOST_BYTES)
     except GivenError as error:
         raise OutputError(
-            Message(
-                "{path} cannot be read: {error}. The replay is written; the report has no link", path=path, error=error
-            ),
+            "{path} cannot be read: {error}. The replay is written; the report has no link",
             code="cannot_read",
+            path=path,
+            error=error,
         ) from error
     linked = with_link(page)
     if linked == page:

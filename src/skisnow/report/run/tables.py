@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.outcomes import outcome_words
 from ...scenario.keys import SCENARIO_KEYS
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from ...simulation.run import Run
     from ...track.course import CourseResult
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 Json = Mapping[str, Any]
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
 from ...simulation.run import LOST, STORED
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from ...simulation.run import Run
 
 
-FloatArray = npt.NDArray[np.float64]
 _TIMES_MEDIAN: Final = 3.0
 """Ratio of a radius to the median above which it is not drawn."""
 

@@ -6,13 +6,13 @@ import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import median_filter
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.outcomes import outcome_words
 from ..._support.units import MM
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from ...simulation.run import Run
 
-FloatArray = npt.NDArray[np.float64]
 
 SKI_COLOURS: Final = (BLUE, VERMILLION)
 """Colours of the left and the right ski."""

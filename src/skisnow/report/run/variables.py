@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ...simulation.run import GIVEN, LOST, STORED
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def _three(
     dimensions: tuple[str, ...],
     units: str,
     meaning: str,
-    values: Callable[[Run], npt.NDArray[np.float64]],
+    values: Callable[[Run], FloatArray],
     **further: str,
 ) -> list[RunVariable]:
     """Variables of the components x, y and z of a vector."""
@@ -119,7 +120,7 @@ def _boot_variables() -> list[RunVariable]:
     return variables
 
 
-def _boots(run: Run, name: str) -> npt.NDArray[np.float64]:
+def _boots(run: Run, name: str) -> FloatArray:
     if run.boots is None:
         return np.full((len(run.time), 2, 3), np.nan)
     return np.asarray(getattr(run.boots, name))
@@ -242,7 +243,7 @@ def _balance_variables() -> tuple[RunVariable, ...]:
     )
 
 
-def _centre(run: Run) -> npt.NDArray[np.float64]:
+def _centre(run: Run) -> FloatArray:
     return np.full((len(run.time), 3), np.nan) if run.boots is None else run.boots.centre_of_mass
 
 

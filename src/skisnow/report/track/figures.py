@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from ..._support.arrays import FloatArray, IntArray
 from ..._support.messages import Message
 from ...track.curvature import INTERVAL_FACTOR
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from ...track.summary import TrackSummary
 
-
-FloatArray = npt.NDArray[np.float64]
 
 _LABELS: Final = {
     "file": ("$x$ (m)", "$y$ (m)"),
@@ -101,7 +99,7 @@ def map_limits(place: FloatArray) -> tuple[float, float, float, float]:
     return float(low[0] - margin), float(high[0] + margin), float(low[1] - margin), float(high[1] + margin)
 
 
-def drawn_points(first: int, last: int) -> npt.NDArray[np.int64]:
+def drawn_points(first: int, last: int) -> IntArray:
     """Indices of at most `MOST_DRAWN` points from first to last, including both."""
     return np.unique(np.linspace(first, last, min(last - first + 1, MOST_DRAWN)).round().astype(np.int64))
 
@@ -225,14 +223,14 @@ def _tint_runs(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> Non
         )
 
 
-def _with_gaps(summary: TrackSummary, numbers: npt.NDArray[np.int64], values: FloatArray) -> FloatArray:
+def _with_gaps(summary: TrackSummary, numbers: IntArray, values: FloatArray) -> FloatArray:
     """Values at these points, NaN at the first one after each gap, so that the line has a break."""
     parted = values[numbers].astype(float)
     parted[1:][np.diff(summary.motion.smoothed.part[numbers]) > 0] = np.nan
     return parted
 
 
-def _draw_speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+def _draw_speed(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length: FloatArray) -> None:
     speed = _with_gaps(summary, numbers, summary.motion.speed)
     path = summary.motion.path
     if path is not None:
@@ -249,7 +247,7 @@ def _draw_speed(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64
     )
 
 
-def _draw_height(axes: Axes, summary: TrackSummary, numbers: npt.NDArray[np.int64], arc_length: FloatArray) -> None:
+def _draw_height(axes: Axes, summary: TrackSummary, numbers: IntArray, arc_length: FloatArray) -> None:
     axes.plot(arc_length[numbers], _with_gaps(summary, numbers, summary.track.place[:, 2]), color=BLUE, linewidth=0.8)
     words = {
         "east_north_up": Message("height above\nthe origin (m)"),

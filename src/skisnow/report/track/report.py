@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from markupsafe import Markup
 from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import ENGLISH, Message
 from ..._support.staging import require_writable, staged, write_file
 from ...track.course.gates_table import gates_csv
@@ -175,7 +175,6 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
         )
 
 
-FloatArray = npt.NDArray[np.float64]
 MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.1}
 SIMULATED: Final[dict[str, Any]] = {"color": VERMILLION, "linewidth": 1.1, "linestyle": (0, (5, 1.5))}
 BEFORE: Final[dict[str, Any]] = {"color": PALE, "linewidth": 0.8}

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.lines import Line2D
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM
 from ...comparison.distances import arc_lengths
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from ...simulation.run import Run
 
-FloatArray = npt.NDArray[np.float64]
 QUANTILES: Final = (0.05, 0.25, 0.5, 0.75, 0.95)
 FEWEST: Final = 3
 """Runs that make a band."""

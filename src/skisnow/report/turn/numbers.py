@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from ...snow import SnowProperties
     from .chain import EnsembleRun, TurnChain
 
-FloatArray = npt.NDArray[np.float64]
 MORE_THAN_INPUTS: Final = 3
 """Minimum number of runs above the number of inputs for shares with an interval."""
 YIELDS: Final = 0.95

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 from nicegui import ui
 
 from ..._support.errors import ParameterError, StoreError
-from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
@@ -221,21 +220,18 @@ def _stored(session: EditSession, record: Any, once: str) -> str:
     """Store a reading; returns the name of its series."""
     said = _sent_cells(record)
     if not once or not said:
-        raise ParameterError(Message("this is not a reading"), code="not_a_reading")
+        raise ParameterError("this is not a reading", code="not_a_reading")
     cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
     if cells["tool"] not in session.described.tools:
-        raise ParameterError(Message("the campaign has no tool {tool!r}", tool=cells["tool"]), code="unknown_name")
+        raise ParameterError("the campaign has no tool {tool!r}", code="unknown_name", tool=cells["tool"])
     test = session.test(FILE, cells["experiment"])
     there = test.row_under(cells["load_N"], cells.get(BRANCH, ""))
     if there is not None and there.entered.once != once:
         raise ParameterError(
-            Message("a reading of {depth_mm} mm is there already", depth_mm=there.cells["depth_mm"]),
-            code="already_there",
+            "a reading of {depth_mm} mm is there already", code="already_there", depth_mm=there.cells["depth_mm"]
         )
     if test.rows and test.rows[0].cells["site"] != cells["site"]:
-        raise ParameterError(
-            Message("that series is at the site {site}", site=test.rows[0].cells["site"]), code="other_site"
-        )
+        raise ParameterError("that series is at the site {site}", code="other_site", site=test.rows[0].cells["site"])
     who = str(record.get("who") or "")[:LONGEST]
     place = test.next_position
     entry = NewEntry(action="add", file=FILE, test=test.name, cells=cells, position=place, who=who, once=once)

@@ -160,7 +160,7 @@ class DescriptionForm:
         loads = [typed_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
         if not values["name"]:
-            raise ParameterError(Message("the campaign has no name"), code="no_name")
+            raise ParameterError("the campaign has no name", code="no_name")
         values |= {"observers": observers or None, "load_steps_N": loads or None}
         values |= {
             key: typed_number(NUMBERS[key], number.value or "") for key, number in self._numbers.items() if number.value
@@ -219,7 +219,7 @@ class EntryRows:
         for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():
                 if any((length.value or "").strip() for length in lengths.values()):
-                    raise ParameterError(Message(_NO_NAME[self.kind], number=number), code="no_name")
+                    raise ParameterError(_NO_NAME[self.kind], code="no_name", number=number)
                 continue
             entry: dict[str, Any] = {"name": name.value.strip()}
             if shape is not None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from nicegui import ui
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
 from ...campaign.store.stored_tables import checked_cell
 from ..edit_session import EditSession
 from ..entry.readings import FILE, receive_offline_readings
@@ -40,7 +39,7 @@ def add_page(lab: Lab) -> None:
         row: str = "",
     ) -> None:
         if table not in TABLES:
-            raise ParameterError(Message("this address names no table of a campaign"), code="no_table")
+            raise ParameterError("this address names no table of a campaign", code="no_table")
         session = EditSession(lab, required_id(id_))
         with framed(session.described.name or "Campaign", here=HERE, ahead=True):
             further = {"Analysis": analysis("entry", id_), "Campaign": f"/describe?entry={id_}"}

@@ -174,7 +174,7 @@ class _Import:
 
     async def _keep(self) -> None:
         if self.tried is None or self.tried.proposal.problems:
-            raise ParameterError(Message("Answer the questions first."), code="not_ready")
+            raise ParameterError("Answer the questions first.", code="not_ready")
         files = self.tried.proposal.files
         added = await run.io_bound(self.imports.store, self.id_, files)
         if added is not None:

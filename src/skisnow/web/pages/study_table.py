@@ -13,7 +13,6 @@ from starlette.responses import FileResponse, Response
 
 from ..._support.errors import ParameterError
 from ..._support.language import ENGLISH
-from ..._support.messages import Message
 from ..._support.outcomes import outcome_words
 from ...report.formatting import significant
 from ..elements import Words, choice, link, named
@@ -72,7 +71,7 @@ def add_page(lab: Lab) -> None:
     async def study_table(name: str) -> None:
         result = await run.io_bound(studies.table, name)
         if result is None:
-            raise ParameterError(Message("the lab is about to end"), code="lab_ends")
+            raise ParameterError("the lab is about to end", code="lab_ends")
         with framed("Study", here=HERE):
             job = next((job for job in studies.jobs() if job.name == name), None)
             _show_inputs(job)
