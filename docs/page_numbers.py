@@ -140,7 +140,7 @@ def tutorials_campaign(folder: Path) -> dict[str, str]:
     }  # fmt: skip
 
 
-def how_to_results_elsewhere(folder: Path) -> dict[str, str]:
+def how_to_in_python(folder: Path) -> dict[str, str]:
     """The snow of site C in the field's units."""
     snow = read_snow(folder / "results" / "results.json", site="site C")
     stress = snow.failure_shear_stress

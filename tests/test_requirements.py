@@ -103,7 +103,7 @@ def test_what_builds_and_runs_is_what_is_tested(name: str, python: str) -> None:
 
 
 def test_every_dependency_and_every_bound_is_explained() -> None:
-    page = (ROOT / "docs" / "dependencies.md").read_text(encoding="utf-8").lower()
+    page = (ROOT / "docs" / "contributing.md").read_text(encoding="utf-8").lower()
     for each in [*asked(*TESTED, "posterior", "peers", "geotiff", "postgresql"), *of_group("dev")]:
         assert bare(each.name) in page.replace("_", "-"), each
         for bound in each.specifier:
@@ -123,7 +123,7 @@ def test_the_bill_of_materials_has_what_lies_inside_the_package() -> None:
     (ours,) = [each for each in found["dependencies"] if each["ref"] == "root"]
     three = found["components"][-1]
     assert ours["dependsOn"] == ["numpy", three["bom-ref"]]
-    assert f"three.js r{Version(three['version']).minor} " in (ROOT / "docs" / "dependencies.md").read_text(
+    assert f"three.js r{Version(three['version']).minor} " in (ROOT / "docs" / "contributing.md").read_text(
         encoding="utf-8"
     )
     assert {file["name"].rsplit("/", 1)[1] for file in three["components"]} == {

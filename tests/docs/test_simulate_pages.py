@@ -52,9 +52,9 @@ def test_commands_of_the_how_to_change_what_can_be_changed() -> None:
     from skisnow.scenario.keys import parse_change
 
     lines = [line for line in HOW_TO.splitlines() if line.startswith("skisnow simulate") and "--set" in line]
-    assert len(lines) == 3
+    assert len(lines) == 4
     for line in lines:
-        changes = dict(parse_change(part.strip()) for part in line.split("--set")[1:])
+        changes = dict(parse_change(part.partition(" --")[0].strip()) for part in line.split("--set")[1:])
         load_scenario(line.split()[2], changes=changes)
 
 

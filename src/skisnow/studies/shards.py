@@ -106,7 +106,7 @@ def run_shard(
 
     References
     ----------
-    The page docs/how-to/cluster.md.
+    The page docs/how-to/study.md.
     """
     workers = workers_in_force(workers)
     require_executor(executor)
@@ -149,7 +149,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
 
     References
     ----------
-    The page docs/how-to/cluster.md.
+    The page docs/how-to/study.md.
     """
     out = Path(out)
     writer_of(out)

@@ -72,7 +72,7 @@ def run_batch(
 
     References
     ----------
-    The page docs/how-to/cluster.md.
+    The page docs/how-to/study.md.
     """
     kept = kept if kept is not None else KeptRows()
     compute_missing(points, function, kept, workers=workers, executor=executor, progress=progress)

@@ -1,4 +1,4 @@
-"""The page about clusters: its job script and its files are such as they are taken."""
+"""The section about many computers: its job script and its files are such as they are taken."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from skisnow._support.processes.dask_cluster import scheduler_of
 from skisnow.cli import build_parser
 from skisnow.studies import Shard
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "cluster.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "how-to" / "study.md").read_text(encoding="utf-8")
+SECTION = PAGE.partition("\n## Many computers\n")[2]
 
 
 def blocks(language: str) -> list[str]:
-    return [part.split("```")[0] for part in PAGE.split(f"```{language}\n")[1:]]
+    return [part.split("```")[0] for part in SECTION.split(f"```{language}\n")[1:]]
 
 
 def test_job_script_asks_for_each_part_once() -> None:
@@ -56,6 +57,6 @@ def test_files_of_schedulers_are_read(tmp_path: Path) -> None:
 
 def test_commands_of_the_page_are_taken() -> None:
     commands = [line for block in blocks("") for line in block.splitlines() if line.startswith("skisnow ")]
-    assert len(commands) == 5
+    assert len(commands) == 4
     for line in commands:
         assert build_parser().parse_args(line.split()[1:]).run
