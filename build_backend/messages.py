@@ -41,7 +41,7 @@ COUNTED = {"count_message": (1, 2), "counted": (2, 3)}
 KEYWORDS: dict[str, tuple[Any, dict[str, Any]]] = {
     "**.py": (python_calls, {"Message": None, "template": None, "prose": None, **COUNTED, **CLASSES}),
     # {% trans %} is one of the calls
-    "**.html": ("jinja2.ext:babel_extract", {"gettext": None, "ngettext": (1, 2), "prose": None}),
+    "**.html": ("jinja2.ext:babel_extract", {"gettext": None, "said": None, "ngettext": (1, 2), "prose": None}),
     "**.js": ("javascript", {"said": None}),
 }
 WITH_KEYS = ("carving", "scenario", "snow", "track")

@@ -10,7 +10,7 @@ import pytest
 from scipy import optimize
 
 import skisnow
-from skisnow._support.language import catalogue
+from skisnow._support.messages import Message
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.model_choice import bootstrap_intervals, compare_nested_rows
 from skisnow.estimation.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model, why_no_choice
@@ -318,7 +318,7 @@ def test_only_the_selected_model_or_all_models_are_warned_of(
     warned = fit_warnings(fits, None if selected is None else _fit(selected), np.array([100.0, -100.0]))
     assert len(warned) == count
     for text in warned:
-        german = catalogue("de").translated(text)
+        german = Message("{text}", text=text).text("de")
         assert "candidate" not in german and "misses" not in german
 
 

@@ -1,4 +1,4 @@
-"""Every text of the lab that somebody may read, collected from its source: what a catalogue must translate.
+"""Texts of the lab in its source that somebody may read and that are no messages.
 
 A text is a string, or a string with places for values, that is not a docstring, nothing only for the program, and
 has a word in it.
@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import skisnow.web
-from skisnow._support.language.catalogues import LEAST_LETTERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +23,7 @@ _UNREAD: Final = """
     read_text write_text encode decode mkdtemp TemporaryDirectory create query_params execute text debug info warning
     error set_cookie setdefault get pop page api_route simplefilter filterwarnings strptime strftime TypeVar isinstance
     Message template count_message PageRequest NewEntry partial cast Environment PackageLoader get_template fullmatch
-    sub finditer glob
+    sub finditer glob ParameterError GivenError StoreError
 """
 UNREAD_CALLS: Final = frozenset(_UNREAD.split())
 """Arguments of these are read by programs, or their translation is checked elsewhere (`Message`)."""
@@ -57,16 +56,7 @@ NO_WORDS: Final = frozenset(
         "small switch-kg",
     }
 )
-MADE_OF_KINDS: Final = {
-    "{} {} has lengths and no name; give it one, or empty them",
-    "Name of {} {}",
-    "Another {}",
-    "test {} was made with the {} {}: leave that name as it is, and give another {} an entry of its own",
-    "Import {}",
-    "{}, {} used; {}, {} used.",
-    ", if sheared there",
-}
-"""Put together from few words: the catalogue has each whole, as other languages bend them."""
+LEAST_LETTERS: Final = 3
 _WORD: Final = re.compile(r"[A-Za-zÀ-ž]{2,}")
 _CODE: Final = re.compile(r"[\w.\-/:#*]+|[\w\-]+=.*|.*[{}<>].*|\(.*=>.*|/.*", re.DOTALL)
 

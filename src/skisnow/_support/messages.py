@@ -24,6 +24,8 @@ from string import Formatter
 from typing import Any, Final
 
 ENGLISH: Final = "en"
+LANGUAGE_OF_ERRORS: Final = "SKISNOW_LANGUAGE"
+"""Environment variable with the language in which a command prints its errors; the lab sets it."""
 FOLDER: Final = Path(__file__).parent / "translations"
 _LANGUAGE: Final = ContextVar[str]("language")
 _MONTHS: Final = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")

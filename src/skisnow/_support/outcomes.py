@@ -23,6 +23,7 @@ _OUTCOMES: Final = {
     "not_converged": Message("not converged"),
     "not_identifiable": Message("not identifiable"),
     "too_few_points": Message("too few points"),
+    "error": Message("error"),
     "equilibrium": Message("equilibrium"),
     "slips": Message("slips"),
     "sinks": Message("sinks"),

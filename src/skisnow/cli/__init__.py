@@ -9,6 +9,7 @@ import sys
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, SkisnowError
+from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS
 from .ending import Ended
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def _print_error(error: SkisnowError | MemoryError) -> None:
             print(_short(line), file=sys.stderr)
         print("Nothing was written: fix the errors above first.", file=sys.stderr)
     elif isinstance(error, SkisnowError):
-        print(f"skisnow: {_short(str(error))}", file=sys.stderr)
+        print(f"skisnow: {_short(error.text(os.environ.get(LANGUAGE_OF_ERRORS, ENGLISH)))}", file=sys.stderr)
     else:
         print("skisnow: the memory of this machine does not hold it. Give less at once.", file=sys.stderr)
 

@@ -9,7 +9,7 @@ import re
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
-from .._support.language import ENGLISH, codes
+from .._support.messages import ENGLISH, languages
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -65,7 +65,7 @@ def add_language(parser: argparse.ArgumentParser, what: str = "the page and the 
     """Add the option that says which language a report is in; `what`: all that is in it."""
     parser.add_argument(
         "--language",
-        choices=codes(),
+        choices=languages(),
         default=ENGLISH,
         help=f"of {what}; files that programs read stay as they are (default: en)",
     )

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.outcomes import outcome_words
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
@@ -153,17 +154,19 @@ def facts_of(
 ) -> tuple[tuple[str, str], ...]:
     """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm²."""
     return (
-        ("Outcome", outcome_words(outcome)),
-        ("H_V", f"{hardness:.3g} N/mm³"),
-        ("S_f", "not given" if stress is None else f"{stress:.3g} N/mm²"),
-        ("k_u / H_V", f"{ratio:g}"),
-        ("Skis", skis),
+        (Message("Outcome"), outcome_words(outcome)),
+        ("H_V", Message("{hardness:.3g} N/mm³", hardness=hardness)),
+        ("S_f", Message("not given") if stress is None else Message("{stress:.3g} N/mm²", stress=stress)),
+        ("k_u / H_V", Message("{ratio:g}", ratio=ratio)),
+        (Message("Skis"), skis),
     )
 
 
 def skis_words(ski: str, edge_angle: float | None) -> str:
     """The skis and their edge angle (degrees); None: a skier sets it."""
-    return f"{ski}, edged by the skier" if edge_angle is None else f"{ski}, edge angle {edge_angle:.3g}°"
+    if edge_angle is None:
+        return Message("{ski}, edged by the skier", ski=ski)
+    return Message("{ski}, edge angle {edge_angle:.3g}°", ski=ski, edge_angle=edge_angle)
 
 
 def assemble_replay(

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Final
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from .._support.errors import ParameterError
-from .._support.language import ENGLISH, catalogue, require_language
+from .._support.errors import ParameterError, require_language
+from .._support.messages import ENGLISH, translated, translations
 from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
@@ -108,7 +108,7 @@ def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENG
     return environment.get_template("replay.html").render(
         title=run.title,
         language=language,
-        said=catalogue(language).translated,
+        said=translations(language).gettext,
         words=page_words(language),
         css=Markup(static_text(STYLE)),
         runs=[{"id": name, "base64": base64.b64encode(data).decode()} for name, data in content.items()],
@@ -122,13 +122,12 @@ def page_words(language: str) -> dict[str, str]:
     if language == ENGLISH:
         return {}
     texts = {text for name in MODULES for text in _SAID.findall(static_text(name))}
-    return {text: catalogue(language).as_given(text) for text in sorted(texts)}
+    return {text: translations(language).gettext(text) for text in sorted(texts)}
 
 
 def in_language(run: Replay, language: str) -> Replay:
     """Replay with the facts for the reader in a language."""
-    words = catalogue(language)
-    facts = ((words.translated(name), words.with_numbers(words.translated(text))) for name, text in run.facts)
+    facts = ((translated(name, language), translated(text, language)) for name, text in run.facts)
     return replace(run, facts=tuple(facts))
 
 

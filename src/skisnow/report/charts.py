@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from .._support.messages import Message
 from .._support.units import MM
 from ..geometry import in_form
 from .formatting import significant
@@ -138,11 +139,11 @@ def _facts(ski: Ski) -> dict[str, str]:
     tip, waist, tail = (significant(width / MM) for width in ski.sidecut_widths)
     middle = int(np.argmin(np.abs(ski.station)))
     return {
-        "Length": f"{significant(ski.length, 4)} m",
-        "Running length": f"{significant(ski.running_length, 4)} m",
-        "Sidecut, tip – waist – tail": f"{tip} – {waist} – {tail} mm",
-        "Sidecut radius": f"{significant(ski.sidecut_radius_of_edge_line)} m",
-        "EI at the boot": f"{significant(float(ski.bending_stiffness[middle]))} N m²",
-        "GJ at the boot": f"{significant(float(ski.torsional_stiffness[middle]))} N m²",
-        "Mass": f"{significant(ski.mass)} kg",
+        Message("Length"): f"{significant(ski.length, 4)} m",
+        Message("Running length"): f"{significant(ski.running_length, 4)} m",
+        Message("Sidecut, tip – waist – tail"): f"{tip} – {waist} – {tail} mm",
+        Message("Sidecut radius"): f"{significant(ski.sidecut_radius_of_edge_line)} m",
+        Message("EI at the boot"): f"{significant(float(ski.bending_stiffness[middle]))} N m²",
+        Message("GJ at the boot"): f"{significant(float(ski.torsional_stiffness[middle]))} N m²",
+        Message("Mass"): f"{significant(ski.mass)} kg",
     }

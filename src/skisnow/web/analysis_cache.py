@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import run
 
 from .._support.errors import StoreError
+from .._support.messages import Message
 from ..campaign.store import Journals
 from .campaign_analysis import N_FIGURES, Choice, Numbers, Refusal, analyse_files, figure
 from .transfer import entry_files, kept_files
@@ -77,7 +78,7 @@ class CampaignSource:
                 return cached
             outcome = await run.io_bound(analyse_files, self.files, choice)
             if not isinstance(outcome, Numbers):
-                return outcome or Refusal("The lab is about to end.")
+                return outcome or Refusal(Message("The lab is about to end."))
             self._computed[choice] = result = CachedAnalysis(secrets.token_hex(8), outcome)
             while len(self._computed) > MOST_CHOICES:
                 self._computed.popitem(last=False)

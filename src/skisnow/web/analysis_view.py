@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ..campaign.reading.campaign_file import TOP_KEYS
-from ..campaign.reading.table_forms import TABLES
+from .._support.messages import Message, template
 from ..report.formatting import counted
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
 from .elements import Words, html_words, named
-from .language import language_of, said, said_as_written
+from .language import language_of, said
 from .layout import error_sentence, heading, sentence
 
 if TYPE_CHECKING:
@@ -29,13 +28,22 @@ if TYPE_CHECKING:
     Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 
 LONG_TABLES: Final = {
-    "penetration_experiments": "Every penetration experiment",
-    "shear_experiments": "Every shear experiment",
+    "penetration_experiments": Message("Every penetration experiment"),
+    "shear_experiments": Message("Every shear experiment"),
 }
 FIRST_TABLE: Final = "sites"
 MOST_LISTED: Final = 400
-NAMES_IN_FILES: Final = frozenset(TOP_KEYS).union(*(form.known for form in TABLES))
-"""Columns and keys, which are not translated."""
+_FIRST_ONLY: Final = {
+    "penetration": template("The first {most} of {all} penetration experiments."),
+    "shear": template("The first {most} of {all} shear experiments."),
+}
+_EXPERIMENT: Final = {
+    ("penetration", False): template("Penetration {name}, {site}, {angle:g}°"),
+    ("penetration", True): template("Penetration {name}, {site}, {angle:g}° (cancelled)"),
+    ("shear", False): template("Shear {name}, {site}, {angle:g}°"),
+    ("shear", True): template("Shear {name}, {site}, {angle:g}° (cancelled)"),
+}
+"""Texts of an experiment by its kind, and whether it is cancelled."""
 
 
 class OpenAnalysis:
@@ -60,11 +68,11 @@ class AnalysisView:
         self._page = page
         self._analyses = analyses
         self._asked = 0
-        self._status = Words("Computing …").classes("status").props("role=status aria-live=polite")
-        self._results = named(ui.element("section"), "Key results")
-        self._choices = named(ui.element("section"), "Included data")
-        self._tables = named(ui.element("section"), "Tables")
-        self._figures = named(ui.element("section"), "Figures")
+        self._status = Words(Message("Computing …")).classes("status").props("role=status aria-live=polite")
+        self._results = named(ui.element("section"), Message("Key results"))
+        self._choices = named(ui.element("section"), Message("Included data"))
+        self._tables = named(ui.element("section"), Message("Tables"))
+        self._figures = named(ui.element("section"), Message("Figures"))
 
     def show_cached(self) -> None:
         """Show a cached analysis at once."""
@@ -102,7 +110,7 @@ class AnalysisView:
     def _refuse(self, refusal: Refusal) -> None:
         """Show why there is no analysis instead of the results of another choice."""
         self._page.analysed = None
-        self._page.refused = f"This campaign cannot be analysed yet. {refusal.said}"
+        self._page.refused = Message("This campaign cannot be analysed yet. {said}", said=refusal.said)
         self._page.settled.set()
         self._results.clear()
         self._tables.clear()
@@ -110,11 +118,13 @@ class AnalysisView:
         if not refusal.errors:
             self._status.set_text(self._page.refused)
             return
-        self._status.set_text("This campaign cannot be analysed yet. What is wrong in its files:")
+        self._status.set_text(Message("This campaign cannot be analysed yet. What is wrong in its files:"))
         with self._results:
             _list_errors(refusal.errors)
             if self._page.kind == "kept":
-                sentence("Correct the files and import them again. Single cells can be corrected under Correct.")
+                sentence(
+                    Message("Correct the files and import them again. Single cells can be corrected under Correct.")
+                )
 
     def _show(self, result: CachedAnalysis) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, result
@@ -122,7 +132,7 @@ class AnalysisView:
             self._show_choices(result.numbers)
         self._show_results(result.numbers)
         self._show_tables(result.numbers)
-        self._status.set_text(f"{_counts(result.numbers)} Drawing the figures …")
+        self._status.set_text(Message("{counts} Drawing the figures …", counts=_counts(result.numbers)))
 
     async def _draw(self, result: CachedAnalysis, number: int) -> None:
         """Show each figure when it is drawn; those of another choice stay until the first one."""
@@ -133,7 +143,7 @@ class AnalysisView:
             if not begun:
                 self._figures.clear()
                 with self._figures:
-                    heading("Figures")
+                    heading(Message("Figures"))
                 begun = True
             with self._figures:
                 _figure(shown)
@@ -171,9 +181,9 @@ class AnalysisView:
 
     def _show_choices(self, numbers: Numbers) -> None:
         with self._choices:
-            heading("Included data")
-            _add_folded("Exclude experiments with these quality flags", lambda: self._list_marks(numbers))
-            _add_folded("Included experiments", lambda: self._list_experiments(numbers))
+            heading(Message("Included data"))
+            _add_folded(Message("Exclude experiments with these quality flags"), lambda: self._list_marks(numbers))
+            _add_folded(Message("Included experiments"), lambda: self._list_experiments(numbers))
 
     def _list_marks(self, numbers: Numbers) -> None:
         for code, words in choosable_flags().items():
@@ -187,12 +197,13 @@ class AnalysisView:
             for row in rows[:MOST_LISTED]:
                 self._experiment(file, kind, row)
             if len(rows) > MOST_LISTED:
-                sentence(f"The first {MOST_LISTED} of {len(rows)} {kind} experiments.", "quiet")
+                sentence(Message(_FIRST_ONLY[kind], most=MOST_LISTED, all=len(rows)), "quiet")
 
     def _experiment(self, file: str, kind: str, row: dict[str, Any]) -> None:
         cancelled = "cancelled" in row["flags"]
-        words = f"{kind.capitalize()} {row['experiment']}, {row['site']}, {row['edge_angle_deg']:g}°"
-        words += " (cancelled)" if cancelled else ""
+        words = Message(
+            _EXPERIMENT[kind, cancelled], name=row["experiment"], site=row["site"], angle=row["edge_angle_deg"]
+        )
         chosen = self._test_chooser((file, str(row["experiment"])))
         box = ui.checkbox(said(words), value=not cancelled, on_change=chosen)
         if cancelled:
@@ -217,7 +228,7 @@ class AnalysisView:
 
     async def _choose(self, choice: Choice) -> None:
         self._page.choice = choice
-        self._status.set_text("Computing …")
+        self._status.set_text(Message("Computing …"))
         await self.compute()
 
 
@@ -226,7 +237,7 @@ def _list_errors(lines: Sequence[str]) -> None:
     with ui.element("ul").classes("errors"):
         for line in lines:
             with ui.element("li"):
-                ui.label(said_as_written(line, NAMES_IN_FILES))
+                ui.label(said(line))
 
 
 def _add_folded(words: str, fill: Callable[[], object]) -> None:
@@ -245,10 +256,12 @@ def _add_folded(words: str, fill: Callable[[], object]) -> None:
 def _counts(numbers: Numbers) -> str:
     pressed, sheared = (numbers.results[kind]["experiments"] for kind in ("penetration", "shear"))
     used = [sum(row["used"] for row in rows) for rows in (pressed, sheared)]
-    return (
-        f"{counted(len(pressed), '{count} penetration experiment', '{count} penetration experiments')}, {used[0]} "
-        f"used; "
-        f"{counted(len(sheared), '{count} shear experiment', '{count} shear experiments')}, {used[1]} used."
+    return Message(
+        "{pressed}, {used} used; {sheared}, {shear_used} used.",
+        pressed=counted(len(pressed), "{count} penetration experiment", "{count} penetration experiments"),
+        used=used[0],
+        sheared=counted(len(sheared), "{count} shear experiment", "{count} shear experiments"),
+        shear_used=used[1],
     )
 
 

@@ -14,7 +14,7 @@ from nicegui import app as pages_app
 from nicegui import core, ui
 from starlette.responses import FileResponse, RedirectResponse, Response
 
-from .._support.language import languages
+from .._support.messages import languages
 from .guard import Access, Guard
 from .language import COOKIE
 from .layout import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to

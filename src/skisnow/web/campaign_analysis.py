@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .._support.errors import FieldDataError, SkisnowError
-from .._support.messages import in_language, languages
+from .._support.messages import Message, in_language, languages
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.problems import ALWAYS_EXCLUDE, Problem, lines_of
 from ..estimation import analyse
@@ -23,12 +23,11 @@ from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, local_axes, site_styles
 
 if TYPE_CHECKING:
-    from .._support.messages import Message
     from ..campaign.reading import FilesInMemory
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..estimation import Analysis
 
-LEFT_OUT: Final = "left out by choice in the lab"
+LEFT_OUT: Final = Message("left out by choice in the lab")
 N_FIGURES: Final = len(DRAWERS)
 SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetration_experiments", "shear_experiments")
 

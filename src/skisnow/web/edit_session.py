@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from .._support.errors import FieldDataError, StoreError
-from .._support.messages import Message
+from .._support.messages import Message, joined
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
@@ -143,11 +143,13 @@ def _flag_sentences(problems: list[Problem]) -> dict[TestKey, dict[str, str]]:
     """Sentences of the quality flags of each test, by code."""
     sentences: dict[TestKey, dict[str, str]] = {}
     for problem in problems:
-        details = (
-            f" Found: {problem.value}; not flagged would be {problem.allowed}." if problem.value is not None else ""
-        )
-        key = problem.file, problem.experiment or ""
-        sentence = f"{QUALITY_FLAGS[problem.code].sentence}{details} {problem.action}"
+        key, flag = (problem.file, problem.experiment or ""), QUALITY_FLAGS[problem.code].sentence
+        sentence = joined([flag, problem.action])
+        if problem.value is not None:
+            sentence = Message(
+                "{flag} Found: {value}; not flagged would be {allowed}. {action}",
+                flag=flag, value=problem.value, allowed=problem.allowed, action=problem.action,
+            )  # fmt: skip
         sentences.setdefault(key, {})[problem.code] = sentence
     return sentences
 

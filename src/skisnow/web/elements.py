@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
 from typing import TYPE_CHECKING, Any, Final
 
@@ -33,15 +34,15 @@ def field(
     return made
 
 
-def choice(label: str, options: Sequence[str] | dict[str, str], value: str | None) -> ui.select:
+def choice(label: str, options: Sequence[str] | Mapping[str, str], value: str | None) -> ui.select:
     """Menu with options as texts by value."""
     made = ui.select(option_texts(options), label=said(label), value=value)
     return made.props("outlined stack-label").classes("field")
 
 
-def option_texts(options: Sequence[str] | dict[str, str]) -> dict[str, str]:
+def option_texts(options: Sequence[str] | Mapping[str, str]) -> dict[str, str]:
     """Texts of options in the language of the page, by value."""
-    shown = options if isinstance(options, dict) else {option: option for option in options}
+    shown = options if isinstance(options, Mapping) else {option: option for option in options}
     return {value: said(words) for value, words in shown.items()}
 
 

@@ -14,6 +14,7 @@ import socket
 import time
 from collections import OrderedDict, deque
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING, Final
 from urllib.parse import parse_qs, urlsplit
 
@@ -21,14 +22,15 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.requests import ClientDisconnect, Request, cookie_parser
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 
-from .._support.language import catalogue
+from .._support.messages import Message, translated
 from .._support.user_files import natural_number
 from .language import language_of_request
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from starlette.types import ASGIApp, Message, Receive, Scope, Send
+    from starlette.types import ASGIApp, Receive, Scope, Send
+    from starlette.types import Message as AsgiMessage
 
 
 STATUS: Final = "skisnow.status"
@@ -192,7 +194,7 @@ def _add_headers(send: Send, scope: Scope) -> Send:
     Without it the framework answers 500 for every page with an error.
     """
 
-    async def sent(message: Message) -> None:
+    async def sent(message: AsgiMessage) -> None:
         if message["type"] == "http.response.start":
             message["status"] = scope.get(STATUS, message["status"])
             headers = MutableHeaders(scope=message)
@@ -207,7 +209,7 @@ def _limit_body(receive: Receive, most_bytes: int) -> Receive:
     """Count the bytes of a body, and disconnect beyond the limit."""
     taken = 0
 
-    async def received() -> Message:
+    async def received() -> AsgiMessage:
         nonlocal taken
         message = await receive()
         taken += len(message.get("body", b""))
@@ -268,12 +270,12 @@ def _network(address: str) -> str:
 
 
 def token_page(
-    scope: Scope, status: int, sentence: str = "The lab asks for the token that it was started with."
+    scope: Scope, status: int, sentence: str = Message("The lab asks for the token that it was started with.")
 ) -> Response:
     """Page with the form for the token and a sentence above it, in the language of the request."""
     language = language_of_request(Request(scope))
-    shown = {"said": sentence, "token": "Token", "open": "Open the lab"}
-    words = {name: catalogue(language).translated(text) for name, text in shown.items()}
+    shown = {"said": sentence, "token": Message("Token"), "open": Message("Open the lab")}
+    words = {name: escape(translated(text, language)) for name, text in shown.items()}
     page = _PAGE.format(language=language, path=TOKEN_PATH, **words)
     return HTMLResponse(page, status, headers={"cache-control": "no-store"})
 
@@ -281,7 +283,15 @@ def token_page(
 def too_many_tries(scope: Scope, wait_s: float) -> Response:
     """Page with the form and the time to wait."""
     seconds = math.ceil(wait_s)
-    answer = token_page(scope, 429, f"Those were {TRIES} tries in a minute. Wait {seconds} seconds, then try again.")
+    answer = token_page(
+        scope,
+        429,
+        Message(
+            "Those were {tries} tries in a minute. Wait {seconds} seconds, then try again.",
+            tries=TRIES,
+            seconds=seconds,
+        ),
+    )
     answer.headers["retry-after"] = str(seconds)
     return answer
 
@@ -295,13 +305,13 @@ async def answer_to_token(
         async for piece in Request(scope, receive).stream():
             body += piece
             if len(body) > _LONGEST:
-                return token_page(scope, 413, "This is too long for a token.")
+                return token_page(scope, 413, Message("This is too long for a token."))
     except ClientDisconnect:
         return Response(status_code=400)
     token = parse_qs(body.decode("utf-8", "replace")).get("token", [""])[0]
     if not is_token(token):
         await asyncio.sleep(_WAIT_S)
-        return token_page(scope, 403, "This is not the token.")
+        return token_page(scope, 403, Message("This is not the token."))
     answer = RedirectResponse("/", 303)
     answer.set_cookie(*cookie, httponly=True, samesite="strict", path="/", secure=scope.get("scheme") == "https")
     return answer

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 from nicegui import ui
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .language import said
 from .layout import error_sentence, heading, sentence
 
@@ -49,7 +50,7 @@ class JobList:
         self._runs: Runs = runs
         self._card = card
         self._cards: dict[str, JobCard] = {}
-        heading("Queue and history")
+        heading(Message("Queue and history"))
         self._nothing = sentence(nothing, "quiet")
         self._place = ui.element("div")
         self.show()

@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory, mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import OutputError, ParameterError
+from .._support.messages import Message
 from .._support.staging import cannot_write, write_file
 from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
@@ -219,19 +220,19 @@ if TYPE_CHECKING:
 NAME: Final = "name"
 LISTS: Final = ("EI_N_m2", "GJ_N_m2")
 STIFFNESS: Final = {
-    "mass_kg": "Mass of one ski (kg)",
-    "camber_mm": "Camber (mm)",
-    "EI_N_m2": "EI (N m²) from tip to tail",
-    "GJ_N_m2": "GJ (N m²) from tip to tail",
+    "mass_kg": Message("Mass of one ski (kg)"),
+    "camber_mm": Message("Camber (mm)"),
+    "EI_N_m2": Message("EI (N m²) from tip to tail"),
+    "GJ_N_m2": Message("GJ (N m²) from tip to tail"),
 }
 """Labels of the quantities that a design of a shape does not contain."""
 MEASURED: Final = {
-    "length_mm": "Length (mm)",
-    "running_length_mm": "Running length (mm)",
-    "sidecut_length_mm": "Sidecut length (mm)",
-    "tip_width_mm": "Width at the tip (mm)",
-    "waist_width_mm": "Width at the waist (mm)",
-    "tail_width_mm": "Width at the tail (mm)",
+    "length_mm": Message("Length (mm)"),
+    "running_length_mm": Message("Running length (mm)"),
+    "sidecut_length_mm": Message("Sidecut length (mm)"),
+    "tip_width_mm": Message("Width at the tip (mm)"),
+    "waist_width_mm": Message("Width at the waist (mm)"),
+    "tail_width_mm": Message("Width at the tail (mm)"),
     **STIFFNESS,
 }
 """Labels of the measured quantities of a ski with three widths."""

@@ -8,13 +8,9 @@ from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
 
-from .._support.language import ENGLISH, catalogue, languages
-from .._support.language.catalogues import DECIMAL
-from .._support.messages import Message, use_language_of_pages
+from .._support.messages import ENGLISH, Message, decimal_sign, languages, translated, use_language_of_pages
 
 if TYPE_CHECKING:
-    from collections.abc import Set
-
     from starlette.requests import Request
 
 COOKIE: Final = "skisnow-language"
@@ -60,39 +56,13 @@ def language_of_request(request: Request) -> str:
 
 
 def said(text: str, client: Client | None = None) -> str:
-    """A text in the language of the page, its numbers as there."""
-    words = catalogue(language_of(client))
-    if isinstance(text, Message):
-        return text.text(language_of(client))
-    return words.with_numbers(words.translated(text))
-
-
-def said_template(template: str, *fields: str, client: Client | None = None) -> str:
-    """A translated template with ``{}`` for each field; the fields are not translated."""
-    return catalogue(language_of(client)).as_given(template).format(*fields)
-
-
-def decimal_mark(client: Client | None = None) -> str:
-    """Decimal mark of the page's language."""
-    return said(DECIMAL, client)[1]
+    """A message in the language of the page; other text is not translated."""
+    return text.text(language_of(client)) if isinstance(text, Message) else text
 
 
 def number_said(number: str, client: Client | None = None) -> str:
     """A stored number with the decimal mark of the page's language; the page accepts both marks."""
-    return number.replace(".", decimal_mark(client))
-
-
-def said_as_written(text: str, names: Set[str]) -> str:
-    """A text in the language of the page, with names and numbers as in the file."""
-    return catalogue(language_of()).keeping(names).translated(text)
-
-
-def said_list(text: str, client: Client | None = None) -> str:
-    """A translated list such as ``Load (N): 400 to 1200, 4 values; ski: mine``; names and values are separate texts."""
-    return "; ".join(": ".join(said(word, client) for word in part.split(": ", 1)) for part in text.split("; "))
-
-
-_MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"]
+    return number.replace(".", decimal_sign(language_of(client)))
 
 
 def minute_words(at: datetime | str) -> str:
@@ -104,15 +74,4 @@ def minute_words(at: datetime | str) -> str:
         A time, or an ISO 8601 text; UTC without a time zone.
     """
     time = datetime.fromisoformat(at) if isinstance(at, str) else at
-    return _written((time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(), language_of())
-
-
-def _written(time: datetime, language: str) -> str:
-    """Day and time in the format of a language.
-
-    >>> _written(datetime(2026, 3, 5, 9, 7), "en"), _written(datetime(2026, 3, 5, 9, 7), "de")
-    ('5 Mar 2026, 09:07', '5. 3. 2026, 09:07')
-    """
-    if language == ENGLISH:
-        return f"{time.day} {_MONTHS[time.month - 1]} {time.year}, {time:%H:%M}"
-    return f"{time.day}. {time.month}. {time.year}, {time:%H:%M}"
+    return translated((time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(), language_of())

@@ -16,8 +16,7 @@ from nicegui import app, ui
 from starlette.responses import HTMLResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError, SkisnowError, StoreError
-from .._support.language import catalogue, languages
-from .._support.messages import Message
+from .._support.messages import Message, languages, translated
 from .elements import Words, named
 from .guard import STATUS
 from .language import language_of, language_of_request, said
@@ -36,12 +35,12 @@ KEEPING = "/kept.js"
 CONNECTED = "lab.connected()"
 LANGUAGE = "/language"
 SAID_BY_SCRIPT = {
-    "lost": "The lab does not answer. What is shown as stored is stored. The fields open again by themselves.",
-    "before": "Typed before and not stored:",
-    "meanwhile": "Typed meanwhile and not used:",
-    "refused": "not stored",
+    "lost": Message("The lab does not answer. What is shown as stored is stored. The fields open again by themselves."),
+    "before": Message("Typed before and not stored:"),
+    "meanwhile": Message("Typed meanwhile and not used:"),
+    "refused": Message("not stored"),
 }
-CONNECTING = "Connecting to the lab. The fields open as soon as it answers."
+CONNECTING = Message("Connecting to the lab. The fields open as soon as it answers.")
 
 
 @contextmanager
@@ -67,14 +66,14 @@ def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = Fal
     client.run_javascript(CONNECTED)  # first, because a disabled field cannot get the focus
     client.on_connect(lambda: client.run_javascript(CONNECTED))
     with ui.element("a").props('href="#content"').classes("skip"):
-        Words("Skip to the content")
+        Words(Message("Skip to the content"))
     with ui.element("header").classes("lab-head"):
         Words("skisnow").classes("lab-name")
         menu = ui.button(said(Message("Menu")), color=None).props(
             "flat no-caps aria-expanded=false aria-controls=pages"
         )
         menu.classes("menu")  # lab.js opens the navigation
-        with named(ui.element("nav").props("id=pages"), "Pages"):
+        with named(ui.element("nav").props("id=pages"), Message("Pages")):
             for name in PAGES:
                 _navigation_link(name, here)
         _language_links()
@@ -176,7 +175,7 @@ def add_error_pages(outer: FastAPI) -> None:
 def _notify(error: Exception) -> None:
     sentence_ = error_sentence(error)
     try:
-        ui.notify(said(sentence_), type="negative", multi_line=True, timeout=0, close_button=said("Close"))
+        ui.notify(said(sentence_), type="negative", multi_line=True, timeout=0, close_button=said(Message("Close")))
     except RuntimeError:  # outside of a page
         LOG.info("not shown on a page: %s", sentence_)
 
@@ -184,27 +183,28 @@ def _notify(error: Exception) -> None:
 def _error_page(error: Exception) -> None:
     if isinstance(error, StoreError | ParameterError):
         ui.context.client.request.scope[STATUS] = 404
-    with framed("This page cannot be shown"):
+    with framed(Message("This page cannot be shown")):
         sentence(error_sentence(error), "bad")
 
 
 def plain_page(title: str, sentence: str, status: int, request: Request) -> Response:
     """Page without scripts in the language of the request: title, sentence, and a link to the campaigns."""
     language = language_of_request(request)
-    shown = {"title": title, "said": sentence, "back": "To the campaigns"}
-    words = {name: escape(_in_language(text, language)) for name, text in shown.items()}
+    shown = {"title": title, "said": sentence, "back": Message("To the campaigns")}
+    words = {name: escape(translated(text, language)) for name, text in shown.items()}
     return HTMLResponse(_PLAIN.format(language=language, **words), status)
 
 
-def _in_language(text: str, language: str) -> str:
-    return text.text(language) if isinstance(text, Message) else catalogue(language).translated(text)
-
-
 async def _not_found_answer(request: Request, _: Exception) -> Response:
-    return plain_page("No such page", "The lab has no page at this address.", 404, request)
+    return plain_page(Message("No such page"), Message("The lab has no page at this address."), 404, request)
 
 
 async def _error_answer(request: Request, error: Exception) -> Response:
     if isinstance(error, SkisnowError):  # shown by the page
-        return plain_page("This cannot be shown", error_sentence(error), 500, request)
-    return plain_page("This cannot be shown", f"Something went wrong. Reference: {log_error(error)}.", 500, request)
+        return plain_page(Message("This cannot be shown"), error_sentence(error), 500, request)
+    return plain_page(
+        Message("This cannot be shown"),
+        Message("Something went wrong. Reference: {log_error}.", log_error=log_error(error)),
+        500,
+        request,
+    )

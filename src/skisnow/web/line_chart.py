@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui.element import Element
 
+from .._support.messages import Message, decimal_sign
 from ..report.formatting import significant
-from .language import decimal_mark, said
+from .language import language_of, said
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,7 +62,12 @@ class LineChart(Element, component="line_chart.js"):
 
     def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
         super().__init__()
-        self._titles = {"x": said(x), "y": said(y), "ends": [said(end) for end in ends], "mark": decimal_mark()}
+        self._titles = {
+            "x": said(x),
+            "y": said(y),
+            "ends": [said(end) for end in ends],
+            "mark": decimal_sign(language_of()),
+        }
         self._words = words
         self._drawn: list[tuple[ChartLine, dict[str, Any]]] = []
         self._props["height"] = height
@@ -100,9 +106,18 @@ class LineChart(Element, component="line_chart.js"):
 
     def _label(self, lines: Sequence[ChartLine]) -> str:
         values = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
-        extent = f": {significant(min(values))} to {significant(max(values))}" if values else ": nothing yet"
-        names = ", ".join(said(line.name, self.client) for line in lines if line.name)
-        return said(self._words + extent, self.client) + (f" ({names})" if names else "")
+        names = [line.name for line in lines if line.name]
+        if not values:
+            words = Message("{chart}: nothing yet", chart=self._words)
+        elif names:
+            words = Message("{chart}: {extent} ({names})", chart=self._words, extent=_extent(values), names=names)
+        else:
+            words = Message("{chart}: {extent}", chart=self._words, extent=_extent(values))
+        return said(words, self.client)
+
+
+def _extent(values: Sequence[float]) -> Message:
+    return Message("{low} to {high}", low=significant(min(values)), high=significant(max(values)))
 
 
 def _short(values: Sequence[float | None]) -> list[float | None]:

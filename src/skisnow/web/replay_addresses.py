@@ -13,8 +13,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from .._support.errors import ParameterError
-from .._support.language import ENGLISH, catalogue
-from .._support.messages import Message
+from .._support.messages import ENGLISH, Message, translations
 from .._support.user_files import GivenError, read_json, read_record
 from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
@@ -154,7 +153,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
             )
         except ParameterError as error:
             sentence = error.text(language_of_request(request))
-            return plain_page("This cannot be shown", f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
+            return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
         return HTMLResponse(page)
 
     def first() -> Response:
@@ -182,7 +181,7 @@ def _model_file(content: bytes, name: str) -> Response:
 def program_file(name: str) -> Response:
     """A script or style sheet of the replay; other files of the package are rejected."""
     if name not in (*MODULES, STYLE):
-        return PlainTextResponse("The replay has no such file.", 404)
+        return PlainTextResponse(Message("The replay has no such file."), 404)
     kind = _TYPES[name[name.rindex(".") :]]
     return Response(static_text(name), media_type=kind, headers={"cache-control": "no-cache"})
 
@@ -195,7 +194,7 @@ def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGL
     return environment.get_template("show.html").render(
         title=title or run,
         language=language,
-        said=catalogue(language).translated,
+        said=translations(language).gettext,
         words=page_words(language),
         files=FILES,
         list=LIST,
@@ -219,8 +218,8 @@ def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
 
     def store(form: FormData) -> str:
         upload = uploaded_files(form, "file", Message("no file was chosen; choose the file of a track"))[0]
-        azimuth = number_of(str(form.get("azimuth", "")), "the direction of the fall line")
-        start = number_of(str(form.get("start", "")), "the time at the first point")
+        azimuth = number_of(str(form.get("azimuth", "")), Message("the direction of the fall line"))
+        start = number_of(str(form.get("start", "")), Message("the time at the first point"))
         placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)
         name, _ = tracks.keep(upload.file, placing, count=lambda *what: confined(BOUNDS, points_of_track, *what))
         return f"{LIST}?track={quote(name, safe='')}"

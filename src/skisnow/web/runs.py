@@ -21,10 +21,11 @@ from itertools import count
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.language import ENGLISH
+from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, template
 from .._support.outcomes import outcome_words
 from .._support.staging import write_file
 from .._support.user_files import GivenError, read_json, read_record
+from ..simulation.simulated_run import REMEDIES
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,6 +65,34 @@ class Job:
         return self.title or self.name
 
 
+STATES: Final[dict[str, Message]] = {
+    "waiting": Message("waiting"),
+    "running": Message("running"),
+    "done": Message("done"),
+    "failed": Message("failed"),
+    "cancelled": Message("cancelled"),
+}
+_PROGRESS: Final = (
+    (
+        re.compile(r"(?P<time>[\d.]+) s simulated, (?P<share>[\d.]+) %, (?P<rate>[\d.e+]+) times real time"),
+        template("{time:.2f} s simulated, {share:.0f} %, {rate:.3g} times real time"),
+    ),
+    (
+        re.compile(r"(?P<done>\d+) of (?P<total>\d+) points, (?P<rate>[\d.e+]+) per second, (?P<left>\d+) s left"),
+        template("{done:.0f} of {total:.0f} points, {rate:.3g} per second, {left:.0f} s left"),
+    ),
+)
+"""Lines of progress of the commands with their templates."""
+
+
+def progress_words(line: str) -> str:
+    """Line of progress of a command as a message, where it has numbers."""
+    for pattern, text in _PROGRESS:
+        if match := pattern.search(line):
+            return Message(text, **{name: float(number) for name, number in match.groupdict().items()})
+    return Message("starting") if line == "starting" else line
+
+
 @dataclass(frozen=True, slots=True)
 class FinishedRun:
     """Outcome of a finished run from its summary.json."""
@@ -81,7 +110,9 @@ class FinishedRun:
     @property
     def extent(self) -> str:
         """Length and time in words."""
-        return f"{self.run_length_m:.1f} m in {self.simulated_s:.2f} s"
+        return Message(
+            "{run_length_m:.1f} m in {simulated_s:.2f} s", run_length_m=self.run_length_m, simulated_s=self.simulated_s
+        )
 
 
 class Runs:
@@ -189,7 +220,7 @@ class Runs:
         if job is not None and job.state == "waiting":
             self._keep(replace(job, state="cancelled", said="It had not begun."))
         elif job is not None and name == self._running:
-            self._cancelling, self.progress = name, "being cancelled; what was computed is written"
+            self._cancelling, self.progress = name, Message("being cancelled; what was computed is written")
             if self._process is not None:
                 self._process.terminate()
         else:
@@ -222,7 +253,7 @@ class Runs:
             *self._command(job),
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
-            env={**os.environ, "SKISNOW_PROGRESS_LINES": "1"},
+            env={**os.environ, "SKISNOW_PROGRESS_LINES": "1", LANGUAGE_OF_ERRORS: job.language},
         )
         if self._cancelling:  # in the moment before
             self._process.terminate()
@@ -259,18 +290,28 @@ class Runs:
         return line
 
     def _over(self, job: Job, last: str, *, cancelled: bool) -> Job:
+        """Job with its state and a sentence in the language in which it was asked for."""
         summary = self.folder / job.name / "summary.json"
-        if not summary.is_file():
-            said = "Nothing was computed yet." if cancelled else last
-            return replace(job, state="cancelled" if cancelled else "failed", said=said)
-        try:
-            finished = read_record(summary, FinishedRun, only_known=False)
-        except GivenError as error:
-            return replace(job, state="failed", said=error.message)
-        words = f"{finished.outcome_in_words}: {finished.extent}"
-        if finished.outcome == "interrupted":  # a job that was cancelled after its end counts as finished
-            return replace(job, state="cancelled", said=f"{words}. The results so far are kept.")
-        return replace(job, state="done", said=f"{words}. {finished.remedy}".strip())
+        with in_language(job.language):
+            if not summary.is_file():
+                said = str(Message("Nothing was computed yet.")) if cancelled else last
+                return replace(job, state="cancelled" if cancelled else "failed", said=said)
+            try:
+                finished = read_record(summary, FinishedRun, only_known=False)
+            except GivenError as error:
+                return replace(job, state="failed", said=str(error.message))
+            remedy = next((text for code, text in REMEDIES.items() if code == finished.outcome), finished.remedy)
+            fields = {"outcome": finished.outcome_in_words, "extent": finished.extent}
+            if finished.outcome == "interrupted":  # a job that was cancelled after its end counts as finished
+                words = Message("{outcome}: {extent}. The results so far are kept.", **fields)
+                return replace(job, state="cancelled", said=str(words))
+            sentence = joined(
+                [
+                    Message("{outcome}: {extent}.", **fields),
+                    remedy,
+                ]
+            )
+            return replace(job, state="done", said=str(sentence).strip())
 
     def _keep(self, job: Job) -> None:
         """Store a job."""

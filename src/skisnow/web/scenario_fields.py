@@ -11,7 +11,7 @@ from nicegui import ui
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .elements import choice, field, named
-from .language import said
+from .language import number_said, said
 from .layout import sentence
 from .words import reworded
 
@@ -39,7 +39,7 @@ def called(key: Quantity) -> str:
     >>> called(SCENARIO_KEYS["slope.angle_deg"]), called(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
     ('Slope angle α (°)', 'Snow hardness H_V (N/mm³)')
     """
-    label = key.label or key.name
+    label = str(key.label or key.name)
     words = f"{label[0].upper()}{label[1:]} {key.symbol.replace('$', '')}".rstrip()
     return f"{words} ({key.unit})" if key.unit else words
 
@@ -51,11 +51,12 @@ def range_words(key: Quantity) -> str:
     >>> range_words(SCENARIO_KEYS["slope.angle_deg"]), range_words(SCENARIO_KEYS["snow.S_f_N_per_mm2"])
     ('Inclination of the plane. Allowed: from 0 to 75.', 'Allowed: above 0.')
     """
-    clauses = [clause for clause in key.meaning.split("; ") if not _OF_FILES.search(clause)]
-    meaning = "; ".join(clauses)
-    words = [] if not meaning or meaning.startswith(key.label) else [_as_sentence(meaning)]
+    english, shown = key.meaning.split("; "), str(Message(key.meaning)).split("; ")
+    clauses = [text for clause, text in zip(english, shown, strict=True) if not _OF_FILES.search(clause)]
+    is_named = not clauses or not key.meaning or key.meaning.startswith(key.label)
+    words = [] if is_named else [_as_sentence("; ".join(clauses))]
     if not (key.choices or key.kind == "switch"):
-        words.append(f"Allowed: {key.allowed}.")
+        words.append(str(Message("Allowed: {allowed}.", allowed=key.allowed)))
     return " ".join(words)
 
 
@@ -101,7 +102,7 @@ class ScenarioField:
         if self.key.choices:
             return choice(called(self.key), list(self.key.choices), text or None)
         if self.key.kind in ("number", "whole number"):
-            return field(called(self.key), said(text), numeric=True)
+            return field(called(self.key), number_said(text), numeric=True)
         return field(called(self.key), text)
 
     @property
@@ -140,7 +141,7 @@ class ScenarioField:
             self.refuse(in_labels(error.message, self.key))
             raise
 
-    where = "the scenario"
+    where = Message("the scenario")
     """Origin of the first value, for messages."""
 
     def typed_value(self) -> object:
@@ -175,6 +176,5 @@ def in_labels(message: str, *keys: Quantity) -> str:
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
     for key in sorted(keys, key=lambda key: -len(key.name)):
-        label = said(called(key)) if isinstance(message, Message) else called(key)
-        message = reworded(message, partial(_replace, key.name, label))
+        message = reworded(message, partial(_replace, key.name, called(key)))
     return message

@@ -11,11 +11,12 @@ import numpy as np
 from nicegui import ui
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
 from .elements import Words, button, field, named
 from .lab_skis import ski_of_texts
-from .language import said
+from .language import number_said, said
 from .layout import heading, sentence
 from .words import typed_number
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from ..ski import Ski
     from .lab_skis import LabSkis
 
-POSITION: Final = "Position (m)"
+POSITION: Final = Message("Position (m)")
 ONE: Final = "1"
 
 
@@ -40,13 +41,15 @@ class SkiEditor:
         self._shown: dict[tuple[str, int], str] = {}
         self._stations: tuple[float, ...] = ()
         text, table = skis.texts(name)
-        heading("Edit a ski")
+        heading(Message("Edit a ski"))
         self._begun = sentence("", "quiet")
-        heading("Whole curves", 3)
+        heading(Message("Whole curves"), 3)
         with ui.element("div").classes("factors"):
             self._factors = {key: self._factor(words) for key, words in FACTORS.items()}
-        heading("At positions along the ski", 3)
-        sentence("What is typed here holds; between its neighbours the curve goes through it smoothly.", "quiet")
+        heading(Message("At positions along the ski"), 3)
+        sentence(
+            Message("What is typed here holds; between its neighbours the curve goes through it smoothly."), "quiet"
+        )
         self._table = ui.element("div").classes("table")
         self._text, self._csv = self._file(text, table)
         self._base = self._typed_texts()
@@ -60,18 +63,26 @@ class SkiEditor:
     def _file(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
         with ui.element("details"):
             with ui.element("summary"):
-                Words("The file of the ski")
+                Words(Message("The file of the ski"))
             sentence(
-                "With units in its keys. Draw the file takes it as it is written here; factors and values at positions "
-                "start again from it.",
+                Message(
+                    "With units in its keys. Draw the file takes it as it is written here; factors and "
+                    "values at positions start again from it."
+                ),
                 "quiet",
             )
-            written = ui.textarea(said("File of the edited ski"), value=text).props("outlined autogrow").classes("code")
+            written = (
+                ui.textarea(said(Message("File of the edited ski")), value=text)
+                .props("outlined autogrow")
+                .classes("code")
+            )
             with ui.element("details"):
                 with ui.element("summary"):
-                    Words("Its table, where it has one")
-                rows = ui.textarea(said("Table of the edited ski"), value=table).props("outlined").classes("code")
-            button("Draw the file", self._take_file, "main")
+                    Words(Message("Its table, where it has one"))
+                rows = (
+                    ui.textarea(said(Message("Table of the edited ski")), value=table).props("outlined").classes("code")
+                )
+            button(Message("Draw the file"), self._take_file, "main")
         return written, rows
 
     def _typed_texts(self) -> tuple[str, str]:
@@ -105,7 +116,7 @@ class SkiEditor:
         await self._changed()
 
     def _show_origin(self, name: str) -> None:
-        self._begun.set_text(f"Begun from {name}. Nothing is saved until you give it another name.")
+        self._begun.set_text(Message("Begun from {name}. Nothing is saved until you give it another name.", name=name))
 
     async def _update(self) -> None:
         await self._changed()
@@ -117,13 +128,13 @@ class SkiEditor:
             self._draw_table(cells)
         for place, cell in self._cells.items():
             if (cell.value or "") == self._shown[place]:
-                self._shown[place] = said(cells[place], cell.client)
+                self._shown[place] = number_said(cells[place], cell.client)
                 cell.set_value(self._shown[place])
 
     def _draw_table(self, cells: Mapping[tuple[str, int], str]) -> None:
         self._table.clear()
         self._cells = {}
-        self._shown = {place: said(text, self._table.client) for place, text in cells.items()}
+        self._shown = {place: number_said(text, self._table.client) for place, text in cells.items()}
         with self._table, ui.element("table").classes("cells"):
             with ui.element("thead"), ui.element("tr"):
                 for words in (POSITION, *CELLS.values()):
@@ -141,7 +152,7 @@ class SkiEditor:
     def _cell(self, column: str, i: int, station: float) -> None:
         place = (column, i)
         made = ui.input(value=self._shown[place]).props("outlined dense inputmode=decimal autocomplete=off")
-        named(made, f"{CELLS[column]} at {station:.3f} m")
+        named(made, Message("{cells} at {station:.3f} m", cells=CELLS[column], station=station))
         self._cells[place] = made
 
         async def typed() -> None:
@@ -156,19 +167,19 @@ class SkiEditor:
 
 
 FACTORS: Final = {
-    SIDECUT: "Sidecut depth",
-    "width_mm": "Width",
-    "base_height_mm": "Base height",
-    "EI_N_m2": "EI",
-    "GJ_N_m2": "GJ",
-    "mass_per_length_kg_per_m": "Mass",
+    SIDECUT: Message("Sidecut depth"),
+    "width_mm": Message("Width"),
+    "base_height_mm": Message("Base height"),
+    "EI_N_m2": Message("EI"),
+    "GJ_N_m2": Message("GJ"),
+    "mass_per_length_kg_per_m": Message("Mass"),
 }
 """Labels of the curves with factors."""
 CELLS: Final = {
-    "width_mm": "Width (mm)",
-    "base_height_mm": "Base height (mm)",
-    "EI_N_m2": "EI (N m²)",
-    "GJ_N_m2": "GJ (N m²)",
+    "width_mm": Message("Width (mm)"),
+    "base_height_mm": Message("Base height (mm)"),
+    "EI_N_m2": Message("EI (N m²)"),
+    "GJ_N_m2": Message("GJ (N m²)"),
 }
 """Labels with units of the curves with values at stations."""
 
@@ -208,10 +219,16 @@ def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> EditedSki:
     """
     ski, warned = ski_of_texts(edit.text, edit.table)
     station = edit_stations(ski)
-    factors = {key: typed_number(f"the factor of {FACTORS[key]}", text) for key, text in edit.factors.items()}
+    factors = {
+        key: typed_number(Message("the factor of {factors}", factors=FACTORS[key]), text)
+        for key, text in edit.factors.items()
+    }
     wanted = {column: np.full(station.size, np.nan) for column in EDITED_COLUMNS}
     for (column, i), text in edit.cells.items():
-        wanted[column][i] = typed_number(f"{CELLS[column]} at {station[i]:.3f} m", text) * COLUMNS[column].factor
+        wanted[column][i] = (
+            typed_number(Message("{cells} at {station:.3f} m", cells=CELLS[column], station=station[i]), text)
+            * COLUMNS[column].factor
+        )
     source = ski.source if edit.is_file else f"edited in the lab ({_in_words(edit, station)}) from: {ski.source}"
     own = ski.name if edit.is_file else f"{ski.name}, edited"
     edited = edited_ski(ski, SkiEdit(station, factors, wanted), name=name or own, source=source)
@@ -225,6 +242,6 @@ def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> EditedSki:
 
 
 def _in_words(edit: SkiEditInput, station: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
-    scaled = [f"{FACTORS[key]} × {text}" for key, text in edit.factors.items() if typed_number(key, text) != 1.0]
-    values = [f"{CELLS[column]} {text} at {station[i]:.3f} m" for (column, i), text in edit.cells.items()]
+    scaled = [f"{FACTORS[key].text()} × {text}" for key, text in edit.factors.items() if typed_number(key, text) != 1.0]
+    values = [f"{CELLS[column].text()} {text} at {station[i]:.3f} m" for (column, i), text in edit.cells.items()]
     return "; ".join([*scaled, *values])

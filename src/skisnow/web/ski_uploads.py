@@ -50,11 +50,11 @@ def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
         name = add_ski(LabSkis(lab.runs), str(form.get(NAME, "")), texts)
         return f"/skis?ski={quote(name, safe='')}&added=1"
 
-    too_many = f"Nothing was stored: at most {MOST_FILES} files at once can be imported."
+    too_many = Message("Nothing was stored: at most {most_files} files at once can be imported.", most_files=MOST_FILES)
     add_upload(app, SKI_UPLOAD, store, max_files=MOST_FILES, too_many=too_many)
 
 
-CALLED: Final = "Name of the ski"
+CALLED: Final = Message("Name of the ski")
 
 
 class SkiImportForms:
@@ -65,13 +65,16 @@ class SkiImportForms:
         self._added = added
         with ui.element("details").classes("adding"):
             with ui.element("summary"):
-                Words("Add a measured ski")
-            heading("From its files", 3)
+                Words(Message("Add a measured ski"))
+            heading(Message("From its files"), 3)
             _file_form()
-            heading("From three widths", 3)
+            heading(Message("From three widths"), 3)
             sentence(
-                "Widths at the widest places in front and behind and at the waist between them; stiffnesses evenly "
-                "spaced over the running length, with blanks between, or one for all of it.",
+                Message(
+                    "Widths at the widest places in front and behind and at the waist between them; "
+                    "stiffnesses evenly spaced over the running length, with blanks between, or one for all "
+                    "of it."
+                ),
                 "quiet",
             )
             with ui.element("div").classes("fields"):
@@ -81,7 +84,7 @@ class SkiImportForms:
                     for key, words in MEASURED.items()
                 }
             with ui.element("div").classes("acts"):
-                button("Add this ski", self._add, "main", once=True)
+                button(Message("Add this ski"), self._add, "main", once=True)
             self._said = Words("").classes("status").props("role=status")
 
     async def _add(self) -> None:
@@ -101,31 +104,33 @@ class SkiImportForms:
 
     def _refuse(self, why: str) -> None:
         """Show an error at the button and at its field, and put the focus on the field."""
-        self._said.set_text(f"Not saved: {why}")
+        self._said.set_text(Message("Not saved: {why}", why=why))
         self._said.classes(add="bad")
         for key, words in MEASURED.items():
             if why.startswith(f"{words}: "):
-                self._fields[key].error = said("a number is needed here")
+                self._fields[key].error = said(Message("a number is needed here"))
                 self._fields[key].run_method("select")
-                self._said.set_text(f"Not saved: {words}")
+                self._said.set_text(Message("Not saved: {words}", words=words))
 
 
 def _file_form() -> None:
     """Form for the files of a ski."""
     sentence(
-        "The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, which knows neither "
-        "mass nor stiffness: type those beside it.",
+        Message(
+            "The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, "
+            "which knows neither mass nor stiffness: type those beside it."
+        ),
         "quiet",
     )
     with upload_form(SKI_UPLOAD):
         with ui.element("div").classes("acts"):
-            file_input("files", "Files of the ski", "ski-files", 'multiple accept=".toml,.csv,.json"')
+            file_input("files", Message("Files of the ski"), "ski-files", 'multiple accept=".toml,.csv,.json"')
         with ui.element("div").classes("acts"):
-            text_input(NAME, "Another name for it", f"ski-{NAME}")
+            text_input(NAME, Message("Another name for it"), f"ski-{NAME}")
         with ui.element("details"):
             with ui.element("summary"):
-                Words("With a file of MonkeyCAM")
+                Words(Message("With a file of MonkeyCAM"))
             for key, words in STIFFNESS.items():
                 with ui.element("div").classes("acts"):
                     text_input(key, words, f"ski-{key}", "" if key in LISTS else "inputmode=decimal")
-        submit_button("Add the files")
+        submit_button(Message("Add the files"))

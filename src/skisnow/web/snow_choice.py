@@ -58,14 +58,14 @@ class ChosenSnow:
 
 
 class SnowChoice:
-    """Menu of snows; ``changed`` is awaited after a choice. ``numbers``: name of the entry for the page's numbers."""
+    """Menu of snows; ``changed`` is awaited after a choice. ``numbers``: entry for the page's numbers."""
 
-    def __init__(self, lab: Lab, numbers: str, changed: Callable[[], Awaitable[None]]) -> None:
-        self._lab, self._numbers, self._changed = lab, numbers, changed
+    def __init__(self, lab: Lab, numbers: tuple[str, str], changed: Callable[[], Awaitable[None]]) -> None:
+        self._lab, self._numbers, self._changed = lab, numbers[0], changed
         self._campaigns = _campaigns(lab)
-        named = {f"{PUBLISHED}{name}": f"published: {name}" for name in published_names()}
-        self._menu = choice("Snow", {numbers: numbers, **named, **self._campaigns}, numbers)
-        self._site = choice("Site", {ALL_SITES: "all sites"}, ALL_SITES)
+        named = {f"{PUBLISHED}{name}": Message("published: {name}", name=name) for name in published_names()}
+        self._menu = choice(Message("Snow"), dict([numbers]) | named | self._campaigns, numbers[0])
+        self._site = choice(Message("Site"), {ALL_SITES: Message("all sites")}, ALL_SITES)
         self._site.set_visibility(False)
         self.words = Words("").classes("sentence snow").props("role=status")
         self._found: ChosenSnow | None = None
@@ -112,7 +112,7 @@ class SnowChoice:
             return
         if of_campaign and self._analysis is not None:
             sites = sites_of(self._analysis[1])
-            self._site.set_options(option_texts({ALL_SITES: "all sites"}) | {site: site for site in sites})
+            self._site.set_options(option_texts({ALL_SITES: Message("all sites")}) | {site: site for site in sites})
             self._site.set_visibility(len(sites) > 1)
             if self._site.value != ALL_SITES:
                 self._site.set_value(ALL_SITES)  # which chooses
@@ -121,7 +121,7 @@ class SnowChoice:
 
     async def _analyse(self, key: str) -> bool:
         self._found, self._refused = None, ""
-        self.words.set_text("The campaign is being analysed …")
+        self.words.set_text(Message("The campaign is being analysed …"))
         if self._analysis is None or self._analysis[0] != key:
             try:
                 analysis = await run.io_bound(campaign_snow, self._lab, key)
@@ -141,7 +141,9 @@ class SnowChoice:
         except SkisnowError as error:
             self._refuse(error)
             return
-        self.words.set_text("" if self._found is None else f"Snow: {snow_words(self._found.snow)}")
+        self.words.set_text(
+            "" if self._found is None else Message("Snow: {snow_words}", snow_words=snow_words(self._found.snow))
+        )
         await self._changed()
 
     def _snow_of(self, key: str) -> ChosenSnow | None:
@@ -244,7 +246,7 @@ def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[s
 
 def snow_words(snow: SnowProperties) -> str:
     """H_V, S_f, k_u/H_V and u_y of a snow in words, with known intervals."""
-    return "; ".join(_in_words(snow))
+    return "; ".join(map(str, _in_words(snow)))
 
 
 def _in_words(snow: SnowProperties) -> Iterator[str]:

@@ -17,8 +17,7 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
-from .._support.language import ENGLISH
-from .._support.messages import Message
+from .._support.messages import ENGLISH, Message, in_language, joined
 from .._support.outcomes import outcome_words
 from .._support.processes.batch import available_cores
 from .._support.processes.executors import LOCAL
@@ -115,10 +114,20 @@ class Studies(Runs):
             made.rename(self.folder / name)  # it becomes a study with its job.json
         finally:
             shutil.rmtree(made, ignore_errors=True)
+        with in_language(language):
+            given = question.varied_words()
         job = StudyJob(
-            name, question.of, question.fixed_words(), asked_at.isoformat(), given=question.varied_words(),
-            points=points, workers=self.workers, method=question.method, unit_s=question.unit_s, language=language,
-        )  # fmt: skip
+            name,
+            question.of,
+            question.fixed_words(),
+            asked_at.isoformat(),
+            given=given,
+            points=points,
+            workers=self.workers,
+            method=question.method,
+            unit_s=question.unit_s,
+            language=language,
+        )
         self._keep(job)
         return job
 
@@ -183,13 +192,14 @@ class Studies(Runs):
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)
         job = replace(job, took_s=job.took_s + took_s)
         if (folder / TABLE).is_file():
-            return replace(job, state="done", said=await asyncio.to_thread(self._counted, job.name))
+            return replace(job, state="done", said=await asyncio.to_thread(self._counted, job.name, job.language))
         if _IN_USE in said and not cancelled:
             await asyncio.sleep(_AGAIN_S)
             return replace(job, state="waiting", said="")
         n_finished = await asyncio.to_thread(_finished, folder / PARTIAL)
         n_points = job.points if isinstance(job, StudyJob) else 0
-        finished = f"{n_finished} of {n_points} points are finished and kept."
+        with in_language(job.language):
+            finished = str(Message("{done} of {all} points are finished and kept.", done=n_finished, all=n_points))
         return replace(
             job, state="cancelled" if cancelled else "failed", said=finished if cancelled else f"{said} {finished}"
         )
@@ -197,14 +207,19 @@ class Studies(Runs):
     def _progress_of(self, line: str) -> str:
         return line if _POINTS.search(line) else self.progress
 
-    def _counted(self, name: str) -> str:
+    def _counted(self, name: str, language: str) -> str:
         """Counts of the outcomes of a table in words."""
         try:
             counts = self.table(name)[1].counts()
         except SkisnowError as error:
-            return error.message
-        every = "; ".join(f"{outcome_words(outcome)} {count}" for outcome, count in counts.items())
-        return f"{sum(counts.values())} points: {every}."
+            return error.text(language)
+        every = [
+            Message("{outcome} {count}", outcome=outcome_words(outcome), count=count)
+            for outcome, count in counts.items()
+        ]
+        return Message("{points} points: {outcomes}.", points=sum(counts.values()), outcomes=joined(every, "; ")).text(
+            language
+        )
 
 
 def _finished(partial: Path) -> int:
@@ -261,15 +276,24 @@ def estimate_words(studies: Studies, runs: Path, jobs: list[Job], *, points: int
         See `unit_s`.
     """
     if not unit:
-        return f"{points} points."
+        return Message("{points} points.", points=points)
     slowness_ = measured_slowness(studies.study_jobs(), method)
     if slowness_ is None:
         slowness_ = slowness(runs, jobs, method) if method else 1.0
     seconds = points * unit * slowness_
     if studies.elsewhere:
         took = duration_words(seconds)
-        return f"{points} points, about {took} of one core, shared by the workers of {studies.elsewhere}."
-    return f"{points} points. Will take about {duration_words(seconds / studies.workers + AROUND_S)}."
+        return Message(
+            "{points} points, about {took} of one core, shared by the workers of {elsewhere}.",
+            points=points,
+            took=took,
+            elsewhere=studies.elsewhere,
+        )
+    return Message(
+        "{points} points. Will take about {duration_words}.",
+        points=points,
+        duration_words=duration_words(seconds / studies.workers + AROUND_S),
+    )
 
 
 def measured_slowness(jobs: Sequence[StudyJob], method: str) -> float | None:

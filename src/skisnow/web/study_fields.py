@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from .._support.errors import ParameterError
+from .._support.messages import Message, template
 from .._support.user_files import natural_number
 from ..carving.question import CARVE_KEYS
 from .elements import choice, field, named
-from .language import said
+from .language import number_said, said
 from .layout import sentence
 from .scenario_fields import called, with_point, written
 from .words import reworded, typed_number
@@ -50,8 +51,10 @@ class Range:
 
     def words(self) -> str:
         """The range in words."""
-        log = ", logarithmic" if self.log else ""
-        return f"{written(self.low)} to {written(self.high)}, {self.n} values{log}"
+        fields = {"low": number_said(written(self.low)), "high": number_said(written(self.high)), "n": self.n}
+        if self.log:
+            return Message("{low} to {high}, {n} values, logarithmic", **fields)
+        return Message("{low} to {high}, {n} values", **fields)
 
     @property
     def middle(self) -> float:
@@ -106,7 +109,10 @@ class StudyQuestion:
         """Ranges, and inputs that were chosen by name, in words."""
         keys = study_keys(self.of)
         return "; ".join(
-            [*(f"{called(keys[name])}: {values.words()}" for name, values in self.varied.items()), *self.named]
+            [
+                *(f"{called(keys[name])}: {values.words()}" for name, values in self.varied.items()),
+                *map(str, self.named),
+            ]
         )
 
 
@@ -159,10 +165,19 @@ def _toml(value: Any) -> str:
 
 
 NOTHING: Final = "nothing"
-FROM: Final = "From"
-TO: Final = "To"
-VALUES: Final = "Number of values"
-LOG: Final = "Even in the logarithm"
+FROM: Final = Message("From")
+TO: Final = Message("To")
+VALUES: Final = Message("Number of values")
+LOG: Final = Message("Even in the logarithm")
+_NAMES: Final = {
+    FROM: template("{place}: from"),
+    TO: template("{place}: to"),
+    VALUES: template("{place}: number of values"),
+    LOG: template("{place}: even in the logarithm"),
+}
+"""Names of the fields for screen readers."""
+_LOWER_END: Final = template("{input}, the lower end")
+_UPPER_END: Final = template("{input}, the upper end")
 _USUAL: Final = "10"
 _FIRST_RANGES: Final = {
     "edge_angle_deg": (10.0, 70.0),
@@ -222,7 +237,7 @@ class AxisFields:
         changed: Callable[[], None],
     ) -> None:
         self._keys, self._changed = keys, changed
-        options = {} if first else {NOTHING: NOTHING}
+        options: dict[str, str] = {} if first else {NOTHING: Message("nothing")}
         name, n = first or (NOTHING, _USUAL)
         with ui.element("div").classes("inputs varied"):
             with ui.element("div").classes("input"):
@@ -232,7 +247,7 @@ class AxisFields:
             self._n = field(VALUES, n, numeric=True)
             self._log = ui.switch(said(LOG)).classes("field")
         for field_, words in zip((*self._ends, self._n, self._log), (FROM, TO, VALUES, LOG), strict=True):
-            named(field_, f"{place}: {words[0].lower()}{words[1:]}")
+            named(field_, Message(_NAMES[words], place=place))
         self._set_first_range()
         for typed in (*self._ends, self._n):
             typed.on_value_change(changed)
@@ -254,12 +269,12 @@ class AxisFields:
     def _set_first_range(self) -> None:
         ends = first_range(self._keys[self.name]) if self.name else None
         for field_, end in zip(self._ends, ends or (None, None), strict=True):
-            field_.set_value("" if end is None else f"{end:g}")
+            field_.set_value("" if end is None else number_said(f"{end:g}"))
 
     def _show(self) -> None:
         for field_ in (*self._ends, self._n, self._log):
             field_.set_visibility(bool(self.name))
-        self._range.set_text(f"Allowed: {self._keys[self.name].allowed}." if self.name else "")
+        self._range.set_text(Message("Allowed: {allowed}.", allowed=self._keys[self.name].allowed) if self.name else "")
 
     def range(self) -> Range:
         """The typed range.
@@ -274,8 +289,8 @@ class AxisFields:
         if not all(str(field_.value or "").strip() for field_ in self._ends):
             raise ParameterError("{input}: type both ends of its range", code="missing", input=words)
         low, high = (
-            typed_number(f"{words}, the {end} end", str(field_.value or ""))
-            for field_, end in zip(self._ends, ("lower", "upper"), strict=True)
+            typed_number(Message(end, input=words), str(field_.value or ""))
+            for field_, end in zip(self._ends, (_LOWER_END, _UPPER_END), strict=True)
         )
         for end in (low, high):
             try:

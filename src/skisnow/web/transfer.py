@@ -55,7 +55,7 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
     async def kept(request: Request, id_: str) -> Response:
         return await _zip_answer(lambda folder: write_kept(lab, id_, folder), id_, request)
 
-    too_many = f"Nothing was stored: at most {lab.limits.files} files at once can be imported."
+    too_many = Message("Nothing was stored: at most {files} files at once can be imported.", files=lab.limits.files)
     add_upload(app, IMPORT, store, max_files=lab.limits.files, too_many=too_many)
     app.add_api_route("/export/entry/{id_}.zip", entry, response_model=None)
     app.add_api_route("/export/kept/{id_}.zip", kept, response_model=None)
@@ -74,7 +74,7 @@ async def _zip_answer(write: Writing, id_: str, request: Request) -> Response:
     try:
         content = await run_in_threadpool(_zip, write)
     except StoreError as error:
-        return plain_page("This cannot be exported", error_sentence(error), 404, request)
+        return plain_page(Message("This cannot be exported"), error_sentence(error), 404, request)
     headers = {"content-disposition": f'attachment; filename="campaign-{required_id(id_)}.zip"'}
     return Response(content, media_type="application/zip", headers=headers)
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from fastapi import FastAPI
 
-NOT_STORED = "This was not imported"
-ONE_FILE = "Nothing was stored: import one file at a time."
+NOT_STORED = Message("This was not imported")
+ONE_FILE = Message("Nothing was stored: import one file at a time.")
 
 
 def add_upload(

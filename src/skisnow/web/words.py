@@ -11,37 +11,36 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message, count_message
 from .._support.units import KILOGRAM_FORCE
 from ..report.formatting import interval, significant
-from .language import said
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 LABELS: Final = {
-    "experiment": "Name of the test",
-    "sample": "Name of the sample",
-    "test": "Name of the test",
-    "repeat": "Repeat",
-    "site": "Site",
-    "spot": "Measurement point",
-    "tool": "Tool",
-    "plate": "Plate",
-    "edge_angle_deg": "Edge angle (°)",
-    "load_N": "Load (N)",
-    "depth_mm": "Depth (mm)",
-    "depth_after_mm": "Depth after waiting (mm)",
-    "branch": "Branch (loading or unloading)",
-    "lever_arm_mm": "Lever arm (mm)",
-    "moment_Nm": "Moment (N m)",
-    "turning_angle_deg": "Turning angle (°)",
-    "snow_density_kg_per_m3": "Density (kg/m³)",
-    "drop_cone_depth_mm": "Drop-cone depth (mm)",
-    "remark": "Remark",
+    "experiment": Message("Name of the test"),
+    "sample": Message("Name of the sample"),
+    "test": Message("Name of the test"),
+    "repeat": Message("Repeat"),
+    "site": Message("Site"),
+    "spot": Message("Measurement point"),
+    "tool": Message("Tool"),
+    "plate": Message("Plate"),
+    "edge_angle_deg": Message("Edge angle (°)"),
+    "load_N": Message("Load (N)"),
+    "depth_mm": Message("Depth (mm)"),
+    "depth_after_mm": Message("Depth after waiting (mm)"),
+    "branch": Message("Branch (loading or unloading)"),
+    "lever_arm_mm": Message("Lever arm (mm)"),
+    "moment_Nm": Message("Moment (N m)"),
+    "turning_angle_deg": Message("Turning angle (°)"),
+    "snow_density_kg_per_m3": Message("Density (kg/m³)"),
+    "drop_cone_depth_mm": Message("Drop-cone depth (mm)"),
+    "remark": Message("Remark"),
 }
 TABLES: Final = {
-    "penetration.csv": "Penetration",
-    "shear.csv": "Shear",
-    "density.csv": "Density",
-    "drop_cone.csv": "Drop cone",
+    "penetration.csv": Message("Penetration"),
+    "shear.csv": Message("Shear"),
+    "density.csv": Message("Density"),
+    "drop_cone.csv": Message("Drop cone"),
 }
 
 _LABEL_OF_NAME: Final = {name: words for name, words in (LABELS | TABLES).items() if "_" in name or "." in name}
@@ -58,7 +57,7 @@ def label(column: str, *, unit: str = "") -> str:
     ('Depth (mm)', 'Depth (cm)')
     """
     words = LABELS.get(column, column)
-    return re.sub(r" \([^)]*\)$", f" ({unit})", words) if unit else words
+    return re.sub(r" \([^)]*\)$", f" ({unit})", str(words)) if unit else words
 
 
 def load_words(load: str) -> tuple[str, str]:
@@ -76,8 +75,7 @@ def in_words(message: str) -> str:
     >>> in_words("the column depth_mm has no number")
     'the column Depth (mm) has no number'
     """
-    in_page_language = said if isinstance(message, Message) else str
-    return reworded(message, lambda text: _NAMES.sub(lambda key: in_page_language(_LABEL_OF_NAME[key[0]]), text))
+    return reworded(message, lambda text: _NAMES.sub(lambda key: str(_LABEL_OF_NAME[key[0]]), text))
 
 
 def reworded(message: str, change: Callable[[str], str]) -> str:
@@ -129,9 +127,11 @@ def displacement_words(row: dict[str, Any]) -> str:
 def estimate_words(value: float | None, pair: list[float] | None, unit: str = "") -> str:
     """A value with its interval."""
     if value is None:
-        return "not defined"
-    interval_words = interval(pair) if pair is not None else "interval not known"
-    return f"{significant(value)} {unit}".strip() + f", {interval_words}"
+        return Message("not defined")
+    words = f"{significant(value)} {unit}".strip()
+    if pair is None:
+        return Message("{value}, interval not known", value=words)
+    return Message("{value}, {ends}", value=words, ends=interval(pair))
 
 
 def typed_number(what: str, text: str) -> float:

@@ -29,7 +29,6 @@ NO_READERS: Final[Mapping[str, str]] = {
     "samples.folder:run_samples": "package data",
     "samples.folder:_contents": "sample files that the program has just made",
     "cli.beginning:write_samples": "sample files that the program has just made",
-    "_support.language.catalogues:_entries": "package data",
     "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",
     "report.sheet:render_template": "package data",

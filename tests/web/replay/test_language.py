@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow._support.language.catalogues import FOLDER, read_catalogue
 from skisnow.replay import replay_of_run, write_replay
 from skisnow.replay.page import page_words
 
@@ -20,11 +19,10 @@ TOLD = """return [...document.querySelectorAll("#replay *")].flatMap((each) => [
   ]).filter(Boolean)"""
 
 
-@pytest.mark.parametrize("language", [each.stem for each in FOLDER.glob("*.po")])
-def test_all_that_the_program_says_is_in_the_catalogue(language: str) -> None:
-    words = page_words(language)
+def test_all_that_the_program_says_has_its_german_text() -> None:
+    words = page_words("de")
     assert {"Speed of play", "{} m left", "0.5"} <= set(words)
-    assert set(words) - set(read_catalogue(FOLDER / f"{language}.po")) == set()
+    assert [text for text, german in words.items() if text == german and len(text) > 8] == ["Film (WebM)"]
 
 
 def test_a_page_in_german(chromium: Any, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
+from ..._support.messages import Message, joined, template
 from ..._support.user_files import natural_number
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import FilesOfFolder, RawFiles
@@ -154,27 +154,28 @@ FORMS: Final = {form.file: form for form in TABLES}
 """Required and allowed columns of each table, by file."""
 LONGEST_TEXT: Final = 200
 
-EMPTY: Final = "{} is empty."
-NOT_ALLOWED: Final = "{}: “{}” is not allowed."
-TOO_LONG: Final = "{} is too long, or has several lines."
-_PROBLEMS: Final = {"empty": EMPTY, "not_allowed": NOT_ALLOWED, "too_long": TOO_LONG}
-NAME: Final = "Enter a name."
-BRANCH_WORD: Final = "Enter loading or unloading, or leave it empty."
-SHORT_LINE: Final = "Enter one line of at most {} characters."
-ANY_NUMBER: Final = "Enter a number."
-AT_LEAST: Final = "Enter a number of {} or more."
-ABOVE: Final = "Enter a number above {}."
+_PROBLEMS: Final = {
+    "empty": template("{column} is empty."),
+    "not_allowed": template("{column}: “{value}” is not allowed."),
+    "too_long": template("{column} is too long, or has several lines."),
+}
+NAME: Final = Message("Enter a name.")
+BRANCH_WORD: Final = Message("Enter loading or unloading, or leave it empty.")
+SHORT_LINE: Final = Message("Enter one line of at most {most} characters.", most=LONGEST_TEXT)
+ANY_NUMBER: Final = Message("Enter a number.")
+AT_LEAST: Final = template("Enter a number of {low:g} or more.")
+ABOVE: Final = template("Enter a number above {low:g}.")
 BETWEEN: Final = {
-    (False, False): "Enter a number from {} to {}.",
-    (False, True): "Enter a number from {} to below {}.",
-    (True, False): "Enter a number above {} and up to {}.",
-    (True, True): "Enter a number above {} and below {}.",
+    (False, False): template("Enter a number from {low:g} to {high:g}."),
+    (False, True): template("Enter a number from {low:g} to below {high:g}."),
+    (True, False): template("Enter a number above {low:g} and up to {high:g}."),
+    (True, True): template("Enter a number above {low:g} and below {high:g}."),
 }
 """By whether the lowest and the highest number are excluded."""
 
 
 class CellError(ParameterError):
-    """A typed cell is rejected. The message has two sentences, each with its own template.
+    """A typed cell is rejected: a sentence with the problem, and one with what is allowed.
 
     Attributes
     ----------
@@ -182,17 +183,17 @@ class CellError(ParameterError):
         empty, not_allowed or too_long.
     column, value
         Name of the column, and the typed text.
-    problem, fix
-        Template of each sentence; the fields of the first are `column` and `value`, those of the second `limits`.
-    limits
-        Numbers that limit what is allowed, in the unit of the text.
+    fix
+        Sentence with what is allowed, with numbers in the unit of the text.
     """
 
-    def __init__(self, code: str, column: str, value: str, fix: str, limits: tuple[float, ...] = ()) -> None:
-        self.column, self.value = column, value
-        self.problem, self.fix, self.limits = _PROBLEMS[code], fix, limits
-        text = f"{self.problem.format(column, value)} {fix.format(*(f'{limit:g}' for limit in limits))}"
-        super().__init__(text, code=code)
+    def __init__(self, code: str, column: str, value: str, fix: Message) -> None:
+        self.column, self.value, self.fix = column, value, fix
+        super().__init__(self.problem(code, column), code=code)
+
+    def problem(self, code: str, name: str) -> Message:
+        """Both sentences, with another name of the column."""
+        return joined([Message(_PROBLEMS[code], column=name, value=self.value), self.fix])
 
 
 def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitConversion | None = None) -> str:
@@ -222,7 +223,7 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
     if not text and column in form.names:
         raise CellError("empty", column, text, NAME)
     if len(text) > LONGEST_TEXT or not all(letter.isprintable() for letter in text):
-        raise CellError("too_long", column, text, SHORT_LINE, (LONGEST_TEXT,))
+        raise CellError("too_long", column, text, SHORT_LINE)
     return text
 
 
@@ -232,16 +233,16 @@ def _number_cell(rule: Quantity, text: str, conversion: UnitConversion) -> str:
     mark = "," if "," in text and "." not in text else "."
     value = number(text, mark)
     if math.isnan(value) or bool(rule.outside(conversion.convert(np.array([value])))[0]):
-        fix, limits = _number_fix(rule)
-        in_its_unit = tuple(conversion.revert(limit) for limit in limits)
-        raise CellError("not_allowed" if text else "empty", rule.name, text, fix, in_its_unit)
+        raise CellError("not_allowed" if text else "empty", rule.name, text, _number_fix(rule, conversion))
     return text.replace(",", ".")
 
 
-def _number_fix(rule: Quantity) -> tuple[str, tuple[float, ...]]:
-    """Template and limits of the sentence that says which numbers are allowed."""
-    if rule.highest < math.inf:
-        return BETWEEN[rule.above, rule.below], (rule.lowest, rule.highest)
-    if rule.lowest > -math.inf:
-        return (ABOVE if rule.above else AT_LEAST), (rule.lowest,)
-    return ANY_NUMBER, ()
+def _number_fix(rule: Quantity, conversion: UnitConversion) -> Message:
+    """Sentence with the allowed numbers, in the unit of the text."""
+    low, high = rule.lowest, rule.highest
+    if high < math.inf:
+        limits = {"low": conversion.revert(low), "high": conversion.revert(high)}
+        return Message(BETWEEN[rule.above, rule.below], **limits)
+    if low > -math.inf:
+        return Message(ABOVE if rule.above else AT_LEAST, low=conversion.revert(low))
+    return ANY_NUMBER

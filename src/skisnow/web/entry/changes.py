@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ..._support.messages import Message, joined, template
 from ...campaign.reading.columns import is_unloading_cell
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store.stored_tables import cell_of
 from ..elements import Words, button, field
-from ..language import minute_words, said, said_template
+from ..language import minute_words, number_said, said
 from ..page_requests import asking_button, form
 from ..words import label
 
@@ -20,14 +21,13 @@ if TYPE_CHECKING:
     from ...campaign.store import JournalEntry, ReplayedTest
     from .table_view import TableView
 
-USUAL_REASON: Final = "typing error"
-ASKED: Final = "Not corrected yet. Give the reason below."
-UNANSWERED: Final = "Not corrected yet. Correct it with a reason, or leave it as it was."
-LEFT_AS_IT_WAS: Final = "It is as it was before."
+USUAL_REASON: Final = Message("typing error")
+ASKED: Final = Message("Not corrected yet. Give the reason below.")
+UNANSWERED: Final = Message("Not corrected yet. Correct it with a reason, or leave it as it was.")
+LEFT_AS_IT_WAS: Final = Message("It is as it was before.")
 WAITED: Final = "read once more after waiting"
 """Reason in the journal for a second depth of a reading."""
 _SAME: Final = ("experiment", "sample", "test", "site", "spot", "tool", "plate")
-_DONE: Final = {"add": "entered", "correct": "corrected", "cancel": "cancelled", "undo": "undid the entry before"}
 
 
 def ask_reason(
@@ -46,7 +46,7 @@ def ask_reason(
     place
         Element that is replaced by the question.
     lines
-        Descriptions of the change in the language of the page.
+        Descriptions of the change.
     act
         Text of the button, and the function that is called with the reason; it returns False for a rejected change.
     usual
@@ -68,21 +68,22 @@ def ask_reason(
 
     with place, form("card ask", sends=done):
         for line in lines:
-            ui.label(line).classes("sentence")
-        reason = field("Why", said(usual), wide=True)
+            ui.label(said(line)).classes("sentence")
+        reason = field(Message("Why"), said(usual), wide=True)
         reason.on("keydown.esc", left)
         with ui.element("div").classes("acts"):
             asking_button(act[0], done, "main")
-            button("Leave it as it was", left)
+            button(Message("Leave it as it was"), left)
     if focus:
         reason.run_method("focus")
     if focus and usual:
         reason.run_method("select")
 
 
-def change_said(name: str, old: str, new: str) -> str:
-    """Description of a changed cell in the language of the page; ``name`` is in that language, "" an empty cell."""
-    return said_template("{}: {} becomes {}.", name, old or said("nothing"), new or said("nothing"))
+def change_message(name: str, old: str, new: str) -> Message:
+    """Description of a changed cell; "" is an empty one."""
+    nothing = Message("nothing")
+    return Message("{name}: {old} becomes {new}.", name=name, old=old or nothing, new=new or nothing)
 
 
 def focus_button(button: ui.button) -> None:
@@ -131,15 +132,15 @@ def changes(
     def ask_cancel() -> bool:
         if is_unanswered():
             return False
-        question = said_template("Cancel {}? Its readings are kept but not included.", test.name)
-        ask_reason(ask, [question], ("Cancel the test", cancel), leave=lambda: focus_button(asks))
+        question = Message("Cancel {test}? Its readings are kept but not included.", test=test.name)
+        ask_reason(ask, [question], (Message("Cancel the test"), cancel), leave=lambda: focus_button(asks))
         return True
 
     with ui.element("div").classes("acts"):
         if test.undoable is not None:
-            asking_button(f"Undo: {_done(test.undoable, view)}", undo)
+            asking_button(Message("Undo: {done}", done=_done(test.undoable, view)), undo)
         if not test.cancelled and not cancelled and test.rows:
-            asks = asking_button("Cancel this test", ask_cancel)
+            asks = asking_button(Message("Cancel this test"), ask_cancel)
     _history(test, view)
 
 
@@ -148,32 +149,46 @@ def _history(test: ReplayedTest, view: TableView) -> None:
         return
     with ui.element("details"):
         with ui.element("summary"):
-            Words(f"History of {test.name}")
+            Words(Message("History of {name}", name=test.name))
         with ui.element("ol"):
             for entry in test.history:
                 with ui.element("li"):
-                    undone = " (undone)" if entry.sequence in test.undone else ""
-                    who = f" · {entry.who}" if entry.who else ""
-                    Words(f"{minute_words(entry.at)}{who} · {_done(entry, view)}{undone}")
+                    parts = (minute_words(entry.at), entry.who, _done(entry, view))
+                    words: str = joined([part for part in parts if part], " · ")
+                    Words(Message("{entry} (undone)", entry=words) if entry.sequence in test.undone else words)
 
 
-def _cell_words(key: str, text: str, view: TableView) -> str:
+def _cell_words(key: str, text: str, view: TableView) -> Message:
     line, column = cell_of(key)
-    return f"{view.label(column)} in row {line} to {text or 'nothing'}"
+    shown = number_said(text) or Message("nothing")
+    return Message("{column} in row {line} to {text}", column=view.label(column), line=line, text=shown)
+
+
+_DONE: Final = {
+    "add": template("entered {what}"),
+    "correct": template("corrected {what}"),
+    "cancel": template("cancelled"),
+    "undo": template("undid the entry before"),
+}
 
 
 def _done(entry: JournalEntry, view: TableView) -> str:
-    cells = entry.cells
+    cells = {column: number_said(text) for column, text in entry.cells.items()}
     if entry.is_from_file:
         return entry.why
+    what: str
     if entry.action == "correct" and all("/" in key for key in cells):
-        what = ", ".join(_cell_words(key, text, view) for key, text in cells.items())
+        what = joined([_cell_words(key, text, view) for key, text in entry.cells.items()], ", ")
     elif entry.action == "correct" and entry.why == WAITED:
-        return f"{WAITED}: {', '.join(cells.values())} mm"
+        return Message("read once more after waiting: {depths} mm", depths=list(cells.values()))
     elif entry.action == "add" and "load_N" in cells:
-        back = " on the way back" if is_unloading_cell(cells.get(BRANCH, "")) else ""
-        what = f"{cells['depth_mm']} mm under {cells['load_N']} N{back}"
+        reading = {"depth": cells["depth_mm"], "load": cells["load_N"]}
+        if is_unloading_cell(cells.get(BRANCH, "")):
+            what = Message("{depth} mm under {load} N on the way back", **reading)
+        else:
+            what = Message("{depth} mm under {load} N", **reading)
     else:
-        what = ", ".join(f"{label(column)} {text}" for column, text in cells.items() if text and column not in _SAME)
-    why = f" ({entry.why})" if entry.why else ""
-    return f"{_DONE[entry.action]} {what}".rstrip() + why
+        shown = {column: text for column, text in cells.items() if text and column not in _SAME}
+        what = joined([Message("{column} {text}", column=label(key), text=text) for key, text in shown.items()], ", ")
+    done = Message(_DONE[entry.action], what=what)
+    return Message("{done} ({why})", done=done, why=entry.why) if entry.why else done

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 from nicegui import ui
 
 from ..._support.errors import ParameterError, StoreError
+from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
 from ..elements import Words
-from ..language import number_said, said, said_template
+from ..language import number_said, said
 from ..page_requests import LONGEST
 from ..words import in_words, label, load_words
 
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
     from ...campaign.store import Reading
     from ..edit_session import EditSession
 
-CHANGED: Final = "changed, not stored"
+CHANGED: Final = Message("changed, not stored")
+STORED: Final = Message("stored")
 
 
 class Step(NamedTuple):
@@ -38,20 +40,24 @@ class Step(NamedTuple):
     branch: str = ""
 
     @property
-    def words(self) -> str:
+    def words(self) -> Message:
         """The step in words."""
-        return f"{self.load} N on the way back" if self.branch else f"{self.load} N"
+        load = number_said(self.load)
+        return Message("{load} N on the way back", load=load) if self.branch else Message("{load} N", load=load)
 
     @property
-    def field_name(self) -> str:
+    def field_name(self) -> Message:
         """Name of the field of the step's depth."""
-        return f"Depth back under {self.load} N (mm)" if self.branch else f"Depth under {self.load} N (mm)"
+        load = number_said(self.load)
+        if self.branch:
+            return Message("Depth back under {load} N (mm)", load=load)
+        return Message("Depth under {load} N (mm)", load=load)
 
 
 def add_load(load: str) -> None:
     """Label of a load in N; lab.js shows it in kg if the user says so."""
     in_newtons, in_kilograms = load_words(load)
-    Words(in_newtons).classes("load").props["data-kg"] = number_said(in_kilograms)
+    Words(number_said(in_newtons)).classes("load").props["data-kg"] = number_said(in_kilograms)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,9 +90,9 @@ class ReadingField:
         elif self.differs(row):
             show_state(self.state, CHANGED)
         elif row.cells["depth_mm"] != row.entered.cells["depth_mm"]:
-            show_state(self.state, f"corrected from {row.entered.cells['depth_mm']}")
+            show_state(self.state, Message("corrected from {depth}", depth=number_said(row.entered.cells["depth_mm"])))
         else:
-            show_state(self.state, "stored")
+            show_state(self.state, STORED)
 
     def restore(self, row: Reading | None) -> None:
         """Put the stored depth back into the field."""
@@ -135,14 +141,10 @@ def checked_fields(
 
 
 def problem_said(error: SkisnowError, *, name: str = "") -> str:
-    """An error in the language of the page; each sentence about a cell is translated by its own template.
-
-    ``name`` of the field in that language (default: the name of the column).
-    """
+    """An error in the language of the page; ``name`` of the field (default: the label of the column)."""
     if not isinstance(error, CellError):
         return f"{said(in_words(error.message)).rstrip('.')}."
-    problem = said_template(error.problem, name or said(label(error.column)), error.value)
-    return f"{problem} {said_template(error.fix, *(number_said(f'{limit:g}') for limit in error.limits))}"
+    return said(error.problem(error.code, name or label(error.column)))
 
 
 def _translated_name(field: Field) -> str:
@@ -186,7 +188,11 @@ def receive_offline_readings(session: EditSession, changed: Callable[[set[str]],
             try:
                 series.add(_stored(session, record, once))
             except (StoreError, ParameterError) as error:
-                refusal = said_template("Not stored: {}: {}", _words_said(record), problem_said(error))
+                refusal = said(
+                    Message(
+                        "Not stored: {reading}: {problem}", reading=_reading_words(record), problem=problem_said(error)
+                    )
+                )
             answers.append((once, refusal))
         changed(series)
         client.run_javascript(f"lab.resent({json.dumps(answers)})")
@@ -207,13 +213,12 @@ def _sent_cells(record: Any) -> dict[str, str]:
     return cells if cells[BRANCH] else {column: text for column, text in cells.items() if column != BRANCH}
 
 
-def _words_said(record: Any) -> str:
+def _reading_words(record: Any) -> Message:
     cells = _sent_cells(record)
     if not cells:
-        return said("a reading")
-    return said_template(
-        "{} mm under {} N in series {}", cells["depth_mm"], number_said(cells["load_N"]), cells["experiment"]
-    )
+        return Message("a reading")
+    depth, load, series = number_said(cells["depth_mm"]), number_said(cells["load_N"]), cells["experiment"]
+    return Message("{depth} mm under {load} N in series {series}", depth=depth, load=load, series=series)
 
 
 def _stored(session: EditSession, record: Any, once: str) -> str:

@@ -55,7 +55,7 @@ class SeriesForm:
         before = self._view.tests()[-1].rows[0].cells if self._view.tests() else {}
         self._places.clear()
         with self._places.form:
-            heading("New series")
+            heading(Message("New series"))
             with form(sends=lambda: self._begun(typed)):
                 name = field(label("experiment"), self._view.next_name())
                 site = field(label("site"), before.get("site", ""))
@@ -63,9 +63,9 @@ class SeriesForm:
                 last = before.get("tool")
                 tool = choice(label("tool"), tools, last if last in tools else next(iter(tools), None))
                 angle = field(label("edge_angle_deg"), before.get("edge_angle_deg", ""), numeric=True)
-                spot = field(label("spot") + ", if sheared there", optional=True)
+                spot = field(Message("Measurement point, if sheared there"), optional=True)
             typed: dict[str, Field] = dict(zip(HEAD, (name, site, spot, tool, angle), strict=True))
-            asking_button("Begin the series", lambda: self._begun(typed), "main")
+            asking_button(Message("Begin the series"), lambda: self._begun(typed), "main")
         first = angle if site.value else site
         first.run_method("focus")
         first.run_method("select")  # typing replaces the value of the last series
@@ -73,12 +73,17 @@ class SeriesForm:
     def _begun(self, typed: dict[str, Field]) -> bool:
         head = checked_fields(self._view.form, typed)
         if head is not None and self._view.test(head["experiment"]).history:
-            refuse(typed["experiment"], f"there is a test {head['experiment']} already; give this one another name")
+            refuse(
+                typed["experiment"],
+                Message(
+                    "there is a test {experiment} already; give this one another name", experiment=head["experiment"]
+                ),
+            )
             head = None
         if head is None:
-            self._view.say("Not begun:", "bad", faults(typed.values()))
+            self._view.say(Message("Not begun:"), "bad", faults(typed.values()))
             return False
-        self._view.say(f"Series {head['experiment']}: enter the depth under each load.")
+        self._view.say(Message("Series {experiment}: enter the depth under each load.", experiment=head["experiment"]))
         self.show(head["experiment"], head)
         return True
 
@@ -126,15 +131,16 @@ class SeriesForm:
         self._places.clear()
         with self._places.form:
             with ui.element("div").classes("series-head"):
-                heading(f"Series {test.name}")
-                sentence(f"{self._head['site']} · {self._head['tool']} · {self._head['edge_angle_deg']}°", "quiet")
+                heading(Message("Series {name}", name=test.name))
+                angle = number_said(self._head["edge_angle_deg"])
+                sentence(f"{self._head['site']} · {self._head['tool']} · {angle}°", "quiet")
             if test.cancelled:
-                sentence(f"Cancelled: {test.cancelled}", "bad")
+                sentence(Message("Cancelled: {cancelled}", cancelled=test.cancelled), "bad")
             loads = self._loads(test)
             self._draw_fields(test, map(Step, loads), unstored)
             self._ask = ui.element("div")
             self._corrections.begin(test.name, self._ask)
-            self._then = asking_button("Next series", self._next, "main then")
+            self._then = asking_button(Message("Next series"), self._next, "main then")
             button(Message("Loads in N or kg"), None, "small switch-kg")
             self._unloading_fields(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
             self._waiting = AfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
@@ -158,7 +164,7 @@ class SeriesForm:
         begun = any(test.row_under(*step) or step in unstored for step in steps)
         with ui.element("details").props("open" if begun else ""):
             with ui.element("summary"):
-                Words("Discs taken off one by one")
+                Words(Message("Discs taken off one by one"))
             self._draw_fields(test, steps, unstored)
 
     def _unstored(self) -> dict[Step, str]:
@@ -171,8 +177,10 @@ class SeriesForm:
         """Begin the next series if all typed texts are stored."""
         missing = [step for step in self._unstored() if self._test.row_under(*step) is None]
         if missing:
-            loads = ", ".join(step.words for step in missing)
-            self._view.say(f"Not stored yet: {loads}. Put it right or empty the field, then go on.", "bad")
+            loads = [step.words for step in missing]
+            self._view.say(
+                Message("Not stored yet: {loads}. Put it right or empty the field, then go on.", loads=loads), "bad"
+            )
             first = self._readings[missing[0]].depth
             first.run_method("focus")
             first.run_method("select")
@@ -180,8 +188,10 @@ class SeriesForm:
         if self._corrections.is_unanswered():
             return False
         if self._waiting is not None and self._waiting.unstored:
-            loads = ", ".join(f"{load} N after waiting" for load in self._waiting.unstored)
-            self._view.say(f"Not stored yet: {loads}. Store it or empty the field, then go on.", "bad")
+            loads = [Message("{load} N after waiting", load=number_said(load)) for load in self._waiting.unstored]
+            self._view.say(
+                Message("Not stored yet: {loads}. Store it or empty the field, then go on.", loads=loads), "bad"
+            )
             self._waiting.focus()
             return False
         if self._test.rows:
@@ -246,11 +256,11 @@ class SeriesForm:
 
         with ui.element("details"):
             with ui.element("summary"):
-                Words("A load that is not in the disc set")
+                Words(Message("A load that is not in the disc set"))
             with form(sends=done):
-                load = field("Further load (N)", numeric=True)
-                depth = field("Its depth (mm)", numeric=True)
-                asking_button("Store it", done)
+                load = field(Message("Further load (N)"), numeric=True)
+                depth = field(Message("Its depth (mm)"), numeric=True)
+                asking_button(Message("Store it"), done)
 
     def _entered(self, step: Step, *, left: bool = False) -> bool:
         """Store a first depth, or ask for the reason of a changed one; ``left``: the focus is in another field."""
@@ -291,18 +301,26 @@ class SeriesForm:
         fields = {"depth_mm": depth} if isinstance(load, Step) else {"load_N": load, "depth_mm": depth}
         cells = checked_fields(self._view.form, fields)
         if cells is not None and isinstance(load, Step) and load.branch and not test.rows:
-            refuse(depth, "the depths under rising loads come first")
+            refuse(depth, Message("the depths under rising loads come first"))
             cells = None
         if cells is not None and not isinstance(load, Step) and test.row_under(cells["load_N"]) is not None:
-            refuse(load, f"there is a reading under {cells['load_N']} N already; correct it in its own field")
+            refuse(
+                load,
+                Message(
+                    "there is a reading under {load_n} N already; correct it in its own field",
+                    load_n=number_said(cells["load_N"]),
+                ),
+            )
             cells = None
         if cells is None:
-            self._view.say("Not stored:", "bad", faults(fields.values()))
+            self._view.say(Message("Not stored:"), "bad", faults(fields.values()))
             return False
         step = load if isinstance(load, Step) else Step(cells["load_N"])
         branch = {BRANCH: step.branch} if step.branch else {}
         cells = {**self._head, "load_N": step.load, **cells, **branch}
-        said = f"Stored: {cells['depth_mm']} mm under {step.words}."
+        said = Message(
+            "Stored: {depth_mm} mm under {words}.", depth_mm=number_said(cells["depth_mm"]), words=step.words
+        )
         stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:
             self._show_changes()

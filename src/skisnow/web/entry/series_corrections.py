@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ..._support.messages import Message, template
 from ..elements import Words, field, named
-from ..language import number_said, said, said_template
+from ..entry.readings import STORED
+from ..language import number_said
 from ..page_requests import asking_button, form
 from ..words import label
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
@@ -77,17 +79,22 @@ class SeriesCorrections:
         depths = {step: row["depth_mm"] for step, row in cells.items() if row is not None}
         if len(depths) < len(changed):
             if is_said:
-                self._view.say("Not corrected:", "bad", faults(reading.depth for reading in changed.values()))
+                self._view.say(Message("Not corrected:"), "bad", faults(reading.depth for reading in changed.values()))
             return False
         if self._asked == depths and not focus:  # Enter, and then the field was left: one question is enough
             return True
         self._asked = depths
         lines = [
-            said_template("{}: {} mm becomes {} mm.", said(step.words), *map(number_said, (stored, depth)))
+            Message(
+                "{step}: {old} mm becomes {new} mm.",
+                step=step.words,
+                old=number_said(stored),
+                new=number_said(depth),
+            )
             for step, depth in depths.items()
             for stored in [stored_depth(test.row_under(*step))]
         ]
-        act = ("Correct it", lambda why: self._correct(depths, why))
+        act = (Message("Correct it"), lambda why: self._correct(depths, why))
         ask_reason(self._place, lines, act, usual=USUAL_REASON, leave=self._leave, focus=focus)
         if is_said:
             self._view.say(ASKED, "")
@@ -122,8 +129,8 @@ class SeriesCorrections:
 
 
 AFTER: Final = "depth_after_mm"
-BECOMES: Final = "After waiting under {} N: {} mm becomes {} mm."
-IS_EMPTIED: Final = "After waiting under {} N: {} mm becomes nothing."
+BECOMES: Final = template("After waiting under {load} N: {old} mm becomes {new} mm.")
+IS_EMPTIED: Final = template("After waiting under {load} N: {old} mm becomes nothing.")
 
 
 class AfterWaiting:
@@ -152,14 +159,14 @@ class AfterWaiting:
         stored = {load: _stored(test, load) for load in loads}
         with ui.element("details").props("open" if any(stored.values()) or unstored else ""):
             with ui.element("summary"):
-                Words("Depths read once more after waiting")
+                Words(Message("Depths read once more after waiting"))
             with form("readings", sends=lambda: self._store(ask)):
                 for load, text in stored.items():
                     self._fields[load] = self._field(
                         load, text, unstored.get(load, number_said(text)), closed=bool(test.cancelled)
                     )
                 if not test.cancelled:
-                    asking_button("Store what was read after waiting", lambda: self._store(ask))
+                    asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
 
     def focus(self) -> None:
         """Put the focus on the first unstored field."""
@@ -169,7 +176,7 @@ class AfterWaiting:
         with ui.element("div").classes("reading") as made:
             add_load(load)
             depth = field(label(AFTER), text, numeric=True, optional=True)
-            named(depth, f"Depth after waiting under {load} N (mm)")
+            named(depth, Message("Depth after waiting under {load} N (mm)", load=number_said(load)))
             depth.props("readonly" if closed else "")
             state = Words("").classes("stored")
             if stored:
@@ -181,7 +188,7 @@ class AfterWaiting:
                 state,
                 CHANGED
                 if depth_after and is_other(str(depth.value or ""), depth_after)
-                else "stored"
+                else STORED
                 if depth_after
                 else "",
             )
@@ -197,8 +204,11 @@ class AfterWaiting:
             return False
         new = {load: text for load, text in depths.items() if not _stored(self._test, load)}
         others = {load: text for load, text in depths.items() if load not in new}
-        listed = ", ".join(f"{text} mm under {load} N" for load, text in new.items())
-        if not self._correct(new, WAITED, f"Stored after waiting: {listed}."):
+        listed = [
+            Message("{depth} mm under {load} N", depth=number_said(text), load=number_said(load))
+            for load, text in new.items()
+        ]
+        if not self._correct(new, WAITED, Message("Stored after waiting: {listed}.", listed=listed)):
             return False
         if others:
             self._ask_correction(ask, others)
@@ -207,7 +217,7 @@ class AfterWaiting:
         elif new:
             self._shown()
         else:
-            self._view.say("Nothing is different.")
+            self._view.say(Message("Nothing is different."))
         return True
 
     def _checked(self) -> dict[str, str] | None:
@@ -217,12 +227,12 @@ class AfterWaiting:
         for load, depth in typed.items():
             cells = checked_fields(self._view.form, {AFTER: depth})
             if cells is not None and self._test.row_under(load) is None:
-                refuse(depth, f"the first depth under {load} N comes before it")
+                refuse(depth, Message("the first depth under {load} N comes before it", load=number_said(load)))
             elif cells is not None:
                 depths[load] = cells[AFTER]
         if len(depths) == len(typed):
             return depths
-        self._view.say("Not stored:", "bad", faults(typed.values()))
+        self._view.say(Message("Not stored:"), "bad", faults(typed.values()))
         return None
 
     def _correct(self, depths: dict[str, str], why: str, said: str) -> bool:
@@ -235,14 +245,19 @@ class AfterWaiting:
 
     def _ask_correction(self, ask: ui.element, depths: dict[str, str]) -> None:
         def correct(why: str) -> bool:
-            if not self._correct(depths, why, "Corrected; the first reading is kept."):
+            if not self._correct(depths, why, Message("Corrected; the first reading is kept.")):
                 return False
             self._shown()
             return True
 
         test = self._test
         lines = [
-            said_template(BECOMES if text else IS_EMPTIED, *map(number_said, (load, _stored(test, load), text)))
+            Message(
+                BECOMES if text else IS_EMPTIED,
+                load=number_said(load),
+                old=number_said(_stored(test, load)),
+                new=number_said(text),
+            )
             for load, text in depths.items()
         ]
 
@@ -252,7 +267,7 @@ class AfterWaiting:
             self._view.say(LEFT_AS_IT_WAS)
             self._shown()
 
-        ask_reason(ask, lines, ("Correct it", correct), usual=USUAL_REASON, leave=leave)
+        ask_reason(ask, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=leave)
 
 
 def _stored(test: ReplayedTest, load: str) -> str:

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import ui
 
+from ..._support.messages import Message, joined
 from ...campaign.reading.experiments import TURNING
 from ..elements import Words, choice, field, named
-from ..language import said
+from ..language import number_said
 from ..layout import heading, sentence
 from ..page_addresses import entering
 from ..page_requests import asking_button, form
 from ..words import label
-from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_said, changes
+from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
 
 if TYPE_CHECKING:
@@ -84,17 +85,17 @@ class SingleForm:
         ui.navigate.history.replace(self._address())  # the browser keeps typed texts by address: each row has one
         self._places.clear()
         with self._places.form:
-            heading("Correct a test" if correcting else "New test")
+            heading(Message("Correct a test") if correcting else Message("New test"))
             if correcting and correcting[0].cancelled:
-                sentence(f"Cancelled: {correcting[0].cancelled}", "bad")
+                sentence(Message("Cancelled: {cancelled}", cancelled=correcting[0].cancelled), "bad")
             sends = self._store if correcting is None else lambda: self._ask_correction(*correcting)
             with form(sends=sends):
                 self._fields = {column: self._field(column, cells, fixed=bool(correcting)) for column in self._columns}
             self._ask = ui.element("div")
             with ui.element("div").classes("acts"):
-                asking_button("Store" if correcting is None else "Correct", sends, "main")
+                asking_button(Message("Store") if correcting is None else Message("Correct"), sends, "main")
                 if correcting is not None:
-                    asking_button("New test", self._leave_for_new)
+                    asking_button(Message("New test"), self._leave_for_new)
         with self._places.below:
             if correcting is not None:
                 changes(
@@ -116,7 +117,7 @@ class SingleForm:
         if column == "plate":
             plates, value = sorted(self._view.session.described.plates), cells.get(column)
             if not plates:
-                sentence("This campaign has no plate yet: name one under Campaign.", "bad")
+                sentence(Message("This campaign has no plate yet: name one under Campaign."), "bad")
             return choice(label(column), plates, value if value in plates else next(iter(plates), None))
         optional = column in OPTIONAL.get(self._view.file, ())
         made = field(label(column), cells.get(column, ""), numeric=column in self._numeric, optional=optional)
@@ -132,7 +133,7 @@ class SingleForm:
         if candidates:
             candidates[0].run_method("focus")
 
-    def _cells(self, rejected: str = "Not stored:") -> dict[str, str] | None:
+    def _cells(self, rejected: str = Message("Not stored:")) -> dict[str, str] | None:
         cells = checked_fields(self._view.form, self._fields)
         if cells is None:
             self._view.say(rejected, "bad", faults(self._fields.values()))
@@ -148,14 +149,14 @@ class SingleForm:
             return self._stored(before, cells["site"])
         if test.history and (fault := self._second_row_fault(test, cells)):
             refuse(self._fields[key], fault)
-            self._view.say("Not stored:", "bad", faults([self._fields[key]]))
+            self._view.say(Message("Not stored:"), "bad", faults([self._fields[key]]))
             return False
         if not self._view.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
             return False
         return self._stored(test.name, cells["site"])
 
     def _stored(self, name: str, site: str) -> bool:
-        self._view.say(f"Stored: test {name}.")
+        self._view.say(Message("Stored: test {name}.", name=name))
         self._live_results.follow(name, site)
         self._begun = None
         self.begin()
@@ -165,13 +166,17 @@ class SingleForm:
         if cells.get(TURNING) and all(row.cells.get(TURNING) for row in test.rows):
             first = test.rows[0].cells if test.rows else cells
             changed = [column for column in ONCE if cells.get(column, "") != first.get(column, "")]
-            return f"the rows of test {test.name} have one {label(changed[0])}" if changed else ""
+            return (
+                Message("the rows of test {name} have one {label}", name=test.name, label=label(changed[0]))
+                if changed
+                else ""
+            )
         if "repeat" not in cells:
-            return f"there is a test {test.name} already; give this one another name"
+            return Message("there is a test {name} already; give this one another name", name=test.name)
         if any(row.cells["repeat"] == cells["repeat"] for row in test.rows):
-            return f"test {test.name} has a repeat {cells['repeat']} already"
+            return Message("test {name} has a repeat {repeat} already", name=test.name, repeat=cells["repeat"])
         if test.rows and test.rows[0].cells["site"] != cells["site"]:
-            return f"test {test.name} is at the site {test.rows[0].cells['site']}"
+            return Message("test {name} is at the site {site}", name=test.name, site=test.rows[0].cells["site"])
         return ""
 
     def _is_unanswered(self) -> bool:
@@ -187,13 +192,13 @@ class SingleForm:
         return True
 
     def _ask_correction(self, test: ReplayedTest, row: Reading) -> bool:
-        cells = self._cells("Not corrected:")
+        cells = self._cells(Message("Not corrected:"))
         if cells is None:
             return False
         stored = row.cells
         changed = {column: text for column, text in cells.items() if text != stored.get(column, "")}
         if not changed:
-            self._view.say("Nothing is different.")
+            self._view.say(Message("Nothing is different."))
             return True
 
         def correct(why: str) -> bool:
@@ -202,8 +207,11 @@ class SingleForm:
             self.show(test.name, row=_number(row))
             return True
 
-        lines = [change_said(said(label(column)), stored.get(column, ""), new) for column, new in changed.items()]
-        act = ("Correct it", correct)
+        lines = [
+            change_message(label(column), number_said(stored.get(column, "")), number_said(new))
+            for column, new in changed.items()
+        ]
+        act = (Message("Correct it"), correct)
         ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(test, row))
         self._view.say(ASKED, "")
         return True
@@ -216,7 +224,7 @@ class SingleForm:
         tests = self._view.tests()
         if not tests:
             return
-        heading("So far", 3)
+        heading(Message("So far"), 3)
         with ui.element("ul").classes("so-far"):
             for test in reversed(tests[-30:]):
                 for row in reversed(test.rows):
@@ -225,8 +233,11 @@ class SingleForm:
 
     def _so_far(self, test: ReplayedTest, row: Reading) -> None:
         columns = [column for column in self._columns if row.cells.get(column)]
-        words = [f"{said(label(column))} {row.cells[column]}" for column in columns]  # already translated
-        Words(" · ".join(words) + (said(f" · cancelled: {test.cancelled}") if test.cancelled else ""))
+        cells = {label(column): number_said(row.cells[column]) for column in columns}
+        words = joined([Message("{column} {text}", column=name, text=text) for name, text in cells.items()], " · ")
+        if test.cancelled:
+            words = Message("{cells} · cancelled: {reason}", cells=words, reason=test.cancelled)
+        Words(words)
 
         def look() -> bool:
             if self._is_unanswered():
@@ -234,7 +245,10 @@ class SingleForm:
             self.show(test.name, row=_number(row))
             return True
 
-        named(asking_button("Correct", look, "small"), f"Correct {' '.join(test.name.split())}")
+        named(
+            asking_button(Message("Correct"), look, "small"),
+            Message("Correct {split}", split=" ".join(test.name.split())),
+        )
 
 
 def _number(row: Reading) -> str:

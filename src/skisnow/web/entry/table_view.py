@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from nicegui import background_tasks, run, ui
 
 from ..._support.errors import FieldDataError, ParameterError, StoreError
+from ..._support.messages import Message
 from ..._support.user_files import natural_number
 from ...campaign.reading.table_forms import PENETRATION, SHEAR
 from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.stored_tables import FORMS
 from ...report.formatting import significant
 from ..elements import StatusLine, Words, choice, field, link, named
-from ..language import minute_words, said
+from ..language import minute_words, number_said, said
 from ..layout import error_sentence, heading
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..page_addresses import entering
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     _Values: TypeAlias = list[float | None]
 
-WHO: Final = "Operator"
+WHO: Final = Message("Operator")
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,11 +103,11 @@ class TableView:
         cells: Mapping[str, str],
         why: str,
         *,
-        said: str = "Corrected; the first reading is kept.",
+        said: str = Message("Corrected; the first reading is kept."),
     ) -> bool:
         """Store a correction of a row, given by the sequence of its entry."""
         if not why.strip():
-            self.say("A correction needs a reason.", "bad")
+            self.say(Message("A correction needs a reason."), "bad")
             return False
         entry = NewEntry(
             action="correct",
@@ -122,21 +123,21 @@ class TableView:
     def cancel(self, test: ReplayedTest, why: str) -> bool:
         """Store the cancellation of a test with its reason."""
         if not why.strip():
-            self.say("A test is cancelled with a reason.", "bad")
+            self.say(Message("A test is cancelled with a reason."), "bad")
             return False
         entry = NewEntry(
             action="cancel", file=self.file, test=test.name, who=self._who.value or "", why=" ".join(why.split())
         )
-        return self._write(entry, test.last, f"{test.name} is cancelled; its readings are kept.")
+        return self._write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
 
     def undo(self, test: ReplayedTest) -> bool:
         """Store the undo of the last entry."""
         last = test.undoable
         if last is None:
-            self.say("There is nothing to undo.", "bad")
+            self.say(Message("There is nothing to undo."), "bad")
             return False
         entry = NewEntry(action="undo", file=self.file, test=test.name, about=last.sequence, who=self._who.value or "")
-        return self._write(entry, test.last, "Undone.")
+        return self._write(entry, test.last, Message("Undone."))
 
     def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
         """Show the outcome of the last action; ``items``: problems in the language of the page."""
@@ -208,7 +209,7 @@ class SeriesList:
         if not lines:
             return
         with self._place:
-            heading("Series so far", 3)
+            heading(Message("Series so far"), 3)
             for site in dict.fromkeys(line[1] for line in lines):
                 heading(site, 4)
                 with ui.element("ul").classes("so-far"):
@@ -226,21 +227,21 @@ class SeriesList:
         """Text of the link, such as "2 · 45°"; then result, writer, time and flags."""
         value, flags = self._results.get(test.name, ("", []))
         angle = test.rows[0].cells.get("edge_angle_deg", "")
-        words = f"{test.name} · {angle}°" if angle else test.name
+        words = f"{test.name} · {number_said(angle)}°" if angle else test.name
         last = test.history[-1]
         about = " · ".join(
             filter(None, (value, last.who, minute_words(last.at), *(flag.replace("_", " ") for flag in flags)))
         )
-        return f"{words} (cancelled)" if test.cancelled else words, about
+        return Message("{words} (cancelled)", words=words) if test.cancelled else words, about
 
 
 RESULTS: Final = {PENETRATION.file: ("H_V", "H_V_N_per_mm3"), SHEAR.file: ("S_f", "S_f_N_per_mm2")}
 """Symbol and key in results.json of the result of a test, by table."""
 
 
-def table_links(tables: Mapping[str, str], here: str, further: Mapping[str, str]) -> None:
+def table_links(tables: Mapping[str, str], here: str, further: Mapping[Message, str]) -> None:
     """Links to the tables, by file, and to further pages of the campaign, by name."""
-    with named(ui.element("nav").classes("tables"), "Kind of test"):
+    with named(ui.element("nav").classes("tables"), Message("Kind of test")):
         for file, address in tables.items():
             made = ui.link(said(TABLES[file]), address)
             if file == here:
@@ -300,14 +301,14 @@ class LiveResults:
         self._working = False
         is_pressed = view.file == PENETRATION.file
         classes = "beside" if is_pressed else "beside above"
-        with named(ui.element("section").classes(classes), "Results of the readings"):
+        with named(ui.element("section").classes(classes), Message("Results of the readings")):
             self._name = Words("").classes("quiet")
             self._value = Words("").classes("value").props("role=status")
             self._verdicts = ui.element("ul").classes("verdicts")
             self._marks = ui.element("ul").classes("marks")
             self._chart: LineChart | None = None
             if is_pressed:
-                words = "Load against depth of this series and the others of its site, load in N"
+                words = Message("Load against depth of this series and the others of its site, load in N")
                 self._chart = LineChart(label("depth_mm"), label("load_N"), words, height=340)
 
     def follow(self, name: str, site: str, *, in_progress: bool = False) -> None:
@@ -362,7 +363,7 @@ class LiveResults:
         if self.series_list is not None:
             self.series_list.take(results)
         row = results.experiments.get(key)
-        self._name.set_text(f"Test {name}" if row else "")
+        self._name.set_text(Message("Test {name}", name=name) if row else "")
         self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))
         self._marks.clear()
         with self._marks:

@@ -13,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
+from ..._support.messages import Message
 from ..analysis_cache import AnalysisCache
 from ..analysis_view import AnalysisView, OpenAnalysis
 from ..campaign_analysis import load_drawing, write_whole_report
@@ -50,7 +51,7 @@ def add_page(lab: Lab) -> None:
             page.settled.set()
 
         ui.context.client.on_delete(closed)
-        with framed("Analysis", here=HERE):
+        with framed(Message("Analysis"), here=HERE):
             _links(kind, id_, key)
             view = AnalysisView(page, analyses)
         view.show_cached()
@@ -85,8 +86,8 @@ def _zip_of(subject: CampaignSource, report: Path) -> bytes:
 
 def _no_report(page: OpenAnalysis | None, request: Request) -> Response:
     if page is not None and page.refused:
-        return plain_page("No report yet", page.refused, 404, request)
-    return plain_page("No such report", "Open the analysis of the campaign again.", 404, request)
+        return plain_page(Message("No report yet"), page.refused, 404, request)
+    return plain_page(Message("No such report"), Message("Open the analysis of the campaign again."), 404, request)
 
 
 async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -> Path | None:
@@ -105,10 +106,10 @@ async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -
 def _links(kind: str, id_: str, key: str) -> None:
     with ui.element("div").classes("acts"):
         if kind == "entry":
-            link("Enter tests", entering(id_))
+            link(Message("Enter tests"), entering(id_))
         # both are requested over the connection of the page, so that earlier choices are applied first
-        report = link("Open the report", f"/report/{key}/report.html").props("target=_blank")
+        report = link(Message("Open the report"), f"/report/{key}/report.html").props("target=_blank")
         report.on("click.prevent", lambda: ui.navigate.to(f"/report/{key}/report.html", new_tab=True))
-        everything = link("Download everything", "#")
+        everything = link(Message("Download everything"), "#")
         everything.on("click.prevent", lambda: ui.download(f"/report/{key}/analysis.zip"))
-        link("Export the campaign", export(kind, id_))
+        link(Message("Export the campaign"), export(kind, id_))

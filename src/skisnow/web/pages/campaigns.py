@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     from ..settings import Lab
 
 PATH: Final = "/"
-TITLE: Final = "Campaigns"
-WHAT_THIS_IS: Final = (
-    "Here what was measured on a slope becomes snow hardness and shear stress, and these become turns of a ski: enter "
-    "tests, analyse them, carve and simulate."
+TITLE: Final = Message("Campaigns")
+WHAT_THIS_IS: Final = Message(
+    "Here what was measured on a slope becomes snow hardness and shear stress, and these "
+    "become turns of a ski: enter tests, analyse them, carve and simulate."
 )
 SAMPLE_SEED: Final = 1
 CARDS: Final = (
@@ -51,17 +51,17 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def campaigns(added: str = "") -> None:
-        with framed("Campaigns", here=PATH):
+        with framed(Message("Campaigns"), here=PATH):
             if added:
-                sentence("The campaign is imported, byte for byte.", "good").props("role=status")
+                sentence(Message("The campaign is imported, byte for byte."), "good").props("role=status")
             _first_minute()
             is_first = not Journals(lab.store).list() and not lab.store.list()
             if is_first:
                 sentence(WHAT_THIS_IS)
             with ui.element("div").classes("acts"):
-                link("New campaign", "/describe", "main")
+                link(Message("New campaign"), "/describe", "main")
                 if is_first:
-                    button("Look at a sample campaign", lambda: _add_sample(lab), once=True)
+                    button(Message("Look at a sample campaign"), lambda: _add_sample(lab), once=True)
             _list_drafts(lab)
             _list_imported(lab)
             _import_form(lab)
@@ -84,9 +84,9 @@ def _first_minute() -> None:
 
 def _list_drafts(lab: Lab) -> None:
     heads = Journals(lab.store).list()
-    heading("Drafts")
+    heading(Message("Drafts"))
     if not heads:
-        sentence("None. Begin one with New campaign.", "quiet")
+        sentence(Message("None. Begin one with New campaign."), "quiet")
     for head in reversed(heads):
         try:
             session = EditSession(lab, head.id)
@@ -95,17 +95,17 @@ def _list_drafts(lab: Lab) -> None:
             continue
         tests = [test for test in session.campaign.tests.values() if test.rows]
         with ui.element("section").classes("card"):
-            heading(session.described.name or "(no name)", 3)
+            heading(session.described.name or Message("(no name)"), 3)
             words = [
                 session.described.place,
                 counted(len(tests), "{count} test", "{count} tests"),
-                f"last entry {minute_words(head.last_at)}",
+                Message("last entry {minute_words}", minute_words=minute_words(head.last_at)),
             ]
             sentence(" · ".join(filter(None, words)), "quiet")
             with ui.element("div").classes("acts"):
-                link("Enter tests", entering(head.id), "main")
-                link("Analysis", analysis("entry", head.id))
-                link("Export", export("entry", head.id))
+                link(Message("Enter tests"), entering(head.id), "main")
+                link(Message("Analysis"), analysis("entry", head.id))
+                link(Message("Export"), export("entry", head.id))
 
 
 def _add_damaged(id_: str, error: StoreError) -> None:
@@ -115,18 +115,26 @@ def _add_damaged(id_: str, error: StoreError) -> None:
 
 
 def _list_imported(lab: Lab) -> None:
-    heading("Imported")
+    heading(Message("Imported"))
     stored = lab.store.list()
     if not stored:
-        sentence("None. Import one below.", "quiet")
+        sentence(Message("None. Import one below."), "quiet")
     for campaign in reversed(stored):
         with ui.element("section").classes("card"):
             heading(campaign.name, 3)
-            sentence(f"{campaign.id} · added {minute_words(campaign.added_at)} · {_check_result(campaign)}", "quiet")
+            sentence(
+                Message(
+                    "{id} · added {minute_words} · {check_result}",
+                    id=campaign.id,
+                    minute_words=minute_words(campaign.added_at),
+                    check_result=_check_result(campaign),
+                ),
+                "quiet",
+            )
             with ui.element("div").classes("acts"):
-                link("Correct", correcting(campaign.id))
-                link("Analysis", analysis("kept", campaign.id))
-                link("Export", export("kept", campaign.id))
+                link(Message("Correct"), correcting(campaign.id))
+                link(Message("Analysis"), analysis("kept", campaign.id))
+                link(Message("Export"), export("kept", campaign.id))
                 if _is_undoable(lab, campaign):
                     button(Message("Undo the import"), partial(_undo, lab, campaign.id), once=True)
 
@@ -144,7 +152,7 @@ def _undo(lab: Lab, id_: str) -> None:
 
 def _check_result(campaign: StoredCampaign) -> str:
     if campaign.n_errors is None or campaign.n_warnings is None:
-        return "not checked"
+        return Message("not checked")
     errors = counted(campaign.n_errors, "{count} error", "{count} errors")
     return f"{errors}, {counted(campaign.n_warnings, '{count} warning', '{count} warnings')}"
 
@@ -164,7 +172,7 @@ def _store_sample(lab: Lab) -> str:
 
 
 def _import_form(lab: Lab) -> None:
-    heading("Import")
+    heading(Message("Import"))
     sentence(
         Message(
             "A campaign's folder, its files, a zip, or a workbook (.xlsx) or CSV file in any layout. It is stored byte "
@@ -173,7 +181,10 @@ def _import_form(lab: Lab) -> None:
         ),
         "quiet",
     )
-    for id_, text, further in (("folder", "Folder", "webkitdirectory"), ("files", "Files or zip", "")):
+    for id_, text, further in (
+        ("folder", (Message("Folder"), Message("Import folder")), "webkitdirectory"),
+        ("files", (Message("Files or zip"), Message("Import files or zip")), ""),
+    ):
         with upload_form(IMPORT).classes("acts"):
-            file_input("files", text, f"import-{id_}", f"multiple {further}")
-            submit_button(f"Import {text.lower()}")
+            file_input("files", text[0], f"import-{id_}", f"multiple {further}")
+            submit_button(text[1])

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
+from ..._support.messages import Message, joined
 from ..._support.outcomes import outcome_words
 from ...report.campaign.page import RESULTS
 from ...report.formatting import significant
 from ..elements import Words, button, choice, link, named
 from ..lab_skis import NOTHING, LabSkis
-from ..language import said
+from ..language import number_said, said
 from ..layout import framed
 from ..line_chart import STYLES, ChartLine, LineChart
 from ..snow_choice import SnowChoice
@@ -32,16 +33,16 @@ if TYPE_CHECKING:
     from ..snow_choice import ChosenSnow
 
 PATH: Final = "/carve"
-TITLE: Final = "Carve"
+TITLE: Final = Message("Carve")
 SKIS: Final = "/skis"
-ALONG: Final = "Along the ski (m), boot = 0"
-ENDS: Final = ("tail", "tip")
+ALONG: Final = Message("Along the ski (m), boot = 0")
+ENDS: Final = (Message("tail"), Message("tip"))
 """Texts at the ends of the axis; stations count forward from the boot."""
 PANELS: Final = {
-    "edge_depth_mm": "Depth of the edge (mm)",
-    "force_per_length_N_per_m": "Normal force per length (N/m)",
-    "bending_mm": "Deflection (mm)",
-    "twist_deg": "Twist (°)",
+    "edge_depth_mm": Message("Depth of the edge (mm)"),
+    "force_per_length_N_per_m": Message("Normal force per length (N/m)"),
+    "bending_mm": Message("Deflection (mm)"),
+    "twist_deg": Message("Twist (°)"),
 }
 # Stops and first positions of the sliders: round numbers over the measured ranges.
 ANGLES: Final = tuple(str(angle) for angle in range(0, 86))
@@ -50,19 +51,19 @@ _SOFT: Final = (0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.
 _HARD: Final = (2.5, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 60, 90)
 HARDNESSES: Final = tuple(f"{hardness:g}" for hardness in (*_SOFT, *_HARD))
 STRESSES: Final = tuple(f"{hundredths / 100:g}" for hundredths in range(4, 53, 2))
-RATIOS: Final = {"1": "1 (elastic)", "10": "10", "100": "100", "inf": "no spring back"}
+RATIOS: Final = {"1": Message("1 (elastic)"), "10": "10", "100": "100", "inf": Message("no spring back")}
 SLIDERS: Final = {
-    "edge_angle_deg": ("Edge angle (°)", ANGLES, "45"),
-    "load_N": ("Load on this ski (N)", LOADS, "800"),
-    "H_V_N_per_mm3": ("Snow hardness H_V (N/mm³)", HARDNESSES, "0.2"),
-    "S_f_N_per_mm2": ("Failure shear stress S_f (N/mm²)", STRESSES, "0.5"),
+    "edge_angle_deg": (Message("Edge angle (°)"), ANGLES, "45"),
+    "load_N": (Message("Load on this ski (N)"), LOADS, "800"),
+    "H_V_N_per_mm3": (Message("Snow hardness H_V (N/mm³)"), HARDNESSES, "0.2"),
+    "S_f_N_per_mm2": (Message("Failure shear stress S_f (N/mm²)"), STRESSES, "0.5"),
 }
 MOVED: Final = """(event) => {
   event.target.setAttribute('aria-valuetext', STOPS[event.target.value]);
   emit(event.target.value);
 }"""
 """JavaScript handler: if the server drew the slider again, it would jump back during a quick movement."""
-COMPUTING: Final = "Computing …"
+COMPUTING: Final = Message("Computing …")
 PATIENCE_S: Final = 0.5
 """Time (s) after which the page shows that the results belong to older positions of the sliders."""
 ABOVE_MM: Final = 3.0
@@ -70,18 +71,18 @@ ABOVE_MM: Final = 3.0
 HEADLINE: Final = "turn_radius_boot_m"
 """Key of the main result; the other results are in the table below."""
 OF_SNOW: Final = ("H_V_N_per_mm3", "S_f_N_per_mm2")
-NUMBERS: Final = "the sliders"
+NUMBERS: Final = ("the sliders", Message("the sliders"))
 FACTS: Final = {
-    "forebody_load_N": ("Load on the forebody", "N"),
-    "afterbody_load_N": ("Load on the afterbody", "N"),
-    "contact_length_m": ("Contact length", "m"),
-    "side_force_N": ("Side force", "N"),
-    "side_force_limit_N": ("Shear capacity of the snow", "N"),
-    "grip_utilisation": ("Grip utilisation (1: side-slip)", ""),
-    "total_force_N": ("Total force of the snow", "N"),
-    "boot_pitch_moment_Nm": ("Moment at the boot about the cross axis", "N\u00a0m"),
-    "turn_radius_boot_other_spread_m": ("Radius if the side force follows the pressure on the base", "m"),
-    "turn_radius_chord_m": ("Radius through the ends of the contact", "m"),
+    "forebody_load_N": (Message("Load on the forebody"), "N"),
+    "afterbody_load_N": (Message("Load on the afterbody"), "N"),
+    "contact_length_m": (Message("Contact length"), "m"),
+    "side_force_N": (Message("Side force"), "N"),
+    "side_force_limit_N": (Message("Shear capacity of the snow"), "N"),
+    "grip_utilisation": (Message("Grip utilisation (1: side-slip)"), ""),
+    "total_force_N": (Message("Total force of the snow"), "N"),
+    "boot_pitch_moment_Nm": (Message("Moment at the boot about the cross axis"), "N\u00a0m"),
+    "turn_radius_boot_other_spread_m": (Message("Radius if the side force follows the pressure on the base"), "m"),
+    "turn_radius_chord_m": (Message("Radius through the ends of the contact"), "m"),
 }
 
 
@@ -91,7 +92,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     async def carve(ski: str = "", other: str = "") -> None:
-        with framed("Carve", here=PATH):
+        with framed(Message("Carve"), here=PATH):
             _Carve(lab, solver, skis, (ski, other)).ask()  # answered while the browser builds the page
 
 
@@ -137,16 +138,18 @@ class _Carve:
             name if name in names else otherwise
             for name, otherwise in zip(names_in_address, (names[0], NOTHING), strict=True)
         )
-        self._headline = named(ui.element("section").classes("headline above"), "Carved radius")
+        self._headline = named(ui.element("section").classes("headline above"), Message("Carved radius"))
         self._of_snow: dict[str, ui.element] = {}
         with ui.element("div").classes("carving"):
             with ui.element("section"):
                 with ui.element("div").classes("fields large"):
-                    self._ski = choice("Ski", names, first)
-                    self._other = choice("Compared with", [NOTHING, *names], other)
-                    self._ratio = choice("Unloading ratio k_u/H_V", RATIOS, "10")
+                    self._ski = choice(Message("Ski"), names, first)
+                    self._other = choice(
+                        Message("Compared with"), {NOTHING: Message("nothing"), **{name: name for name in names}}, other
+                    )
+                    self._ratio = choice(Message("Unloading ratio k_u/H_V"), RATIOS, "10")
                     self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
-                link("Add or change a ski", SKIS)
+                link(Message("Add or change a ski"), SKIS)
                 with ui.element("div").classes("sliders"):
                     for key in SLIDERS:
                         self._slider(key)
@@ -154,10 +157,11 @@ class _Carve:
                 self._status = Words(COMPUTING).classes("status")
                 self._status.props("role=status")
                 self._facts = ui.element("div").classes("table")
-                button("Curves as CSV", self._download)
+                button(Message("Curves as CSV"), self._download)
             with ui.element("section").classes("curves"):
                 self._charts = {
-                    key: LineChart(ALONG, title, f"{title} along the ski", ends=ENDS) for key, title in PANELS.items()
+                    key: LineChart(ALONG, title, Message("{title} along the ski", title=title), ends=ENDS)
+                    for key, title in PANELS.items()
                 }
         self._answers: list[dict[str, Any]] = []
         self._named: list[str] = []
@@ -172,11 +176,11 @@ class _Carve:
             if key in OF_SNOW:
                 self._of_snow[key] = place
             called = said(words)
-            shown = Words(f"{called}: {start}")
+            shown = Words(f"{called}: {number_said(start)}")
 
             def moved(event: GenericEventArguments) -> None:
                 self._values[key] = stops[min(max(int(event.args), 0), len(stops) - 1)]
-                shown.set_text(f"{called}: {self._values[key]}")
+                shown.set_text(f"{called}: {number_said(self._values[key])}")
                 self.ask()
 
             # the browser's own slider supports arrow keys, touch and screen readers
@@ -242,7 +246,7 @@ class _Carve:
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
         self._answers = answers
-        self._status.set_text(" ".join(_in_words(answer) for answer in answers))
+        self._status.set_text(joined([_in_words(answer) for answer in answers]))
         names = [answer["ski"]["name"] for answer in answers]
         if names != self._named:
             self._named = names
@@ -280,16 +284,19 @@ def _radius(answer: dict[str, Any]) -> str:
     """Line with the ski, its radius, and whether the snow holds it."""
     name, radius = answer["ski"]["name"], answer[HEADLINE]
     if radius is None:
-        return f"{name}: no carved radius"
-    text = f"{name}: carved radius {significant(radius)} m"
-    return text if answer["holds"] else f"{text}, were the snow to hold it"
+        return Message("{name}: no carved radius", name=name)
+    fields = {"name": name, "radius": significant(radius)}
+    if answer["holds"]:
+        return Message("{name}: carved radius {radius} m", **fields)
+    return Message("{name}: carved radius {radius} m, were the snow to hold it", **fields)
 
 
-def _in_words(answer: dict[str, Any]) -> str:
-    words = f"{answer['ski']['name']}: {outcome_words(str(answer['outcome']))}"
-    remedy = f", {answer['remedy']}" if answer["remedy"] else ""
-    warned = "".join(f" Warning: {text}." for text in answer["warnings"])
-    return f"{words}{remedy}.{warned}"
+def _in_words(answer: dict[str, Any]) -> Message:
+    name, outcome = answer["ski"]["name"], outcome_words(str(answer["outcome"]))
+    words = Message("{name}: {outcome}.", name=name, outcome=outcome)
+    if answer["remedy"]:
+        words = Message("{name}: {outcome}, {remedy}.", name=name, outcome=outcome, remedy=answer["remedy"])
+    return joined([words, *(Message("Warning: {warning}.", warning=text) for text in answer["warnings"])])
 
 
 def _add_table(names: list[str]) -> dict[str, list[ui.label]]:

@@ -11,10 +11,10 @@ from ..._support.messages import Message
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import Words, choice, field, link
-from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_said, changes
+from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import table_links, table_view
-from ..language import said
+from ..language import number_said
 from ..layout import framed, heading, sentence
 from ..page_addresses import analysis, correcting, export, required_id
 from ..page_requests import asking_button, form
@@ -47,9 +47,11 @@ def add_page(lab: Lab) -> None:
         if file not in session.tables:
             missing = Message("this campaign has no such table")
             raise ParameterError(missing if session.tables else UNREAD, code="no_table")
-        with framed(session.stored.name or "Campaign", here=HERE, keeps=True):
-            sentence("Imported: its files stay unchanged. Corrections made here are stored with them.", "quiet")
-            further = {"Analysis": analysis("kept", session.id), "Export": export("kept", session.id)}
+        with framed(session.stored.name or Message("Campaign"), here=HERE, keeps=True):
+            sentence(
+                Message("Imported: its files stay unchanged. Corrections made here are stored with them."), "quiet"
+            )
+            further = {Message("Analysis"): analysis("kept", session.id), Message("Export"): export("kept", session.id)}
             table_links({name: correcting(session.id, table=name) for name in session.tables}, file, further)
             if test in session.tables[file].tests:
                 _show_test(session, file, test)
@@ -59,10 +61,10 @@ def add_page(lab: Lab) -> None:
 
 def _show_test(session: CorrectionSession, file: str, name: str) -> None:
     with (
-        table_view(session, file, form="Cells", below="Changes") as (view, live_results, places),
+        table_view(session, file, form=Message("Cells"), below=Message("Changes")) as (view, live_results, places),
         ui.element("div").classes("acts"),
     ):
-        link("Another test", correcting(session.id, table=file))
+        link(Message("Another test"), correcting(session.id, table=file))
     ImportedTestForm(session, view, live_results, places).show(name)
 
 
@@ -92,13 +94,13 @@ class ImportedTestForm:
         cancelled = next(filter(None, (cells.get(cell_key(line, "status"), "") for line in rows)), "")
         self._places.clear()
         with self._places.form:
-            heading(f"Test {name}")
+            heading(Message("Test {name}", name=name))
             if test.cancelled or cancelled:
-                sentence(f"Cancelled: {test.cancelled or cancelled}", "bad")
+                sentence(Message("Cancelled: {value}", value=test.cancelled or cancelled), "bad")
             with form("", sends=lambda: self._ask_correction(name)):
                 self._draw(tuple(rows), cells)
             self._ask = ui.element("div")
-            asking_button("Correct", lambda: self._ask_correction(name), "main")
+            asking_button(Message("Correct"), lambda: self._ask_correction(name), "main")
         with self._places.below:
             changes(
                 self._view,
@@ -128,7 +130,9 @@ class ImportedTestForm:
         return len({cells[cell_key(line, column)] for line in lines}) == 1
 
     def _field(self, column: str, text: str, *, row: int | None = None) -> Field:
-        words = self._view.label(column) + (f", row {row}" if row is not None else "")
+        words = self._view.label(column)
+        if row is not None:
+            words = Message("{column}, row {row}", column=words, row=row)
         described = self._desk.described
         if column in ("tool", "plate"):
             names = sorted({text, *(described.tools if column == "tool" else described.plates)})
@@ -151,7 +155,7 @@ class ImportedTestForm:
         if changed is None:
             return False
         if not changed:
-            self._view.say("Nothing is different.")
+            self._view.say(Message("Nothing is different."))
             return True
 
         def correct(why: str) -> bool:
@@ -160,9 +164,13 @@ class ImportedTestForm:
             self.show(name)
             return True
 
-        columns = {key: said(self._view.label(key.split("/", 1)[1])) for key in changed}
-        lines = list(dict.fromkeys(change_said(columns[key], stored[key], new) for key, new in changed.items()))
-        act = ("Correct it", correct)
+        columns = {key: self._view.label(key.split("/", 1)[1]) for key in changed}
+        lines = list(
+            dict.fromkeys(
+                change_message(columns[key], number_said(stored[key]), number_said(new)) for key, new in changed.items()
+            )
+        )
+        act = (Message("Correct it"), correct)
         ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(name))
         self._view.say(ASKED, "")
         return True
@@ -185,7 +193,7 @@ class ImportedTestForm:
             refused += faults(typed.values())
             changed |= {cell_key(line, column): text for column, text in (cells or {}).items() for line in lines}
         if refused:
-            self._view.say("Not corrected:", "bad", refused)
+            self._view.say(Message("Not corrected:"), "bad", refused)
             return None
         return changed
 
@@ -195,11 +203,11 @@ def list_tests(session: CorrectionSession, file: str) -> None:
     sites: dict[str, list[str]] = {}
     for name, rows in session.tables[file].tests.items():
         sites.setdefault(next(iter(rows.values())).get("site", ""), []).append(name)
-    heading("Tests")
+    heading(Message("Tests"))
     for site, names in sites.items():
         with ui.element("details").props("open" if len(sites) == 1 and len(names) <= FEW else ""):
             with ui.element("summary"):
-                Words(f"{site or 'No site'}: {len(names)}")
+                Words(f"{site or Message('No site')}: {len(names)}")
             with ui.element("div").classes("acts so-far"):
                 for name in names:
                     link(_link_text(session.test(file, name)), correcting(session.id, table=file, test=name), "small")
@@ -207,5 +215,5 @@ def list_tests(session: CorrectionSession, file: str) -> None:
 
 def _link_text(test: ReplayedTest) -> str:
     if test.cancelled:
-        return f"{test.name} (cancelled)"
+        return Message("{name} (cancelled)", name=test.name)
     return f"{test.name} (corrected)" if test.rows[0].corrections else test.name

@@ -16,7 +16,7 @@ from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import Description, description_text
 from ..edit_session import EditSession
 from ..elements import StatusLine, choice, field
-from ..language import said
+from ..language import language_of, number_said, said
 from ..layout import framed, heading, sentence
 from ..page_addresses import entering, required_id
 from ..page_requests import asking_button, current_request, form, go_on, row_button
@@ -30,17 +30,30 @@ if TYPE_CHECKING:
 
 HERE: Final = "/"
 NUMBERS: Final = {
-    "gauge_resolution_mm": "Step of the depth gauge (mm)",
-    "load_uncertainty_N": "Uncertainty of the load (N)",
-    "moment_uncertainty_Nm": "Uncertainty of the moment (N m)",
-    "lever_arm_uncertainty_mm": "Uncertainty of the lever arm (mm)",
+    "gauge_resolution_mm": Message("Step of the depth gauge (mm)"),
+    "load_uncertainty_N": Message("Uncertainty of the load (N)"),
+    "moment_uncertainty_Nm": Message("Uncertainty of the moment (N m)"),
+    "lever_arm_uncertainty_mm": Message("Uncertainty of the lever arm (mm)"),
 }
-LENGTHS: Final = {"length_mm": "Length (mm)", "width_mm": "Width (mm)", "diameter_mm": "Diameter (mm)"}
-LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": "Radius (mm)"}
-_SHAPE: Final = "Shape of tool {}"
+LENGTHS: Final = {
+    "length_mm": Message("Length (mm)"),
+    "width_mm": Message("Width (mm)"),
+    "diameter_mm": Message("Diameter (mm)"),
+}
+LENGTHS_OF_SHAPES: Final = LENGTHS | {"radius_mm": Message("Radius (mm)")}
+_SHAPE: Final = template("Shape of tool {number}")
+_ANOTHER: Final = {"tool": Message("Another tool"), "plate": Message("Another plate")}
+_NAME_OF: Final = {"tool": template("Name of tool {number}"), "plate": template("Name of plate {number}")}
+_LENGTH_OF: Final = {
+    "tool": template("{length} of tool {number}"), "plate": template("{length} of plate {number}")
+}  # fmt: skip
 MOST_ROWS: Final = 200
 """Maximum number of rows that are restored when a page is loaded again."""
-SHAPE_WORDS: Final = {"ski": "piece of ski", "disc": "disc", "cylinder": "cylinder on its side"}
+SHAPE_WORDS: Final = {
+    "ski": Message("piece of ski"),
+    "disc": Message("disc"),
+    "cylinder": Message("cylinder on its side"),
+}
 
 
 def add_page(lab: Lab) -> None:
@@ -49,7 +62,7 @@ def add_page(lab: Lab) -> None:
     @ui.page("/describe")
     def describe(entry: str = "") -> None:
         session = EditSession(lab, required_id(entry)) if entry else None
-        with framed("Campaign" if session else "New campaign", here=HERE, ahead=True):
+        with framed(Message("Campaign") if session else Message("New campaign"), here=HERE, ahead=True):
             status = StatusLine()
             with form(""):
                 described = DescriptionForm(toml_values(session.campaign.description) if session else None)
@@ -64,14 +77,14 @@ def add_page(lab: Lab) -> None:
                 return True
 
             with ui.element("div").classes("acts end"):
-                asking_button("Store and enter tests", done, "main")
+                asking_button(Message("Store and enter tests"), done, "main")
             _restore_rows_on_reload(described)
 
 
 def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
     if isinstance(error, FieldDataError):
         errors = [problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error"]
-        status.say("Not stored:", "bad", [said(str(problem)) for problem in errors])
+        status.say(Message("Not stored:"), "bad", [problem.text(language_of()) for problem in errors])
     else:
         status.say(
             error.message if isinstance(error, OvertakenError) else Message("Not stored: {error}", error=error), "bad"
@@ -131,21 +144,23 @@ class DescriptionForm:
         values = _default_description() if described is None else described
         self._given = values
         with ui.element("div").classes("fields"):
-            self._name = field("Name of the campaign", values.get("name", ""), wide=True)
-            self._place = field("Place", values.get("place", ""), wide=True)
-            self._observers = field("Observers, with commas between", ", ".join(values.get("observers", ())), wide=True)
+            self._name = field(Message("Name of the campaign"), values.get("name", ""), wide=True)
+            self._place = field(Message("Place"), values.get("place", ""), wide=True)
+            self._observers = field(
+                Message("Observers, with commas between"), ", ".join(values.get("observers", ())), wide=True
+            )
         if described is None:
             self._name.run_method("focus")
-        heading("Discs and gauges")
-        sentence("Empty fields count as 0, with a note in the report.", "quiet")
-        loads = " ".join(f"{load:g}" for load in values.get("load_steps_N", ()))
+        heading(Message("Discs and gauges"))
+        sentence(Message("Empty fields count as 0, with a note in the report."), "quiet")
+        loads = " ".join(number_said(f"{load:g}") for load in values.get("load_steps_N", ()))
         with ui.element("div").classes("fields"):
-            self._loads = field("Disc loads (N), with blanks between", loads, wide=True)
+            self._loads = field(Message("Disc loads (N), with blanks between"), loads, wide=True)
             self._numbers = {
                 key: field(words, _number_text(values.get(key)), numeric=True) for key, words in NUMBERS.items()
             }
-        self._tools = EntryRows("Tools", "tool", values.get("tool", ()))
-        self._plates = EntryRows("Plates of the shear test", "plate", values.get("plate", ()))
+        self._tools = EntryRows(Message("Tools"), "tool", values.get("tool", ()))
+        self._plates = EntryRows(Message("Plates of the shear test"), "plate", values.get("plate", ()))
 
     def grow(self, state: Any) -> None:
         """Add rows as in the browser's state, with their chosen shapes; unexpected values are ignored."""
@@ -157,7 +172,9 @@ class DescriptionForm:
     def text(self) -> str:
         """Text of campaign.toml; errors as in `description_text`."""
         observers = [name.strip() for name in (self._observers.value or "").split(",") if name.strip()]
-        loads = [typed_number("the loads", word) for word in (self._loads.value or "").replace(";", " ").split()]
+        loads = [
+            typed_number(Message("the loads"), word) for word in (self._loads.value or "").replace(";", " ").split()
+        ]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
         if not values["name"]:
             raise ParameterError("the campaign has no name", code="no_name")
@@ -179,7 +196,7 @@ class EntryRows:
         self._place = ui.element("div").props(f"data-rows={kind}")
         for entry in list(entries) or [dict[str, Any]()]:
             self._add(entry)
-        row_button(f"Another {kind}", self._add_focused_row)
+        row_button(_ANOTHER[kind], self._add_focused_row)
 
     def grow(self, count: Any, choices: dict[Any, Any]) -> None:
         """Add rows up to a count, and set shapes by the names of their fields."""
@@ -187,7 +204,7 @@ class EntryRows:
             self._add({})
         shapes = {said(words): shape for shape, words in SHAPE_WORDS.items()}
         for number, (_, shape, _) in enumerate(self._rows, start=1):
-            word = choices.get(said(_SHAPE.format(number)))
+            word = choices.get(said(Message(_SHAPE, number=number)))
             if shape is not None and isinstance(word, str) and word in shapes:
                 shape.set_value(shapes[word])
 
@@ -199,13 +216,17 @@ class EntryRows:
     def _add(self, values: dict[str, Any]) -> None:
         number = len(self._rows) + 1
         with self._place, ui.element("div").classes("fields row"):
-            name = field(f"Name of {self.kind} {number}", values.get("name", ""))
+            name = field(Message(_NAME_OF[self.kind], number=number), values.get("name", ""))
             shape = None
             if self.kind == "tool":
-                shape = choice(_SHAPE.format(number), SHAPE_WORDS, values.get("shape", "ski"))
+                shape = choice(Message(_SHAPE, number=number), SHAPE_WORDS, values.get("shape", "ski"))
             keys = LENGTHS_OF_SHAPES if shape is not None else {"length_mm": LENGTHS["length_mm"]}
             lengths = {
-                key: field(f"{words} of {self.kind} {number}", _number_text(values.get(key)), numeric=True)
+                key: field(
+                    Message(_LENGTH_OF[self.kind], length=words, number=number),
+                    _number_text(values.get(key)),
+                    numeric=True,
+                )
                 for key, words in keys.items()
             }
         self._rows.append((name, shape, lengths))
@@ -226,7 +247,10 @@ class EntryRows:
                 entry["shape"] = shape.value
             used = SHAPES[shape.value].argument_of_key if shape is not None else lengths
             entry |= {
-                key: typed_number(f"{LENGTHS_OF_SHAPES[key]} of {entry['name']}", lengths[key].value or "")
+                key: typed_number(
+                    Message("{length} of {name}", length=LENGTHS_OF_SHAPES[key], name=entry["name"]),
+                    lengths[key].value or "",
+                )
                 for key in used
             }
             entries.append(entry)
@@ -242,13 +266,13 @@ def _default_description() -> dict[str, Any]:
     """Values of the form of a new campaign: discs and tool of the published method."""
     return {
         "load_steps_N": (12, 92, 172, 252, 332, 412, 492),
-        "tool": ({"name": said("ski piece"), "shape": "ski", "length_mm": 200, "width_mm": 62},),
-        "plate": ({"name": said("plate"), "length_mm": 100},),
+        "tool": ({"name": said(Message("ski piece")), "shape": "ski", "length_mm": 200, "width_mm": 62},),
+        "plate": ({"name": said(Message("plate")), "length_mm": 100},),
     }
 
 
 def _number_text(value: float | None) -> str:
-    return "" if value is None else f"{value:.12g}"
+    return "" if value is None else number_said(f"{value:.12g}")
 
 
 def _screening(description: dict[str, Any]) -> str:

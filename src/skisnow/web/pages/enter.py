@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nicegui import ui
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ...campaign.store.stored_tables import checked_cell
 from ..edit_session import EditSession
 from ..entry.readings import FILE, receive_offline_readings
@@ -41,10 +42,10 @@ def add_page(lab: Lab) -> None:
         if table not in TABLES:
             raise ParameterError("this address names no table of a campaign", code="no_table")
         session = EditSession(lab, required_id(id_))
-        with framed(session.described.name or "Campaign", here=HERE, ahead=True):
-            further = {"Analysis": analysis("entry", id_), "Campaign": f"/describe?entry={id_}"}
+        with framed(session.described.name or Message("Campaign"), here=HERE, ahead=True):
+            further = {Message("Analysis"): analysis("entry", id_), Message("Campaign"): f"/describe?entry={id_}"}
             table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
-            with table_view(session, table, form="Entry", below="Changes and entries") as (
+            with table_view(session, table, form=Message("Entry"), below=Message("Changes and entries")) as (
                 view,
                 live_results,
                 places,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from nicegui import app, ui
 
+from ..._support.messages import Message
 from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
 from ..elements import Words, link, named
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from ..settings import Lab
 
 PATH: Final = LIST
-TITLE: Final = "Replay"
+TITLE: Final = Message("Replay")
 NONE: Final = "none"
 
 
@@ -43,13 +44,20 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def replay(track: str = "") -> None:
-        with framed("Replay", here=PATH):
+        with framed(Message("Replay"), here=PATH):
             names = runs.names()
             if track in tracks.names():
-                sentence(f"The track {track} is kept. Choose the run to compare it with.", "good").props("role=status")
-            sentence(f"{counted(len(names), '{count} run', '{count} runs')} kept, the newest first.", "quiet")
+                sentence(
+                    Message("The track {track} is kept. Choose the run to compare it with.", track=track), "good"
+                ).props("role=status")
+            sentence(
+                Message(
+                    "{n_names} kept, the newest first.", n_names=counted(len(names), "{count} run", "{count} runs")
+                ),
+                "quiet",
+            )
             if not names:
-                sentence("Simulate one, then it can be watched here.")
+                sentence(Message("Simulate one, then it can be watched here."))
             if names:
                 _side_by_side_form({name: runs.title(name) for name in names}, tracks.names(), track)
             _track_form()
@@ -62,7 +70,7 @@ def _add_run(place: Path, name: str, title: str) -> None:
         heading(title, 2)
         sentence(_in_words(place), "quiet")
         with ui.element("div").classes("acts"):
-            named(link("Watch", show_address(name), "main"), f"Watch {name}")
+            named(link(Message("Watch"), show_address(name), "main"), Message("Watch {name}", name=name))
 
 
 def _in_words(place: Path) -> str:
@@ -71,7 +79,7 @@ def _in_words(place: Path) -> str:
         run = read_record(place / "summary.json", FinishedRun, only_known=False)
         return f"{run.extent}, {run.outcome_in_words}"
     except GivenError:
-        return "without a readable summary"
+        return Message("without a readable summary")
 
 
 def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) -> None:
@@ -79,14 +87,14 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
     names = list(titles)
     if len(names) == 1 and not tracks:
         return
-    heading("Side by side", 2)
+    heading(Message("Side by side"), 2)
     with ui.element("form").props(f'action="{SHOW}" method="get"').classes("acts"):
-        _select("run", "Run", titles, names[0])
+        _select("run", Message("Run"), titles, names[0])
         other = names[1] if len(names) > 1 and not track else NONE
-        _select("ghost", "Laid over it, translucent", {NONE: NONE, **titles}, other)
-        _select("track", "Measured track beside it", {name: name for name in (NONE, *tracks)}, track or NONE)
-        submit_button("Watch together", kind="main")
-        submit_button("Compare times at gates", address=GATES)
+        _select("ghost", Message("Laid over it, translucent"), {NONE: NONE, **titles}, other)
+        _select("track", Message("Measured track beside it"), {name: name for name in (NONE, *tracks)}, track or NONE)
+        submit_button(Message("Watch together"), kind="main")
+        submit_button(Message("Compare times at gates"), address=GATES)
 
 
 def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:
@@ -94,7 +102,7 @@ def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:
         Words(text)
     with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
         for name, title in names.items():
-            shown = _quoted(said(NONE) if name == NONE else title)
+            shown = _quoted(said(Message("none")) if name == NONE else title)
             properties = f'value="{_quoted("" if name == NONE else name)}" label="{shown}"'
             ui.element("option").props(properties + (" selected" if name == chosen else ""))
 
@@ -103,20 +111,27 @@ def _track_form() -> None:
     """Form for a measured track."""
     with ui.element("details"):
         with ui.element("summary"):
-            Words("Add a measured track")
+            Words(Message("Add a measured track"))
         sentence(
-            f"CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {LARGEST_TRACK_BYTES // 1_000_000} MB and {MOST_POINTS} "
-            "points. A track in latitude and longitude needs the compass direction in which the slope falls; it begins "
-            "where the run begins. One in the run's own axes (x down the fall line, y left, z out of the snow, in m) "
-            "needs none, and stands where it says. Nothing is fitted.",
+            Message(
+                "CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {largest_track_bytes} MB and {most_points} "
+                "points. A track in latitude and longitude needs the compass direction in which the "
+                "slope falls; it begins where the run begins. One in the run's own axes (x down the fall "
+                "line, y left, z out of the snow, in m) needs none, and stands where it says. Nothing is "
+                "fitted.",
+                largest_track_bytes=LARGEST_TRACK_BYTES // 1_000_000,
+                most_points=MOST_POINTS,
+            ),
             "quiet",
         )
         with upload_form(TRACK_UPLOAD).classes("acts"):
-            azimuth = "Direction of the fall line (°), clockwise from north"
-            file_input("file", "Track", "track-file")
+            azimuth = Message("Direction of the fall line (°), clockwise from north")
+            file_input("file", Message("Track"), "track-file")
             text_input("azimuth", azimuth, "track-azimuth", "inputmode=decimal")
-            text_input("start", "Time of the run at its first point (s)", "track-start", "inputmode=decimal value=0")
-            submit_button("Add the track")
+            text_input(
+                "start", Message("Time of the run at its first point (s)"), "track-start", "inputmode=decimal value=0"
+            )
+            submit_button(Message("Add the track"))
 
 
 def _quoted(name: str) -> str:

@@ -10,23 +10,23 @@ from urllib.parse import quote
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
-from ..._support.messages import Message
+from ..._support.messages import Message, joined
 from ...replay.run_file import RUN_FILE
 from ..elements import Words, button, choice, field, link, named
 from ..job_list import JobList
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
-from ..language import language_of
+from ..language import language_of, number_said
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
 from ..replay_addresses import show_address
-from ..runs import Job, Runs, duration_words, estimated_s
+from ..runs import STATES, Job, Runs, duration_words, estimated_s, progress_words
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice, require_scenario, results_and_snow_words, snow_words
 from ..upload_forms import add_upload, file_input, submit_button, upload_form, uploaded_files
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from starlette.datastructures import FormData
 
@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from ..snow_choice import ChosenSnow
 
 PATH: Final = "/simulate"
-TITLE: Final = "Simulate"
+TITLE: Final = Message("Simulate")
 COURSE_UPLOAD: Final = f"{PATH}/course"
 GIVEN: Final = "as in the scenario"
-NUMBERS: Final = "the numbers below"
+NUMBERS: Final = ("the numbers below", Message("the numbers below"))
 GIVEN_BY_NAME: Final = ("ski.file", "course.file", "course.name", "snow.results", "snow.site", "snow.published")
 _FOR_COURSE: Final = "slalom-20-gates"
 """First scenario after the upload of a course."""
@@ -67,18 +67,18 @@ BASIC: Final = (
 BASIC_OF_SKIER: Final = ("skier.steers", "skier.turn_time_s", "skier.turns", "skier.pole_clearance_m")
 """Further keys of the basic form of a scenario with a skier."""
 SECTION_WORDS: Final = {
-    "slope": "Slope",
-    "snow": "Snow",
-    "friction": "Friction",
-    "drag": "Air drag",
-    "sledge": "Sledge",
-    "ski": "Ski",
-    "course": "Course",
-    "skier": "Skier",
-    "start": "Start",
-    "run": "End and output",
-    "shear": "Shear",
-    "solver": "Solver",
+    "slope": Message("Slope"),
+    "snow": Message("Snow"),
+    "friction": Message("Friction"),
+    "drag": Message("Air drag"),
+    "sledge": Message("Sledge"),
+    "ski": Message("Ski"),
+    "course": Message("Course"),
+    "skier": Message("Skier"),
+    "start": Message("Start"),
+    "run": Message("End and output"),
+    "shear": Message("Shear"),
+    "solver": Message("Solver"),
 }
 
 
@@ -91,12 +91,12 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def simulate(course: str = "") -> None:
-        with framed("Simulate", here=PATH), ui.element("div").classes("two wide-form"):
+        with framed(Message("Simulate"), here=PATH), ui.element("div").classes("two wide-form"):
             with ui.element("section"):
                 _Form(lab, runs, course)
                 _course_form()
             with ui.element("section"):
-                JobList(runs, _Card, "Nothing was simulated yet.")
+                JobList(runs, _Card, Message("Nothing was simulated yet."))
 
 
 class _Form:
@@ -111,15 +111,15 @@ class _Form:
         names = list(scenario_names())
         with ui.element("div").classes("fields"):
             is_known = course in self._courses.names()
-            self._scenario = choice("Scenario", names, _FOR_COURSE if is_known else names[0])
-            self._course = choice("Course", [GIVEN, *self._courses.names()], course if is_known else GIVEN)
-            self._ski = choice("Ski", [GIVEN, *self._skis.names()], GIVEN)
+            self._scenario = choice(Message("Scenario"), names, _FOR_COURSE if is_known else names[0])
+            self._course = choice(Message("Course"), with_given(self._courses.names()), course if is_known else GIVEN)
+            self._ski = choice(Message("Ski"), with_given(self._skis.names()), GIVEN)
             self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         self._scenario.on_value_change(self._draw)
         with redrawn_by(self._scenario):
             self._basic = ui.element("div").classes("inputs")
         with ui.element("div").classes("acts"):
-            button("Simulate", self.ask, "main", once=True)
+            button(Message("Simulate"), self.ask, "main", once=True)
             self._estimate = Words("").classes("quiet").props("role=status")
         self._status = Words("").classes("status").props("role=status")
         with ui.element("fieldset").classes("redrawn"):
@@ -148,7 +148,7 @@ class _Form:
             ui.element("details").classes("expert").props("open" if typed.keys() - set(basic(values)) else ""),
         ):
             with ui.element("summary"):
-                Words("Expert inputs")
+                Words(Message("Expert inputs"))
             for section in SECTIONS:
                 names = [name for name in expert(values) if name.startswith(f"{section}.")]
                 if names:
@@ -188,7 +188,11 @@ class _Form:
                 values[name] = None
         values["solver.method"] = self._fields["solver.method"].text
         seconds = estimated_s(self._runs.folder, self._runs.jobs(), values)
-        self._estimate.set_text("" if seconds is None else f"Will take about {duration_words(seconds)}.")
+        self._estimate.set_text(
+            ""
+            if seconds is None
+            else Message("Will take about {duration_words}.", duration_words=duration_words(seconds))
+        )
 
     async def ask(self) -> None:
         """Add the simulation to the queue if its values are valid."""
@@ -197,7 +201,7 @@ class _Form:
         except SkisnowError as error:
             self._refuse(error)
             return
-        self._status.set_text(f"{job.shown_name} is in the queue.")
+        self._status.set_text(Message("{shown_name} is in the queue.", shown_name=job.shown_name))
         self._status.classes(remove="bad")
 
     def _refuse(self, error: SkisnowError) -> None:
@@ -208,7 +212,7 @@ class _Form:
         if faulty is not None:
             faulty.refuse(words)
             faulty.focus()
-        self._status.set_text(f"Not begun: {words}")
+        self._status.set_text(Message("Not begun: {words}", words=words))
         self._status.classes(add="bad")
 
     async def _add_job(self, scenario: str, changes: dict[str, str]) -> Job:
@@ -220,24 +224,24 @@ class _Form:
         if ski != GIVEN:
             word = self._skis.word(ski)
             changes["ski.name" if word == ski else "ski.file"] = word
-            chosen.append(f"ski: {ski}")
+            chosen.append(Message("ski: {ski}", ski=ski))
         if self._course.value != GIVEN:
             chosen.append(self._give_course(str(self._course.value), changes))
         files: dict[str, tuple[str, bytes]] = {}
         if snow is not None and snow.analysis is not None:
             results, words = await self._results(snow, scenario, changes)
             files = {"snow.results": (SNOW_FILE, results)}
-            chosen.append(f"snow: {snow.words}, {words}")
+            chosen.append(Message("snow: {name}, {values}", name=snow.words, values=words))
         else:
             if snow is not None:
                 changes["snow.published"] = snow.published
-                chosen.append(f"snow: {snow.words}, {snow_words(snow.snow)}")
+                chosen.append(Message("snow: {name}, {values}", name=snow.words, values=snow_words(snow.snow)))
             await run.io_bound(require_scenario, scenario, changes)
         return self._runs.ask(
             scenario,
             changes,
             files=files,
-            given="; ".join(chosen),
+            given="; ".join(map(str, chosen)),
             language=language_of(self._ski.client),
             title=" ".join(
                 (
@@ -299,22 +303,29 @@ def _course_form() -> None:
     """Form for a course."""
     with ui.element("details"):
         with ui.element("summary"):
-            Words("Add a course")
+            Words(Message("Add a course"))
         sentence(
-            "CSV with the columns gate, x_m, y_m, side (left or right, where the pole is passed), in m down the fall "
-            "line and to the left; or GPX with a waypoint for each gate, which needs the compass direction of x under "
-            "Expert inputs. What was typed above is lost.",
+            Message(
+                "CSV with the columns gate, x_m, y_m, side (left or right, where the pole is passed), in "
+                "m down the fall line and to the left; or GPX with a waypoint for each gate, which needs "
+                "the compass direction of x under Expert inputs. What was typed above is lost."
+            ),
             "quiet",
         )
         with upload_form(COURSE_UPLOAD).classes("acts"):
-            file_input("file", "Course", "course-file", "accept=.csv,.gpx")
-            submit_button("Add the course")
+            file_input("file", Message("Course"), "course-file", "accept=.csv,.gpx")
+            submit_button(Message("Add the course"))
+
+
+def with_given(names: Sequence[str]) -> dict[str, str]:
+    """Options of a menu whose first entry leaves the scenario as it is."""
+    return {GIVEN: Message("as in the scenario"), **{name: name for name in names}}
 
 
 def _changes_in_words(changes: dict[str, str]) -> str:
     from ...scenario.keys import SCENARIO_KEYS
 
-    return ", ".join(f"{called(SCENARIO_KEYS[key])}: {value}" for key, value in changes.items())
+    return ", ".join(f"{called(SCENARIO_KEYS[key])}: {number_said(value)}" for key, value in changes.items())
 
 
 def _rename(runs: Runs, title: ui.input, name: str) -> None:
@@ -332,8 +343,13 @@ class _Card:
             self._words = sentence("", "quiet").props("aria-live=polite")
             self._progress = sentence("", "quiet progress")  # not announced, as it changes each second
             with ui.element("div").classes("acts"):
-                self._cancel = named(button("Cancel", lambda: act(runs.cancel, job.name)), f"Cancel {job.name}")
-                self._watch = named(link("Watch", show_address(job.name), "main"), f"Watch {job.name}")
+                self._cancel = named(
+                    button(Message("Cancel"), lambda: act(runs.cancel, job.name)),
+                    Message("Cancel {name}", name=job.name),
+                )
+                self._watch = named(
+                    link(Message("Watch"), show_address(job.name), "main"), Message("Watch {name}", name=job.name)
+                )
             with ui.element("details"):
                 with ui.element("summary"):
                     Words(Message("Rename"))
@@ -343,8 +359,9 @@ class _Card:
     def show(self, job: Job) -> None:
         self._title.set_text(job.shown_name)
         changed = _changes_in_words({key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME})
-        self._words.set_text(" · ".join(filter(None, (job.scenario, changed, job.given, job.state, job.said))))
-        self._progress.set_text(self._runs.progress if job.state == "running" else "")
+        parts = (job.scenario, changed, job.given, STATES[job.state], job.said)
+        self._words.set_text(joined([part for part in parts if part], " · "))
+        self._progress.set_text(progress_words(self._runs.progress) if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))
         self._cancel.set_visibility(job.state in ("waiting", "running"))
         self._watch.set_visibility((self._runs.folder / job.name / RUN_FILE).is_file())

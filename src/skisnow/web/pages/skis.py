@@ -22,18 +22,18 @@ from ..ski_uploads import SkiImportForms
 from ..subprocesses import SKI_BOUNDS, confined
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from ..settings import Lab
 
 PATH: Final = "/skis"
-TITLE: Final = "Skis"
-ALONG: Final = "Position (m), boot = 0"
+TITLE: Final = Message("Skis")
+ALONG: Final = Message("Position (m), boot = 0")
 PANELS: Final = {
-    "half_width_mm": "Edge (mm)",
-    "base_height_mm": "Base (mm)",
-    "EI_N_m2": "EI (N m²)",
-    "GJ_N_m2": "GJ (N m²)",
+    "half_width_mm": Message("Edge (mm)"),
+    "base_height_mm": Message("Base (mm)"),
+    "EI_N_m2": Message("EI (N m²)"),
+    "GJ_N_m2": Message("GJ (N m²)"),
 }
 STIFFNESSES: Final = ("EI_N_m2", "GJ_N_m2")
 
@@ -44,7 +44,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH, response_timeout=BUILD_S)
     async def show_skis(ski: str = "", added: str = "") -> None:
-        with framed("Skis", here=PATH):
+        with framed(Message("Skis"), here=PATH):
             page = _Skis(skis, ski)
         if added and ski in skis.saved():
             page.show_added(ski)
@@ -53,6 +53,11 @@ def add_page(lab: Lab) -> None:
 
 def _check_confined(text: str, table: str) -> None:
     confined(SKI_BOUNDS, check_ski_texts, text, table)
+
+
+def _others(names: Sequence[str]) -> dict[str, str]:
+    """Options of the ski to compare with."""
+    return {NOTHING: Message("nothing"), EDITED: Message("the edited ski"), **{name: name for name in names}}
 
 
 class _Skis:
@@ -66,17 +71,23 @@ class _Skis:
         SkiImportForms(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
         self._told = ui.element("div")
         with ui.element("div").classes("fields"):
-            self._first = choice("Ski", names, chosen)
-            self._second = choice("Compared with", [NOTHING, EDITED, *names], NOTHING)
+            self._first = choice(Message("Ski"), names, chosen)
+            self._second = choice(Message("Compared with"), _others(names), NOTHING)
         self._status = Words("").classes("status").props("role=status")
         self._facts = ui.element("div").classes("table")
         with ui.element("div").classes("two"):
-            with named(ui.element("section").classes("drawing"), "Drawing"):
+            with named(ui.element("section").classes("drawing"), Message("Drawing")):
                 self._charts = {
-                    key: LineChart(ALONG, title, f"{title} along the ski", height=190, ends=("tail", "tip"))
+                    key: LineChart(
+                        ALONG,
+                        title,
+                        Message("{title} along the ski", title=title),
+                        height=190,
+                        ends=(Message("tail"), Message("tip")),
+                    )
                     for key, title in PANELS.items()
                 }
-            with named(ui.element("section"), "Editor"):
+            with named(ui.element("section"), Message("Editor")):
                 self._editor = SkiEditor(skis, chosen, self._follow)
                 self._checked = skis.texts(chosen)
                 self._add_saving()
@@ -85,13 +96,13 @@ class _Skis:
 
     def _add_saving(self) -> None:
         with ui.element("div").classes("acts"):
-            button("Begin again from the ski above", self._begin)
-        heading("Save it", 3)
+            button(Message("Begin again from the ski above"), self._begin)
+        heading(Message("Save it"), 3)
         with ui.element("div").classes("fields"):
-            self._name = field("New name")
+            self._name = field(Message("New name"))
         with ui.element("div").classes("acts"):
-            button("Save in the lab", self._save, "main", once=True)
-            button("Download the file", self._download)
+            button(Message("Save in the lab"), self._save, "main", once=True)
+            button(Message("Download the file"), self._download)
         self._saved = Words("").classes("status").props("role=status")
         self._next = ui.element("div").classes("acts")
 
@@ -153,19 +164,20 @@ class _Skis:
             return
         names = self._skis.names()
         self._first.set_options(names)
-        self._second.set_options(option_texts([NOTHING, EDITED, *names]))
+        self._second.set_options(option_texts(_others(names)))
         self._second.set_value(name)  # which draws it
-        _show_status(self._saved, f"Saved: {name}. Carve and Simulate have it too.", bad=False)
+        _show_status(self._saved, Message("Saved: {name}. Carve and Simulate have it too.", name=name), bad=False)
         first = str(self._first.value)
         self._next.clear()
         with self._next:
-            link("Carve both side by side", carving(first, name), "main")
+            link(Message("Carve both side by side"), carving(first, name), "main")
 
     def show_added(self, name: str) -> None:
         """Show that a measured ski was added."""
         with self._told:
             sentence(
-                f"The ski {name} is added. Carve and Simulate have it too; below it can be changed.", "good"
+                Message("The ski {name} is added. Carve and Simulate have it too; below it can be changed.", name=name),
+                "good",
             ).props("role=status")
 
     def _save_edited(self, name: str, edit: SkiEditInput) -> None:

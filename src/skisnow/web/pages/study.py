@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
-from ..._support.messages import Message
+from ..._support.messages import Message, joined
 from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
 from ..elements import Words, button, choice, link, named, option_texts
 from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
-from ..language import language_of, said, said_list
+from ..language import language_of, said
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
-from ..runs import Runs
+from ..runs import STATES, Runs, progress_words
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
 from ..studies import Studies, StudyJob, estimate_words, unit_s
@@ -24,7 +24,7 @@ from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..words import typed_number
 from .carve import OF_SNOW as CARVE_SNOW
 from .carve import SLIDERS
-from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert
+from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, with_given
 from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address
 
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from ..settings import Lab
 
 PATH: Final = "/study"
-TITLE: Final = "Study"
-CARVED: Final = "carved turns"
+TITLE: Final = Message("Study")
+CARVED: Final = Message("carved turns")
 OTHER: Final = ""
 FIRST: Final = {
     CARVE: ("edge_angle_deg", "13"),
@@ -54,15 +54,15 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def study() -> None:
-        with framed("Study", here=PATH):
+        with framed(Message("Study"), here=PATH):
             _Form(lab, studies)
-            JobList(studies, _Card, "Nothing was studied yet.")
+            JobList(studies, _Card, Message("Nothing was studied yet."))
 
 
 class _CarveField(ScenarioField):
     """Field of a number of a carved turn."""
 
-    where = "a turn usually"
+    where = Message("a turn usually")
 
     def typed_value(self) -> object:
         """The number, which can be "inf"."""
@@ -80,21 +80,23 @@ class _Form:
         self._fields: dict[str, ScenarioField] = {}
         self._axes: list[AxisFields] = []
         with ui.element("div").classes("fields"):
-            self._of = choice("What is studied", {CARVE: CARVED, **{name: name for name in scenario_names()}}, CARVE)
-            self._ski = choice("Ski", self._skis.names(), self._skis.names()[0])
+            self._of = choice(
+                Message("What is studied"), {CARVE: CARVED, **{name: name for name in scenario_names()}}, CARVE
+            )
+            self._ski = choice(Message("Ski"), self._skis.names(), self._skis.names()[0])
             self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         self._of.on_value_change(self._draw)
         with redrawn_by(self._of):
-            heading("What varies", 2)
+            heading(Message("What varies"), 2)
             self._varied = ui.element("div")
-            heading("What is fixed", 2)
+            heading(Message("What is fixed"), 2)
             self._inputs = ui.element("div")
         with ui.element("div").classes("acts"):
-            button("Start the study", self.ask, "main", once=True)
+            button(Message("Start the study"), self.ask, "main", once=True)
             self._estimate = Words("").classes("quiet").props("role=status")
         self._status = Words("").classes("status").props("role=status")
         if studies.elsewhere:
-            sentence(f"The workers of {studies.elsewhere} compute.", "quiet")
+            sentence(Message("The workers of {elsewhere} compute.", elsewhere=studies.elsewhere), "quiet")
         self._draw()
 
     @property
@@ -103,8 +105,9 @@ class _Form:
 
     def _draw(self) -> None:
         of = str(self._of.value)
-        names = self._skis.names() if self._is_carve else [GIVEN, *self._skis.names()]
-        self._ski.set_options(option_texts(names), value=names[0])
+        skis = self._skis.names()
+        names = {name: name for name in skis} if self._is_carve else with_given(skis)
+        self._ski.set_options(option_texts(names), value=next(iter(names)))
         for place in (self._varied, self._inputs):
             place.clear()
         keys = study_keys(of)
@@ -114,8 +117,8 @@ class _Form:
         with self._varied:
             first = FIRST.get(of, FIRST[OTHER])
             self._axes = [
-                AxisFields("First input", keys, first, self._follow),
-                AxisFields("Second input", keys, None, self._follow),
+                AxisFields(Message("First input"), keys, first, self._follow),
+                AxisFields(Message("Second input"), keys, None, self._follow),
             ]
         self._fields = {}
         with self._inputs:
@@ -141,7 +144,7 @@ class _Form:
         draw(basic(values))
         with ui.element("details").classes("expert"):
             with ui.element("summary"):
-                Words("Expert inputs")
+                Words(Message("Expert inputs"))
             for section, words in SECTION_WORDS.items():
                 if names := [name for name in expert(values) if name.startswith(f"{section}.")]:
                     heading(words, 3)
@@ -209,7 +212,7 @@ class _Form:
             self._status.classes(add="bad")
             return
         if job is not None:
-            self._status.set_text(f"{job.name} is in the queue.")
+            self._status.set_text(Message("{name} is in the queue.", name=job.name))
             self._status.classes(remove="bad")
 
     def _question(self) -> StudyQuestion:
@@ -254,18 +257,18 @@ class _Form:
             text, table = self._skis.texts(ski)
             texts = {f"ski/{FILE}": text.encode("utf-8")} | ({f"ski/{TABLE}": table.encode("utf-8")} if table else {})
         key = "ski" if self._is_carve else "ski.name" if word == ski else "ski.file"
-        return {key: ski if word == ski else f"ski/{FILE}"}, texts, [f"ski: {ski}"]
+        return {key: ski if word == ski else f"ski/{FILE}"}, texts, [Message("ski: {ski}", ski=ski)]
 
     def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
         snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."
         if snow is None:
             return {}, {}, []
         if snow.analysis is None:
-            return {f"{lead}published": snow.published}, {}, [f"snow: {snow.words}"]
+            return {f"{lead}published": snow.published}, {}, [Message("snow: {snow}", snow=snow.words)]
         where: dict[str, InputValue] = {f"{lead}results": RESULTS}
         if snow.site:
             where[f"{lead}site"] = snow.site
-        return where, {RESULTS: results_json(snow.analysis.results)}, [f"snow: {snow.words}"]
+        return where, {RESULTS: results_json(snow.analysis.results)}, [Message("snow: {snow}", snow=snow.words)]
 
 
 class _Card:
@@ -278,18 +281,21 @@ class _Card:
             self._words = sentence("", "quiet").props("aria-live=polite")
             self._progress = sentence("", "quiet progress")
             with ui.element("div").classes("acts"):
-                cancel = button("Cancel", lambda: act(studies.cancel, job.name))
-                self._cancel = named(cancel, f"Cancel {job.name}")
-                self._go_on = named(button("Go on", lambda: act(studies.go_on, job.name)), f"Go on with {job.name}")
-                table = link("Table and figure", table_address(job.name), "main")
-                self._table = named(table, f"Table and figure of {job.name}")
+                cancel = button(Message("Cancel"), lambda: act(studies.cancel, job.name))
+                self._cancel = named(cancel, Message("Cancel {name}", name=job.name))
+                self._go_on = named(
+                    button(Message("Go on"), lambda: act(studies.go_on, job.name)),
+                    Message("Go on with {name}", name=job.name),
+                )
+                table = link(Message("Table and figure"), table_address(job.name), "main")
+                self._table = named(table, Message("Table and figure of {name}", name=job.name))
 
     def show(self, job: StudyJob) -> None:
         """Show the state of the study."""
         of = CARVED if job.scenario == CARVE else job.scenario
-        varied = said_list(job.given, self._words.client)
-        self._words.set_text(" · ".join(filter(None, (of, varied, job.state, job.said))))
-        self._progress.set_text(self._studies.progress if job.state == "running" else "")
+        varied = job.given
+        self._words.set_text(joined([part for part in (of, varied, STATES[job.state], job.said) if part], " · "))
+        self._progress.set_text(progress_words(self._studies.progress) if job.state == "running" else "")
         self._progress.set_visibility(bool(self._progress.text))
         self._cancel.set_visibility(job.state in ("waiting", "running"))
         self._go_on.set_visibility(job.state in ("cancelled", "failed"))

@@ -12,11 +12,11 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from ..._support.errors import ParameterError
-from ..._support.language import ENGLISH
+from ..._support.messages import ENGLISH, Message
 from ..._support.outcomes import outcome_words
 from ...report.formatting import significant
 from ..elements import Words, choice, link, named
-from ..language import language_of, said, said_list
+from ..language import language_of, number_said, said
 from ..layout import error_sentence, framed, heading, plain_page, sentence
 from ..line_chart import BEHIND, ChartLine, LineChart
 from ..scenario_fields import called, written
@@ -35,20 +35,20 @@ ALL: Final = "study.zip"
 ROWS: Final = 200
 """Maximum number of rows on the page; the file has all."""
 OF_CARVES: Final = {
-    "turn_radius_boot_m": "Carved radius (m)",
-    "side_force_N": "Side force (N)",
-    "side_force_limit_N": "Shear capacity of the snow (N)",
-    "total_force_N": "Total force of the snow (N)",
-    "contact_length_m": "Contact length (m)",
-    "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
+    "turn_radius_boot_m": Message("Carved radius (m)"),
+    "side_force_N": Message("Side force (N)"),
+    "side_force_limit_N": Message("Shear capacity of the snow (N)"),
+    "total_force_N": Message("Total force of the snow (N)"),
+    "contact_length_m": Message("Contact length (m)"),
+    "greatest_edge_depth_mm": Message("Greatest depth of the edge (mm)"),
 }
 OF_RUNS: Final = {
-    "run_length_m": "Length of the run (m)",
-    "simulated_s": "Simulated time (s)",
-    "end_speed_m_per_s": "Speed at the end (m/s)",
-    "turn_radius_median_m": "Median turn radius (m)",
-    "greatest_edge_depth_mm": "Greatest depth of the edge (mm)",
-    "lost_friction_J": "Energy lost to friction (J)",
+    "run_length_m": Message("Length of the run (m)"),
+    "simulated_s": Message("Simulated time (s)"),
+    "end_speed_m_per_s": Message("Speed at the end (m/s)"),
+    "turn_radius_median_m": Message("Median turn radius (m)"),
+    "greatest_edge_depth_mm": Message("Greatest depth of the edge (mm)"),
+    "lost_friction_J": Message("Energy lost to friction (J)"),
 }
 TYPES: Final = {STUDY: "application/toml", TABLE: "text/csv", FIGURE: "image/svg+xml"}
 NO_SCRIPTS: Final = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
@@ -72,12 +72,12 @@ def add_page(lab: Lab) -> None:
         result = await run.io_bound(studies.table, name)
         if result is None:
             raise ParameterError("the lab is about to end", code="lab_ends")
-        with framed("Study", here=HERE):
+        with framed(Message("Study"), here=HERE):
             job = next((job for job in studies.jobs() if job.name == name), None)
             _show_inputs(job)
             with ui.element("div").classes("acts"):
-                link("Download everything", _file_address(name, ALL), "main")
-                link("Download the table", _file_address(name, TABLE))
+                link(Message("Download everything"), _file_address(name, ALL), "main")
+                link(Message("Download the table"), _file_address(name, TABLE))
             _ResultsView(*result)
             if (studies.folder / name / FIGURE).is_file():
                 _show_map(name, job.language if job is not None else ENGLISH)
@@ -90,7 +90,7 @@ def add_page(lab: Lab) -> None:
                 return FileResponse(place, media_type=TYPES[file], headers={"content-security-policy": NO_SCRIPTS})
             folder = studies.file(name, TABLE).parent
         except ParameterError as error:
-            return plain_page("This cannot be shown", error_sentence(error), 404, request)
+            return plain_page(Message("This cannot be shown"), error_sentence(error), 404, request)
         packed = io.BytesIO()
         await run_in_threadpool(lambda: write_zip(studies.files_of(folder), packed))
         headers = {"content-disposition": 'attachment; filename="study.zip"'}
@@ -101,17 +101,19 @@ def _show_inputs(job: Job | None) -> None:
     """Show the varied and the fixed inputs."""
     if job is not None:
         keys = study_keys(job.scenario)
-        sentence(said_list(job.given), "quiet")
-        sentence(said_list("; ".join(f"{called(keys[name])}: {value}" for name, value in job.changes.items())), "quiet")
+        sentence(job.given, "quiet")
+        sentence(
+            "; ".join(f"{called(keys[name])}: {number_said(value)}" for name, value in job.changes.items()), "quiet"
+        )
 
 
 def _show_map(name: str, language: str) -> None:
-    with named(ui.element("figure").classes("map").props("tabindex=0 role=region"), "Map"):
+    with named(ui.element("figure").classes("map").props("tabindex=0 role=region"), Message("Map")):
         ui.element("img").props(f'src="{_file_address(name, FIGURE)}"').props["alt"] = said(
-            "Turn radius over the inputs that vary, as skisnow study draws it"
+            Message("Turn radius over the inputs that vary, as skisnow study draws it")
         )
     if language_of() != language == ENGLISH:
-        sentence("Figures and the report are in English.", "quiet")
+        sentence(Message("Figures and the report are in English."), "quiet")
 
 
 class _ResultsView:
@@ -126,7 +128,7 @@ class _ResultsView:
         self._other = others[0] if others else ""
         self._lines = values.get(self._other, [None])
         self._results = dict(OF_CARVES if of == CARVE else OF_RUNS)
-        self._shown = choice("Result", self._results, next(iter(self._results)))
+        self._shown = choice(Message("Result"), self._results, next(iter(self._results)))
         self._chart = ui.element("div")
         self._shown.on_value_change(self._draw)
         self._draw()
@@ -137,7 +139,7 @@ class _ResultsView:
         x, y = called(self._keys[self._x]), self._results[result]
         self._chart.clear()
         with self._chart:
-            chart = LineChart(x, y, f"Chart of {y} over {x}", height=320)
+            chart = LineChart(x, y, Message("Chart of {y} over {x}", y=y, x=x), height=320)
         chart.show([self._line(number, result) for number in self._order()])
 
     def _order(self) -> list[int]:
@@ -151,18 +153,18 @@ class _ResultsView:
         rows = [row for row in self._table.rows if not self._other or row[self._other] == value]
         rows.sort(key=lambda row: row[self._x])
         styles = {column: style for style, column in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
-        other = f"{said(called(self._keys[self._other]))}: {_short(value)}" if self._other else ""
+        other = f"{called(self._keys[self._other])}: {_short(value)}" if self._other else ""
         name = other if number in styles else ""
         x, y = ([row[column] for row in rows] for column in (self._x, result))
         return ChartLine(x, y, styles.get(number, BEHIND), name=name)
 
     def _rows(self, study: Study) -> None:
-        heading("Table")
+        heading(Message("Table"))
         columns = {name: called(self._keys[name]) for name in study.varied} | self._results
-        place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), "Table")
+        place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), Message("Table"))
         with place, ui.element("table"):
             with ui.element("thead"), ui.element("tr"):
-                for words in (*columns.values(), "Outcome"):
+                for words in (*columns.values(), Message("Outcome")):
                     with ui.element("th").props("scope=col"):
                         Words(words)
             with ui.element("tbody"):
@@ -170,17 +172,24 @@ class _ResultsView:
                     _add_row(row, list(columns))
         if len(self._table.rows) > ROWS:
             sentence(
-                f"The first {ROWS} of {len(self._table.rows)} rows; the file has all of them and all columns.", "note"
+                Message(
+                    "The first {rows} of {n_rows} rows; the file has all of them and all columns.",
+                    rows=ROWS,
+                    n_rows=len(self._table.rows),
+                ),
+                "note",
             )
 
 
 def _short(value: Any) -> str:
     """A value of a varied input with four digits as in the map."""
-    return f"{value:.4g}" if isinstance(value, float) else written(value)
+    return number_said(f"{value:.4g}") if isinstance(value, float) else written(value)
 
 
 def _add_row(row: dict[str, Any], columns: list[str]) -> None:
-    outcome = outcome_words(str(row["outcome"])) + (f": {row['reason']}" if row["outcome"] == "error" else "")
+    outcome = outcome_words(str(row["outcome"]))
+    if row["outcome"] == "error":
+        outcome = Message("error: {reason}", reason=row["reason"])
     with ui.element("tr"):
         for name in columns:
             with ui.element("td").classes("n"):

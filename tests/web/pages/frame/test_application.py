@@ -13,7 +13,8 @@ import uvicorn
 from uvicorn.server import ServerState
 
 import skisnow.web
-from skisnow._support.language import languages
+from skisnow._support.messages import Message as Text
+from skisnow._support.messages import languages
 from skisnow.web.application import _set_language
 from skisnow.web.guard import Tries, answer_to_token, token_page
 from skisnow.web.server import TimeLimitedProtocol
@@ -126,7 +127,7 @@ def test_the_form_of_the_token_in_both_languages() -> None:
     assert (answer.status_code, answer.headers["cache-control"]) == (401, "no-store")
     for part in ('<html lang="en">', '<p role="status">', 'action="/token"', '<label for="token">'):
         assert part in page
-    german = text_of(token_page(scope_of("de"), 403, "This is not the token."))
+    german = text_of(token_page(scope_of("de"), 403, Text("This is not the token.")))
     assert '<html lang="de">' in german and "This is" not in german
 
 

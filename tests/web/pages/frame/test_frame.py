@@ -12,6 +12,7 @@ import pytest
 from nicegui import ui
 from starlette.requests import Request
 
+from skisnow._support.messages import Message
 from skisnow.web.elements import FIRST, TypedField, button, field
 from skisnow.web.language import (
     language_asked,
@@ -65,7 +66,7 @@ def test_the_content_is_closed_until_the_browser_is_connected(desk: Desk) -> Non
 
 
 def test_a_field_has_its_name_above_it_in_the_language_of_the_page(desk: Desk) -> None:
-    plain = made(desk, lambda: field("Width (mm)", "7"), "de")
+    plain = made(desk, lambda: field(Message("Width (mm)"), "7"), "de")
     assert isinstance(plain, TypedField)
     assert (plain.value, plain.props["label"], plain.classes) == ("7", "Breite (mm)", ["field"])
     assert "stack-label" in plain.props and plain.props["autocomplete"] == "off"
@@ -91,7 +92,7 @@ def test_a_button_that_acts_once_tells_presses_apart(desk: Desk) -> None:
         return [(each.type, each.js_handler) for each in element._event_listeners.values()]
 
     page = desk.open("/carve", "de")
-    often = desk.do(lambda: button("Add this ski", lambda: pressed.append("often")), page.client)
+    often = desk.do(lambda: button(Message("Add this ski"), lambda: pressed.append("often")), page.client)
     once = desk.do(lambda: button("Once", lambda: pressed.append("once"), "main", once=True), page.client)
     assert (often.text, often.classes, once.classes) == ("Diesen Ski hinzufügen", ["act"], ["act", "main"])
     assert "no-caps" in often.props and "color" not in often.props

@@ -303,7 +303,7 @@ def test_cells_are_written_as_in_the_language_of_the_page(desk: Desk) -> None:
     page.shows("65,0 bis 195 (carver)")
     assert page.field("Breite (mm) bei 0,537 m").value == "99,33"
     page.fill("EI ×", "1,5")
-    page.shows("100 bis 690 (carver, carver, bearbeitet)")
+    page.shows("100 bis 690 (carver, carver, edited)")
     page.shows("field EI (N m²) bei 0,268 m = '529,7' numeric")
     page.fill("Neuer Name", "meiner")
     page.press("Im Labor speichern")
