@@ -270,14 +270,14 @@ def test_loads_do_not_chatter_from_ski_to_ski() -> None:
 
 
 def test_left_and_right_mirror() -> None:
-    """The first turn."""
+    """The first turn. With the fast method rounding decides where iterations end, and the ends differ by 0.2 mm."""
     ends = []
     for to_left in (True, False):
-        turn = tall(Skier(first_turn=0.3, first_to_left=to_left), duration_s=1.2)
+        turn = tall(Skier(first_turn=0.3, first_to_left=to_left), duration_s=1.2, method="default")
         ends.append(simulate(turn).place[-1])
     assert abs(ends[0][1]) > 0.02
-    assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-4)
-    assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-4)
+    assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-9)
+    assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-9)
 
 
 def test_who_carves_too_fast_falls() -> None:

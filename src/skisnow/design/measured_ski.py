@@ -326,7 +326,7 @@ def stiffness_of_tests(
     Examples
     --------
     >>> ends = np.array([0.2, -0.2]), np.array([0.3, 0.3])
-    >>> stiffness_of_tests(*ends, np.full(2, 0.3**3 / 48 / 250), np.zeros(2), bend=True).value.round(3)
+    >>> stiffness_of_tests(*ends, np.full(2, 0.3**3 / 48 / 250), np.zeros(2), bend=True).value.round(2)
     array([250., 250.])
     """
     rising = station[::-1]

@@ -27,6 +27,7 @@ WINDOW: Final = 5.0 * MM
 def snow_density_a(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
     """ρ = 315.61 + 46.94 ln F - 43.94 L ln F - 88.15 L in kg/m³; F median force (N), L element size (mm).
 
+    >>> import numpy as np
     >>> round(float(snow_density_a(np.array(1.0), np.array(0.5e-3))), 3)
     271.535
     """
@@ -36,6 +37,7 @@ def snow_density_a(median_force: FloatArray, element_size: FloatArray) -> FloatA
 def snow_density_b(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
     """ρ = 312.54 + 50.27 ln F - 50.26 L ln F - 85.35 L in kg/m³; F median force (N), L element size (mm).
 
+    >>> import numpy as np
     >>> round(float(snow_density_b(np.array(1.0), np.array(0.5e-3))), 3)
     269.865
     """
