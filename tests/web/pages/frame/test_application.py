@@ -305,3 +305,10 @@ def test_a_head_without_an_end_is_cut_off_and_each_request_is_counted_by_itself(
             assert server.wire.closed
 
     finished(talk())
+
+
+def test_pages_have_the_styles_of_the_lab_alone(desk: Desk) -> None:
+    """A second style sheet, such as Tailwind's, would reset headings and lists."""
+    page = desk.get("/carve").text
+    assert "/lab.css" in page
+    assert "tailwindcss" not in page
