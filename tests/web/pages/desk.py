@@ -210,10 +210,13 @@ class Desk:
         self._thread.join()
 
     def empty(self) -> None:
-        """Take all pages away, and everything out of store and folder."""
+        """Close all pages, wait for the work that they began, and delete everything in store and folder."""
+        self.do(_close_all)
+        end = time.monotonic() + PATIENCE_S
+        while self.do(_is_busy) and time.monotonic() < end:
+            time.sleep(0.005)
         self.failures.clear()
         self.errors.clear()
-        self.do(_close_all)
         with writing(self.lab.store.engine) as connection:
             for table in reversed(metadata.sorted_tables):
                 connection.execute(table.delete())
@@ -267,6 +270,12 @@ class Desk:
 def _close_all() -> None:
     for each in list(Client.instances.values()):
         each.delete()
+
+
+def _is_busy() -> bool:
+    """Whether work of a page still runs; the framework's loops, which sleep most of the time, do not count."""
+    names = (getattr(task.get_coro(), "__qualname__", "") for task in background_tasks.running_tasks)
+    return any(name not in {"Outbox.loop", "Timer._run_in_loop"} for name in names)
 
 
 def _listen(sheet: Sheet) -> None:
