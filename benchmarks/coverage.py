@@ -1,7 +1,7 @@
 """Bias and coverage of the coefficients b of the paper's rows over simulated campaigns: ``python -m
 benchmarks.coverage``.
 
-The intervals are the bootstrap intervals of the model table. Prints the Markdown table of docs/validation/intervals.md.
+The intervals are the bootstrap intervals of the model table. Writes a table of docs/validation/intervals.md.
 Intervals of each series are in ``benchmarks.campaign_intervals``.
 """
 
@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.campaign_intervals import HALF_AS_MUCH_AGAIN
+from benchmarks.page_tables import write_tables
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.model_choice import bootstrap_intervals
@@ -79,22 +80,22 @@ def table(condition: str, outcomes: list[dict[str, Outcome]]) -> list[str]:
 
 
 def main() -> None:
-    """Print the table."""
+    """Write the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.coverage")
     parser.add_argument("--campaigns", type=int, default=1000)
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
-    print(f"{options.campaigns} campaigns each, seeds from {FIRST_SEED} on, {N_RESAMPLES} resamples\n")
-    print("| errors in the data | coefficient | mean error | rms error | coverage of 95 % |")
-    print("| --- | --- | ---: | ---: | ---: |")
+    lines = ["| errors in the data | coefficient | mean error | rms error | coverage of 95 % |"]
+    lines.append("| --- | --- | ---: | ---: | ---: |")
     start = time.monotonic()
     with ProcessPoolExecutor(options.workers) as pool:
         for condition, noise in CONDITIONS.items():
             outcomes = list(
                 pool.map(partial(simulate, noise=noise), range(FIRST_SEED, FIRST_SEED + options.campaigns), chunksize=5)
             )
-            print("\n".join(table(condition, outcomes)), flush=True)
+            lines += table(condition, outcomes)
             print(f"{condition}: {time.monotonic() - start:.0f} s", file=sys.stderr)
+    write_tables("validation/intervals", {"coefficients": lines})
 
 
 if __name__ == "__main__":

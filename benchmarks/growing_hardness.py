@@ -11,6 +11,7 @@ from itertools import product
 
 import numpy as np
 
+from benchmarks.page_tables import write_tables
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.layering import growing_hardness, site_growth
 from skisnow.estimation.readings import Readings, ReadingUncertainty
@@ -77,11 +78,12 @@ def row(hardness: float, growth: float, count: int) -> str:
 
 
 def main() -> None:
-    """Print the table."""
+    """Write the table of docs/validation/intervals.md."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.growing_hardness")
     parser.add_argument("--series", type=int, default=30_000)
     count = parser.parse_args().series
-    print("\n".join([*HEAD, *(row(H, growth, count) for H, growth in product((1e8, 1e9, 1e10), (0.0, 0.2, 0.5)))]))
+    lines = [*HEAD, *(row(H, growth, count) for H, growth in product((1e8, 1e9, 1e10), (0.0, 0.2, 0.5)))]
+    write_tables("validation/intervals", {"growing-hardness": lines})
 
 
 if __name__ == "__main__":

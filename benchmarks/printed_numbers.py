@@ -1,6 +1,6 @@
 """Numbers of Mössner and others (2013) beside skisnow's: ``python -m benchmarks.printed_numbers``.
 
-Prints the two Markdown tables of the page on validation. Numbers that follow from other printed numbers are computed;
+Writes the two tables of the page on validation. Numbers that follow from other printed numbers are computed;
 those that need the paper's raw data, which are not public, are computed from simulated campaigns of the paper's design.
 """
 
@@ -15,6 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 import skisnow
+from benchmarks.page_tables import write_tables
 from skisnow._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from skisnow.campaign import reference_campaign
 from skisnow.forces.shear.machining import MachiningShear
@@ -149,11 +150,15 @@ def simulated(seeds: range) -> dict[str, list[float]]:
     return numbers
 
 
-def tables(seeds: range) -> list[str]:
-    """Both tables in Markdown."""
+def derived_table() -> list[str]:
+    """Numbers that follow from printed ones, in Markdown."""
     lines = ["| follows from printed numbers | printed | ours |", "| --- | ---: | ---: |"]
-    lines += [f"| {row.what} | {row.printed:g} | {row.ours:.3g} |" for row in derived()]
-    lines += ["", f"| *synthetic*, {len(seeds)} campaigns | printed | median | range |", "| --- | ---: | ---: | ---: |"]
+    return lines + [f"| {row.what} | {row.printed:g} | {row.ours:.3g} |" for row in derived()]
+
+
+def simulated_table(seeds: range) -> list[str]:
+    """Median and range of the other numbers, in Markdown."""
+    lines = [f"| *synthetic*, {len(seeds)} campaigns | printed | median | range |", "| --- | ---: | ---: | ---: |"]
     numbers = simulated(seeds)
     for name, printed in PRINTED.items():
         values = np.array(numbers.get(name, []), dtype=float)
@@ -163,10 +168,11 @@ def tables(seeds: range) -> list[str]:
 
 
 def main() -> None:
-    """Print the tables."""
+    """Write the tables."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.printed_numbers")
     parser.add_argument("--campaigns", type=int, default=200)
-    print("\n".join(tables(range(parser.parse_args().campaigns))))
+    seeds = range(parser.parse_args().campaigns)
+    write_tables("validation/index", {"printed-derived": derived_table(), "printed-simulated": simulated_table(seeds)})
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """How often each regression of the reference campaign is significant: ``python -m benchmarks.regressions``.
 
 The truth behind the synthetic campaign has S_f from density by Eqn 14 and its printed rmse, Eqn 13 on the soft snow,
-and no other relation. Prints a Markdown table; that of the documentation is its output for seeds 0 to 199.
+and no other relation. Writes the table of the page on the reference campaign, for seeds 0 to 199.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 
+from benchmarks.page_tables import write_tables
 from skisnow.campaign import reference_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.readings import readings_of
@@ -76,10 +77,10 @@ def _cells(response: str, predictor: str, group: str, count: Count) -> str:
 
 
 def main() -> None:
-    """Print the table."""
+    """Write the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.regressions")
     parser.add_argument("--campaigns", type=int, default=200)
-    print("\n".join(table(range(parser.parse_args().campaigns))))
+    write_tables("validation/reference-campaign", {"regressions": table(range(parser.parse_args().campaigns))})
 
 
 if __name__ == "__main__":

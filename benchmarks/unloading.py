@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from benchmarks.campaign_intervals import CLEAN
+from benchmarks.page_tables import write_tables
 from skisnow._support.units import MM
 from skisnow.campaign import ReferenceNoise, reference_campaign
 from skisnow.campaign.reference import design
@@ -77,11 +78,12 @@ def _cells(name: str, site: str, hardness_of_site: float, series: np.ndarray, si
 
 
 def main() -> None:
-    """Print the table."""
+    """Write the table of docs/validation/intervals.md."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.unloading")
     parser.add_argument("--campaigns", type=int, default=1000)
     seeds = range(parser.parse_args().campaigns)
-    print("\n".join([*HEAD, *(row for name, noise in CASES.items() for row in rows(name, noise, seeds))]))
+    lines = [*HEAD, *(row for name, noise in CASES.items() for row in rows(name, noise, seeds))]
+    write_tables("validation/intervals", {"unloading": lines})
 
 
 if __name__ == "__main__":

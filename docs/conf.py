@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -92,10 +93,26 @@ def _levels(app: Sphinx, page: str, template: str, context: dict[str, Any], doct
             context[part] = found.replace('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper')
 
 
+def _align_numbers(_app: Sphinx, doctree: Any) -> None:
+    """Columns of CSV tables whose cells begin with digits are on the right."""
+    from docutils import nodes
+
+    for table in doctree.findall(
+        lambda node: isinstance(node, nodes.table) and "colwidths-auto" not in node["classes"]
+    ):
+        rows = [row.children for row in table.findall(nodes.row)]
+        for column in zip(*rows, strict=False):
+            cells = [cell.astext() for cell in column[1:]]
+            if any(cells) and all(re.match(r"[-+−]?\d", cell) for cell in cells if cell):
+                for cell in column:
+                    cell["classes"].append("text-right")
+
+
 def setup(app: Sphinx) -> None:
     """Write tables of keys and schemas; register the renderer of equations, the reader of bars, levels of captions."""
     write_tables()
     write_schemas()
     app.connect("autodoc-process-docstring", _bars)
+    app.connect("doctree-read", _align_numbers)
     app.connect("html-page-context", _levels, priority=900)  # behind the theme's own
     app.add_html_math_renderer("mathml", (_visit_inline, None), (_visit_block, None))

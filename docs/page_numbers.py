@@ -1,6 +1,7 @@
 """Numbers that stand in the sentences and tables of pages; `docs/write_numbers.py` puts them there.
 
-A function bears the name of its page with its folder, and gets the folder in which the page's commands have run.
+A function bears the name of its page with its folder, and gets the folder in which the page's commands have run. A
+value that is a Markdown table becomes a CSV file of the page.
 """
 
 from __future__ import annotations
@@ -14,12 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from skisnow import read_snow
-from skisnow.campaign import reference_campaign as drawn_campaign
 from skisnow.cli import main
-from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
-from skisnow.estimation.models import ModelFit, fit_models
-from skisnow.estimation.readings import readings_of
-from skisnow.estimation.screening import screened_penetration
 from skisnow.report.formatting import significant
 
 DOCS = Path(__file__).resolve().parent
@@ -80,34 +76,6 @@ def how_to_carve(_folder: Path) -> dict[str, str]:
     return {**numbers, "tool depth": f"{max(at_rest['edge_depth_mm']):.1f}"}
 
 
-def validation_reference_campaign(_folder: Path) -> dict[str, str]:
-    """The rmse of the nine candidate models for seed 1, and the least and greatest of seeds 0 to 39 (N)."""
-    rmse = [{fit.model.id: fit.rmse for fit in _nine_rows(seed)} for seed in range(40)]
-    numbers = {}
-    for row in rmse[1]:
-        of_seeds = sorted(of[row] for of in rmse)
-        numbers[f"{_short(row)} seed 1"] = significant(rmse[1][row])
-        numbers[f"{_short(row)} seeds"] = f"{significant(of_seeds[0])}–{significant(of_seeds[-1])}"
-    return numbers
-
-
-def _nine_rows(seed: int) -> tuple[ModelFit, ...]:
-    campaign = drawn_campaign(seed).campaign()
-    assert campaign.penetration is not None
-    used = screened_penetration(campaign, geometry="extended").used
-    readings = readings_of(campaign.penetration, campaign.tools, geometry="extended").of(used)
-    return fit_models(readings, {name: hardness_at_largest_load(readings, of) for name, of in DEFINITIONS.items()})
-
-
-def _short(row: str) -> str:
-    """Without what a mark cannot hold.
-
-    >>> _short("H_V:a=none,b=one")
-    'H_V none one'
-    """
-    return re.sub(r"[:,]?[ab]=|:", " ", row).strip()
-
-
 def tutorials_campaign(folder: Path) -> dict[str, str]:
     """What the sentences about the report say."""
     results = json.loads((folder / "results" / "results.json").read_text(encoding="utf-8"))
@@ -158,11 +126,11 @@ def _percent(value: float) -> str:
 
 
 def validation_turn_contrast(_folder: Path) -> dict[str, str]:
-    """What the pairs in docs/gallery/contrast say; no run is computed."""
-    sys.path.append(str(DOCS.parent))
-    from benchmarks.contrast.found import found, numbers, read_rows
+    """Numbers and tables of the pairs in docs/gallery/contrast; no run is computed."""
+    from benchmarks.contrast.found import found, numbers, read_rows, tables
 
-    return numbers(found(read_rows(DOCS / "gallery" / "contrast")))
+    pairs = found(read_rows(DOCS / "gallery" / "contrast"))
+    return numbers(pairs) | tables(pairs)
 
 
 if __name__ == "__main__":

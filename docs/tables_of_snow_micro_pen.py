@@ -8,6 +8,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from unittest.mock import patch
 
+sys.path.append(str(Path(__file__).parents[1]))
+from benchmarks.page_tables import write_tables
+
 from skisnow._support.units import MM
 from skisnow.campaign import SnowMicroPenProfile, read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
@@ -74,9 +77,9 @@ def _cells(found: EvaluatedRecording) -> str:
 
 
 def main() -> None:
-    """Print both tables."""
+    """Write both tables."""
     profiles = [read_snow_micro_pen(Path(name)) for name in sys.argv[1:]]
-    print("\n".join([*by_relation(profiles), "", *by_setting(profiles)]))
+    write_tables("methods/snow-micro-pen", {"relations": by_relation(profiles), "settings": by_setting(profiles)})
 
 
 if __name__ == "__main__":

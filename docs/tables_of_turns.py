@@ -1,13 +1,11 @@
 """The tables of the pages on shear and friction in turns, computed again: python docs/tables_of_turns.py [PAGE ...].
 
-Each stands between two marks that no reader sees, ``<!-- table NAME -->`` and ``<!-- end of table -->``. Some
-70 turns: a minute or two of one core.
+Some 70 turns: a minute or two of one core. A page is such as ``methods/side-force``.
 """
 
 from __future__ import annotations
 
 import math
-import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -17,11 +15,13 @@ from typing import Any
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).parents[1]))
+from benchmarks.page_tables import write_tables
+
 from skisnow import Run, load_scenario, simulate
 from skisnow._support.errors import RangeWarning
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear, ShearLaw
 
-DOCS = Path(__file__).resolve().parent
 LAWS: dict[str, dict[str, object]] = {
     "S_f": {},
     "S_f (1 − 0.266 ϑ)": {"shear.law": "by-angle", "shear.relative_decrease_per_rad": 0.266},
@@ -155,8 +155,8 @@ def displacements() -> Iterator[str]:
 
 
 PAGES = {
-    "methods/side-force.md": {"shear laws": shear_laws, "skid angles": skid_angles, "displacements": displacements},
-    "methods/snow-options.md": {"friction loads": friction_loads},
+    "methods/side-force": {"shear laws": shear_laws, "skid angles": skid_angles, "displacements": displacements},
+    "methods/snow-options": {"friction loads": friction_loads},
 }
 
 
@@ -196,26 +196,13 @@ def slip_angle(run: Run) -> float:
     return float(np.degrees(np.abs(run.heading - path)).max())
 
 
-def written(page: str) -> str:
-    """The text of a page with its tables computed."""
-    text = (DOCS / page).read_text(encoding="utf-8")
-    for name, rows in PAGES[page].items():
-        mark = f"<!-- table {name} -->\n"
-        pattern = re.compile(f"{re.escape(mark)}.*?<!-- end of table -->", re.DOTALL)
-        found = pattern.search(text)
-        assert found, f"{page} has no table {name}"
-        table = "\n".join(rows())
-        text = f"{text[: found.start()]}{mark}{table}\n<!-- end of table -->{text[found.end() :]}"
-    return text
-
-
 def main() -> None:
-    """Write the pages that are named, or all; with --spoken print the numbers of their sentences."""
+    """Write the tables of the pages that are named, or of all; with --spoken print the numbers of their sentences."""
     if sys.argv[1:] == ["--spoken"]:
         print(*spoken(), sep="\n")
         return
     for page in sys.argv[1:] or PAGES:
-        (DOCS / page).write_text(written(page), encoding="utf-8")
+        write_tables(page, {name: rows() for name, rows in PAGES[page].items()})
 
 
 if __name__ == "__main__":

@@ -20,8 +20,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
 import page_numbers
+from benchmarks.page_tables import csv_text, table_path
 
 DOCS = Path(__file__).resolve().parent
 COMMAND = re.compile(
@@ -41,13 +43,16 @@ def pages() -> list[str]:
     return [name for name in every if COMMAND.search(text := _text(name)) or NUMBER.search(text)]
 
 
-def anew(page: str) -> str:
-    """The text of a page with all its numbers computed."""
+def anew(page: str) -> dict[Path, str]:
+    """A page with all its numbers computed, and its tables."""
     with tempfile.TemporaryDirectory() as folder:
         told = COMMAND.sub(lambda found: _block(found, Path(folder)), _text(page))
         of_page = getattr(page_numbers, re.sub(r"\W", "_", page.removesuffix(".md")), None)
         numbers = of_page(Path(folder)) if of_page else {}
-    return NUMBER.sub(lambda found: f"<!--={found['name']}-->{numbers[found['name']]}<!--/-->", told)
+    text = NUMBER.sub(lambda found: f"<!--={found['name']}-->{numbers[found['name']]}<!--/-->", told)
+    tables = {name: value for name, value in numbers.items() if value.startswith("| ")}
+    name = page.removesuffix(".md")
+    return {DOCS / page: text} | {table_path(name, table): csv_text(value) for table, value in tables.items()}
 
 
 def _text(page: str) -> str:
@@ -78,14 +83,14 @@ def main() -> int:
     asked = parser.parse_args()
     stale = 0
     for page in asked.pages or pages():
-        text = anew(page)
-        if text == _text(page):
+        texts = anew(page)
+        if all(path.is_file() and path.read_text(encoding="utf-8") == text for path, text in texts.items()):
             print(f"{page}: as it was")
             continue
         stale += 1
         print(f"{page}: otherwise" if asked.check else f"{page}: written anew")
-        if not asked.check:
-            (DOCS / page).write_text(text, encoding="utf-8")
+        for path, text in () if asked.check else texts.items():
+            path.write_text(text, encoding="utf-8")
     return stale if asked.check else 0
 
 

@@ -162,17 +162,12 @@ def point(row: Row) -> tuple[Any, ...]:
 
 
 def numbers(pairs: dict[str, Found]) -> dict[str, str]:
-    """For the sentences and tables of docs/validation/turn-contrast.md."""
+    """For the sentences of docs/validation/turn-contrast.md."""
     count, of = both_published(pairs)
     told = {
         "pairs": str(sum(each.asked for each in pairs.values())),
         "both published": likelihood(count, of),
         "giant less": likelihood(sum(giant < carver for carver, giant in _common(pairs)), of),
-        "unknowns": _unknowns_table(),
-        "outcomes": _outcomes_table(pairs),
-        "ratios": _ratios_table(pairs),
-        "regimes": _regimes_table(pairs),
-        "shares": _shares_table(pairs),
     }
     for name, each in pairs.items():
         ski, far = name.partition("-")[0], each.apart[each.complete]
@@ -190,6 +185,17 @@ def numbers(pairs: dict[str, Found]) -> dict[str, str]:
             f"{ski} below": likelihood(int((far <= high).sum()), len(far)),
         }
     return told
+
+
+def tables(pairs: dict[str, Found]) -> dict[str, str]:
+    """Tables of docs/validation/turn-contrast.md."""
+    return {
+        "unknowns": _unknowns_table(),
+        "outcomes": _outcomes_table(pairs),
+        "ratios": _ratios_table(pairs),
+        "regimes": _regimes_table(pairs),
+        "shares": _shares_table(pairs),
+    }
 
 
 def _unknowns_table() -> str:
@@ -270,6 +276,6 @@ def _shares_table(pairs: dict[str, Found]) -> str:
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]], *, words: int) -> str:
-    """Markdown, with an empty line before and behind."""
+    """Markdown; the first `words` columns are words, the others numbers."""
     lines = [f"| {' | '.join(head)} |", f"| {' | '.join(['---'] * words + ['---:'] * (len(head) - words))} |"]
-    return "\n\n" + "\n".join(lines + [f"| {' | '.join(row)} |" for row in rows]) + "\n\n"
+    return "\n".join(lines + [f"| {' | '.join(row)} |" for row in rows])

@@ -1,4 +1,4 @@
-"""Numbers and figure of docs/validation/equilibrium.md: python -m tests.carving.tables (needs Exudyn)."""
+"""Tables and figure of docs/validation/equilibrium.md: python -m tests.carving.tables (needs Exudyn)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+from benchmarks.page_tables import write_tables
 from openbench.entries.numpy_reference import slow_carve as reference
 from openbench.entries.numpy_reference.slow_carve import Case
 
@@ -23,12 +24,10 @@ SKIS = ("slalom", "giant-slalom", "carver")
 FIGURES = Path(__file__).parents[2] / "docs" / "_static" / "validation"
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    print("| " + " | ".join(head) + " |")
-    print("| " + " | ".join(["---"] + ["---:"] * (len(head) - 1)) + " |")
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
-    print()
+def table(name: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    write_tables(
+        "validation/equilibrium", {name: ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]}
+    )
 
 
 def turned(
@@ -68,7 +67,7 @@ def beam_on_snow() -> None:
         deviations = [f"{100.0 * one_sided(hardness, n)[1]:+.4f}" for n in MESHES]
         rows.append([f"{hardness:g}", f"{100.0 * wave:.1f}", f"{100.0 * length_off:+.3f}", *deviations])
         assert abs(depth_off) < 0.01
-    table(["H_V (N/mm³)", "1/λ (cm)", "contact, 160 (%)", *(f"depth, {n} (%)" for n in MESHES)], rows)
+    table("point-load", ["H_V (N/mm³)", "1/λ (cm)", "contact, 160 (%)", *(f"depth, {n} (%)" for n in MESHES)], rows)
 
 
 def radii() -> None:
@@ -93,7 +92,7 @@ def radii() -> None:
                 assert found.turn_radius_chord is not None
                 row += [f"{100.0 * (r / limit - 1.0):+.1f}" for r in (found.turn_radius_chord, found.turn_radius_boot)]
             rows.append(row)
-    table(["EI", "ϑ (°)", "chord, clamp 0", "boot, clamp 0", "chord, clamp 0.3", "boot, clamp 0.3"], rows)
+    table("radius", ["EI", "ϑ (°)", "chord, clamp 0", "boot, clamp 0", "chord, clamp 0.3", "boot, clamp 0.3"], rows)
 
 
 def against_reference() -> None:
@@ -114,6 +113,7 @@ def against_reference() -> None:
         off = [f"{100.0 * (float(mine or 0.0) / other - 1.0):+.3f}" for mine, other in pairs]
         rows.append([str(angle_deg), str(ratio), f"{clamp:g}", f"{theirs.radius_at_boot():.3f}", *off])
     table(
+        "independent",
         [
             "ϑ (°)",
             "k_u/H_V",
@@ -135,7 +135,7 @@ def results(hardness: float, ratio: float, elements: int) -> FloatArray:
 
 
 def mesh() -> dict[tuple[float, float], FloatArray]:
-    """Print what 160 elements are off, and return the deviations of all meshes from the finest."""
+    """Write the deviations of 160 elements, and return the deviations of all meshes from the finest."""
     rows, all_off = [], {}
     for hardness in (0.04, 0.2, 1.0, 90.0):
         for ratio in (1.0, 10.0):
@@ -143,7 +143,11 @@ def mesh() -> dict[tuple[float, float], FloatArray]:
             off = 100.0 * (values[:-1] / values[-1] - 1.0)
             all_off[hardness, ratio] = off
             rows.append([f"{hardness:g}", f"{ratio:g}", *(f"{value:+.3f}" for value in off[MESHES.index(160)])])
-    table(["H_V (N/mm³)", "k_u/H_V", "R boot (%)", "R chord (%)", "greatest depth (%)", "contact (%)"], rows)
+    table(
+        "convergence",
+        ["H_V (N/mm³)", "k_u/H_V", "R boot (%)", "R chord (%)", "greatest depth (%)", "contact (%)"],
+        rows,
+    )
     return all_off
 
 
@@ -153,7 +157,7 @@ def memory() -> None:
         for clamp in (0.0, 0.3):
             found = [turned(name, 0.2, ratio, clamp=clamp) for ratio in (1.0, 2.0, 5.0, 10.0, 50.0)]
             rows.append([name, f"{clamp:g}", *(f"{each.afterbody_depth_ratio or 0.0:.2f}" for each in found)])
-    table(["ski", "clamp (m)", "elastic", "2", "5", "10", "50"], rows)
+    table("afterbody", ["ski", "clamp (m)", "elastic", "2", "5", "10", "50"], rows)
     rows = []
     for name in SKIS:
         for clamp in (0.0, 0.3):
@@ -164,7 +168,7 @@ def memory() -> None:
                 row += [f"{100.0 * share / depth(found_one).max():.0f}" for share in shares]
             rows.append(row)
     head = ["ski", "clamp (m)", "elastic, −0.4 m", "elastic, −0.6 m", "k_u/H_V = 50, −0.4 m", "k_u/H_V = 50, −0.6 m"]
-    table(head, rows)
+    table("remaining-depth", head, rows)
 
 
 def against_exudyn() -> None:
@@ -194,7 +198,7 @@ def against_exudyn() -> None:
             row += [f"{100.0 * share:.2f}" for share in worst]
         rows.append(row)
     kinds = ("depth at the boot", "depth anywhere", "deflection")
-    table(["H_V (N/mm³)", *(f"{kind}, {n} (%)" for n in (160, 320) for kind in kinds)], rows)
+    table("exudyn", ["H_V (N/mm³)", *(f"{kind}, {n} (%)" for n in (160, 320) for kind in kinds)], rows)
 
 
 def draw(off: dict[tuple[float, float], FloatArray]) -> None:

@@ -89,9 +89,8 @@ def test_a_page_gets_what_its_commands_print(tmp_path: Path, monkeypatch: pytest
     number = "3"
     monkeypatch.setattr(write_numbers.page_numbers, "page", lambda _: {"n": number}, raising=False)
     assert write_numbers.pages() == ["page.md"]
-    assert write_numbers.anew("page.md") == PAGE.replace("old", "said").replace("2\n```", "3\n```").replace(
-        ">2<", ">3<"
-    )
+    text = PAGE.replace("old", "said").replace("2\n```", "3\n```").replace(">2<", ">3<")
+    assert write_numbers.anew("page.md") == {tmp_path / "page.md": text}
     (tmp_path / "page.md").write_text("<!-- $ echo no >&2; exit 3 -->\n", encoding="utf-8")
     with pytest.raises(SystemExit, match="exit status 3\nno"):
         write_numbers.anew("page.md")

@@ -112,3 +112,12 @@ def test_tables_have_a_row_for_each_key(tmp_path: Path) -> None:
     pages = "".join(path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md"))
     included = INCLUDED.findall(pages)
     assert sorted(included) == sorted(written)
+
+
+def test_every_table_file_is_shown_on_its_page() -> None:
+    shown = {
+        (DOCS / page).parent / name
+        for page in PAGES
+        for name in re.findall(r"^:file: (\S+)$", text_of(page), re.MULTILINE)
+    }
+    assert shown == set(DOCS.glob("*/tables/*.csv"))

@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from benchmarks.page_tables import write_tables
 
 from skisnow import carve, read_ski
-from skisnow._support.staging import write_file
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow import published_snow
 
 from ..carving.synthetic import circular_sidecut, plain_ski, snow
 
-PAGE: Final = Path(__file__).parents[2] / "docs" / "validation" / "measured.md"
+PAGE: Final = "validation/measured"
 RACE_PISTE: Final = published_snow("race-piste")
 
 
@@ -199,19 +198,10 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def tables() -> dict[str, str]:
-    """By their marks on the page."""
+    """By their names."""
     return {"turns": turns_table(), "footprint": footprint_table(), "grip": grip_table(), "floor": floor_table()}
 
 
-def filled(text: str) -> str:
-    """The page with its tables computed."""
-    for name, table in tables().items():
-        before, rest = text.split(f"<!-- {name} -->")
-        after = rest.split(f"<!-- end of {name} -->")[1]
-        text = f"{before}<!-- {name} -->\n\n{table}\n\n<!-- end of {name} -->{after}"
-    return text
-
-
 if __name__ == "__main__":
-    write_file(PAGE, filled(PAGE.read_text(encoding="utf-8")))
+    write_tables(PAGE, tables())
     np.testing.assert_equal(len(floor_rows()), 6)

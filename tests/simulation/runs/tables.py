@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from benchmarks.page_tables import write_tables
 
 from skisnow import Run
 from skisnow.scenario import Solver, load_scenario
@@ -20,7 +20,6 @@ from ...dynamics.test_free_flight import DURATION, tumbling_drift
 from . import test_cross_slope, test_static_start, test_steady_circle, test_straight_run
 from .sledges import load, rigid_ski, scenario
 
-PAGE: Final = Path(__file__).parents[3] / "docs" / "validation" / "simulated-turn.md"
 SNOWS: Final = (
     (0.04, 0.2), (0.04, 0.04), (0.2, 0.5), (0.2, 0.1), (1.0, 1.0), (1.0, 0.25), (1.0, 0.3), (90.0, 10.0), (90.0, 0.3),
 )  # fmt: skip
@@ -182,14 +181,10 @@ def _off(found: Any, known: Any) -> str:
 
 
 def main() -> None:
-    """Put each table between its marks on the page."""
+    """Write the tables of the page."""
     tables: dict[str, Callable[[], str]] = {"exact": exact, "energies": energies, "convergence": convergence}
     for name, filled in tables.items():
-        text = filled()
-        page = PAGE.read_text(encoding="utf-8")
-        before, rest = page.split(f"<!-- {name} -->")
-        after = rest.split(f"<!-- end of {name} -->")[1]
-        PAGE.write_text(f"{before}<!-- {name} -->\n\n{text}\n\n<!-- end of {name} -->{after}", encoding="utf-8")
+        write_tables("validation/simulated-turn", {name: filled()})
 
 
 if __name__ == "__main__":
