@@ -74,7 +74,12 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "seen from above", f"{plain(values['horizontal_distance_m'], 5)} m{horizontal}"
     speed = f"{plain(values['max_speed_m_per_s'], 4)} m/s{_interval(values['max_speed_interval_m_per_s'], 'm/s', 4)}"
     yield "highest speed", f"{speed}, {_SPEED_WORDS[values['speed_source']]}"
-    yield "noise of the places", f"{plain(smoothing['place_noise_m'], 2)} m a coordinate, about the smoothed track"
+    if smoothing["place_noise_m"] is not None:
+        bound = "at most " if smoothing["place_noise_is_bound"] else ""
+        yield (
+            "noise of the places",
+            f"{bound}{plain(smoothing['place_noise_m'], 2)} m a coordinate, from point to point",
+        )
     yield "smoothing", f"cubics by least squares in windows of {plain(smoothing['window_s'])} s"
     yield "resolution", _resolution(smoothing)
 
