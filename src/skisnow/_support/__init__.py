@@ -1,1 +1,1 @@
-"""Helpers of every package: files, texts, errors, units, processes; it knows no snow and no ski."""
+"""Helpers of every package: files, texts, errors, units, processes. They depend on no other package."""

@@ -1,4 +1,4 @@
-"""How an object shows itself: in a few lines with units at a prompt, as a small table in a notebook."""
+"""Short text and table of an object: a few lines with units at a prompt, a small table in a notebook."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def span(low: float, high: float, unit: str = "", *, digits: int = 4) -> str:
 
 
 def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
-    """The least and the greatest of an array's finite values, in a unit of this size.
+    """Minimum and maximum of the finite values of an array, in a unit of this size.
 
     >>> ends([0.001, 0.003, float("nan")], "mm", factor=1e-3)
     '1 to 3 mm'

@@ -22,7 +22,7 @@ def needed(module: str, *, extra: str, what: Message, instead: Message | None = 
     Parameters
     ----------
     module
-        What is imported.
+        Module to import.
     extra
         The name of the extra in ``pyproject.toml``.
     what
@@ -66,7 +66,7 @@ def load_certificate(context: ssl.SSLContext, file: str | Path, key: str | Path 
     Raises
     ------
     OSError, ssl.SSLError, ValueError
-        They cannot be read, or the key has a password: OpenSSL would ask for it on the terminal.
+        The files cannot be read, or the key has a password: OpenSSL would ask for it on the terminal.
     """
     context.load_cert_chain(file, key, password=_no_password)
 

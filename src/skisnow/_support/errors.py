@@ -68,7 +68,7 @@ class SkisnowError(_Coded):
 
 
 class ParameterError(SkisnowError, ValueError):
-    """An argument is outside what the called function can work with."""
+    """An argument is outside the range that the called function accepts."""
 
 
 class FieldDataError(SkisnowError):
@@ -103,7 +103,7 @@ class SolverError(SkisnowError):
 
 
 class StoreError(SkisnowError):
-    """The store of campaigns cannot do what was asked; nothing in it was changed."""
+    """An operation on the store of campaigns failed; nothing in the store was changed."""
 
 
 class OutputError(SkisnowError):

@@ -36,7 +36,7 @@ MOST_COLUMNS: Final = 1_000
 
 
 class NoTextError(ValueError):
-    """Bytes are not text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` what it was read as."""
+    """Bytes are not text: ``place`` is ``"byte 12"`` or ``"a NUL character"``, ``encoding`` the tried one."""
 
     def __init__(self, place: str, encoding: str) -> None:
         super().__init__(f"{place} is no {encoding} text")
@@ -226,7 +226,7 @@ class CsvRow:
     cells
         By column, without blanks around them.
     action
-        What to do where a cell is refused.
+        Action that the error of a cell recommends.
     mark
         The decimal mark of the file's numbers.
     """
@@ -251,7 +251,7 @@ class CsvRow:
         return value
 
     def refused(self, column: str, problem: Message, *, code: str, action: Message | None = None) -> ParameterError:
-        """The error of a cell: whole sentences for the problem and for what to do."""
+        """Error of a cell: whole sentences for the problem and for the action."""
         return ParameterError(
             "{path}, row {row}, column {column}: {value!r}: {problem} {action}",
             code=code,
@@ -277,7 +277,7 @@ def csv_rows(
     columns, further
         Columns that must be there, and those that may be, in any case of letters; others are not read.
     action
-        What to do where it is refused.
+        Action that errors recommend.
 
     Raises
     ------

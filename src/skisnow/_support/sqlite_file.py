@@ -1,4 +1,4 @@
-"""SQLite files of skisnow: the only place that opens them, their checks, and what to do after an error."""
+"""SQLite files of skisnow: the only place that opens them, their checks, and the advice after an error."""
 
 from __future__ import annotations
 
@@ -92,14 +92,14 @@ def primary_code(error: BaseException) -> int:
 
 
 def place_reason(error: BaseException) -> str | None:
-    """Why the place cannot be used and what to do; None if the error is of the file's content."""
+    """Reason why the place cannot be used, and the fix; None if the content of the file caused the error."""
     return _PLACE_REASONS.get(primary_code(error))
 
 
 def first_damage(database: sqlite3.Connection) -> str | None:
     """First finding of SQLite's integrity check, which takes a while; None without a finding.
 
-    Call it after an error, to report what is damaged.
+    Call it after an error to report the damage.
     """
     with suppress(sqlite3.Error, UnicodeDecodeError):
         (message,) = database.execute("pragma integrity_check(1)").fetchone()

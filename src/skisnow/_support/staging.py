@@ -1,8 +1,8 @@
-"""Several files that belong together: written beside their place, then moved there, never parts of two writings.
+"""Files that belong together: written to a hidden folder, then moved, so that old and new never mix.
 
-All is written into a hidden folder inside the place. When it is complete a plan is put beside it; only then are the old
-files taken away and the new ones moved. What a killed process left is finished, where there is a plan, or else thrown
-away, at the next start (`prepare_folder`). A process locks its hidden folder meanwhile.
+All files are written to a hidden folder inside the target. When it is complete, a plan is written next to it; only then
+are the old files removed and the new ones moved. At the next start (`prepare_folder`) the remains of a killed process
+are completed if there is a plan, and deleted otherwise. Each process locks its hidden folder.
 """
 
 from __future__ import annotations
@@ -35,15 +35,14 @@ _MOST_STALE: Final = 10_000
 
 @dataclass(slots=True)
 class Stage:
-    """Where to write.
+    """Folder to write to.
 
     Attributes
     ----------
     path
         The folder to fill.
     stale
-        Files, by their paths in the place, that only an earlier writing can have left; taken away if there are no
-        new ones.
+        Paths in the target of files that only an earlier run can have left; they are removed if there are no new ones.
     """
 
     path: Path
@@ -52,14 +51,14 @@ class Stage:
 
 @contextmanager
 def staged(folder: Path, *, last: str) -> Iterator[Stage]:
-    """A stage whose files are moved into a folder at the end of the block; an error before leaves the folder as it was.
+    """Stage whose files are moved into a folder at the end of the block; an error before changes nothing.
 
     Parameters
     ----------
     folder
         The place, which is there; other files in it stay.
     last
-        The file that says by its presence that all others are there: taken away first, moved last.
+        File whose presence shows that all others are complete: removed first, moved last.
 
     Raises
     ------
@@ -89,7 +88,7 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
 
 
 def prepare_folder(folder: Path) -> list[str]:
-    """Make a folder where it is missing, see that it can be written, and tidy up what killed processes left in it.
+    """Create a folder if needed, check that it can be written, and complete or remove what killed processes left.
 
     Returns
     -------
@@ -185,7 +184,7 @@ def _alone(folder: Path) -> Iterator[None]:
 
 
 def _locked(hidden: Path) -> int | None:
-    """A lock that ends with this process; None where another one has it, or there are none."""
+    """Lock that ends with this process; None if another process holds it, or the system has no locks."""
     if sys.platform == "win32":
         return None
     import fcntl

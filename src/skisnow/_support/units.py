@@ -106,7 +106,7 @@ def _ending(name: str) -> str:
 
 
 def in_degrees_if_radians(angle_deg: float) -> float | None:
-    """The degrees that are meant where the number looks like radians, else None.
+    """Degrees for a number that looks like radians, else None.
 
     >>> round(in_degrees_if_radians(0.785), 1), in_degrees_if_radians(45.0), in_degrees_if_radians(0.0)
     (45.0, None, None)

@@ -1,4 +1,4 @@
-"""A problem found in a campaign: where, what, what is allowed, what to do."""
+"""A problem in a campaign: place, problem, allowed values, fix."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ from .solve import RIGID_PLASTIC
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CarveAnswer:
-    """A question, what was read for it, the equilibrium, and every warning in words."""
+    """A question, the files read for it, the equilibrium, and every warning as text."""
 
     question: CarveQuestion
     ski: Ski
@@ -47,7 +47,7 @@ def answered(question: CarveQuestion, *, sources: Sources | None = None) -> Carv
     question
         Checked inputs.
     sources
-        Keeps what was read, for many questions.
+        Caches the files, for many questions.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What `carve` and `rest` refuse, before anything is computed."""
+"""Checks of `carve` and `rest` before any computation."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def require_choices(groove: str, moment_balance: str, side_force_spread: str) ->
 
 
 def require_strength(snow: SnowProperties) -> None:
-    """Refuse snow without S_f, where no law says what holds the edge."""
+    """Reject snow without S_f if no law carries the side force."""
     if snow.failure_shear_stress is None:
         raise ParameterError(
             "the snow ({source}) has no failure shear stress S_f; a carved turn needs it: give one, or a shear law",
@@ -84,7 +84,7 @@ def require_strength(snow: SnowProperties) -> None:
 
 
 def unloading_ratio_of(snow: SnowProperties, stated: float | None) -> float:
-    """k_u/H_V as given, or else the snow's own; refused where neither says it."""
+    """k_u/H_V as stated, else that of the snow; an error without either."""
     ratio = snow.unloading_ratio if stated is None else stated
     if ratio is None:
         raise ParameterError(

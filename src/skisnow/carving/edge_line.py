@@ -64,7 +64,7 @@ class EdgeLine:
         return self.radius_over(BOOT_REACH, -BOOT_REACH)
 
     def offset_from_circle(self) -> FloatArray:
-        """How far the edge lies inside of the circle of `radius_at_boot` at each station (m)."""
+        """Distance of the edge from the circle of `radius_at_boot` at each station (m), positive inside."""
         radius = self.radius_at_boot()
         if radius is None:
             raise ValueError("a straight edge line has no circle")
@@ -98,7 +98,7 @@ class EdgeLine:
 
 
 def circle_radius(front: tuple[float, float], middle: tuple[float, float], rear: tuple[float, float]) -> float | None:
-    """Radius of the circle through three points, positive where the middle lies below the chord (y); None if straight.
+    """Radius of the circle through three points, positive if the middle is below the chord (y); None if straight.
 
     >>> import math
     >>> round(circle_radius((3.0, 1.0), (0.0, 0.0), (-3.0, 1.0)), 12)

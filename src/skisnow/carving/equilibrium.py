@@ -84,25 +84,27 @@ def carve(
     shear
         A law of `skisnow.forces.shear`, or one of yours, instead of S_f; a law with a thrust is rejected.
     penetration
-        A `PointLaw` of `skisnow.forces.penetration`, or one of yours, instead of H_V and k_u. One that acts along the
-        base's normal holds the edge by its pressure's part across; it excludes S_f and a shear law.
+        A `PointLaw` of `skisnow.forces.penetration`, or your own, instead of H_V and k_u. A law that acts along the
+        base's normal carries the side force by its pressure's part across; it excludes S_f and a shear law.
     moment
-        At the boot, positive where it presses the tip down (N m); about which axis, `moment_balance` says.
+        Moment at the boot, positive if it presses the tip down (N m), about the axis that `moment_balance` states.
     clamp_length, footprint_stiffness
-        Length of ski that boot and binding hold (m), and how stiff they are between the boot and each metre of it
-        (N/m²); None: rigid, the ski stays straight there.
+        Length of ski that boot and binding clamp (m), and the stiffness between the boot and each metre of it (N/m²);
+        None: rigid, the ski stays straight there.
     side_force_bending
         Whether the side force, too, bends and twists the ski (it does: the part sin ϑ of it is normal to the base).
     side_force_spread
-        How the side force goes along the edge: "depth", in proportion to the edge's depth, or "base-reaction", in
-        proportion to the snow's force on the base, whose whole reaction is then normal to the base everywhere.
+        Distribution of the side force along the edge: "depth", in proportion to the edge's depth, or "base-reaction",
+        in proportion to the snow's force on the base. With "base-reaction" the whole reaction is normal to the base
+        everywhere.
     groove
-        "edge": the groove of the forebody is under the edge of the afterbody. "path": it is on the circle through
-        the edge line at the boot and 0.4 m before and behind, and each edge beside it by what its edge line differs.
+        "edge": the groove of the forebody is under the edge of the afterbody. "path": the groove follows the circle
+        through the edge line at the boot and 0.4 m before and behind; each edge is beside it by the distance of its
+        edge line from the circle.
     moment_balance
-        "boot": `moment` is about the horizontal cross axis and balances the load without the side force, whose
-        moment boot and skier hold in addition: `Equilibrium.boot_pitch_moment`. "free":
-        `moment` is about the ski's own cross axis, and all that boot and skier hold there.
+        "boot": `moment` is about the horizontal cross axis and balances the load without the side force, whose moment
+        boot and skier carry in addition: `Equilibrium.boot_pitch_moment`. "free": `moment` is about the ski's own cross
+        axis and is the whole moment of boot and skier there.
     twist
         Whether the ski twists (GJ) or keeps its edge angle everywhere.
     elements
@@ -128,8 +130,8 @@ def carve(
     Notes
     -----
     The balance is linear in the ski's deflection (small slopes) and exact in edge angle and twist. The ski's own weight
-    is left out. With ``side_force_spread`` "depth" the side force draws the same share of the shear strength
-    everywhere along the edge (modelling assumption): τ e per length. No measurement of its distribution is known.
+    is neglected. With ``side_force_spread`` "depth" the side force uses the same share of the shear strength everywhere
+    along the edge (modelling assumption): τ e per length. No measurement of its distribution is known.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Laws of the snow in the place of H_V, k_u and S_f in a steady carve, as the compiled core asks them."""
+"""Laws of the snow that replace H_V, k_u and S_f in a steady carve, in the form that the compiled core calls."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 
 
 class PressureLaw(AskedPressure):
-    """Stress of a law. What is not finite is kept in ``refused``: a step may try depths that no ski comes to."""
+    """Stress of a law; values that are not finite are recorded in ``refused``: a trial step may be too deep."""
 
     def __init__(self, law: PointLaw) -> None:
         super().__init__(law)
@@ -58,7 +58,7 @@ class StrengthLaw:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SnowLaws:
-    """Laws that were given for a carve, None where the snow's numbers act, and as the core asks them."""
+    """Laws of a carve in the form that the core calls; None where the snow's numbers apply."""
 
     shear: ShearLaw | None
     penetration: PointLaw | None
@@ -67,7 +67,7 @@ class SnowLaws:
 
     @property
     def along_base_normal(self) -> bool:
-        """Whether the pressure itself holds the edge across."""
+        """True if the pressure also carries the side force."""
         return self.penetration is not None and self.penetration.along_base_normal
 
     def side_force_limit(
@@ -75,7 +75,7 @@ class SnowLaws:
     ) -> float | None:
         """Side force of the edge (N), by its depths (m), the snow's force per length (N/m), edge angles and lengths.
 
-        None where S_f of the snow says it, or no strength is finite.
+        None if S_f of the snow applies, or the strength is not finite.
         """
         if self.along_base_normal:
             return float(length @ (force * np.tan(edge_angle)))
@@ -86,7 +86,7 @@ class SnowLaws:
         return limit if math.isfinite(limit) else None
 
     def require_finite(self) -> None:
-        """Refuse a law that gave no finite answer on the way; asked where no equilibrium was found."""
+        """Raise an error for a law that returned a value that is not finite; called if no equilibrium was found."""
         for law in self.asked:
             if law.refused:
                 raise ParameterError(

@@ -25,7 +25,7 @@ def carve_question(values: Mapping[str, object]) -> CarveQuestion:
     Parameters
     ----------
     values
-        By the names of `CARVE_KEYS`, in the units that the names say.
+        Question from values by the names of `CARVE_KEYS`, in the units in the names.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def require_known(names: Iterable[str]) -> None:
 def require_complete(values: Mapping[str, object]) -> None:
     """Refuse inputs that lack one without a default, or name the snow in no way or in two.
 
-    A study asks with all its names at once, before it has a point.
+    Call it with all names of a study before its first point.
     """
     rests = values.get("at_rest") is True
     for name in ("ski", "edge_angle_deg", "load_N", *(() if rests else ("unloading_ratio",))):
@@ -111,7 +111,7 @@ _SNOW: Final = {quantity.name: quantity for quantity in own_quantities(SnowPrope
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarveQuestion:
-    """One question about a ski in snow, in the units that the names say; None where an input is not given."""
+    """One question about a ski in snow, in the units in the names; None for inputs that are not stated."""
 
     ski: Annotated[str, Quantity("ski", "a ski of the catalogue, or the path of a ski file")]
     edge_angle_deg: Annotated[
@@ -259,7 +259,7 @@ USUAL_LOADS_N: Final = (20.0, 5000.0)
 
 
 def require_clamp(ski: Ski, clamp_length_m: float) -> None:
-    """Refuse a clamp that the ski is too short for, and say what to write.
+    """Reject a clamp that is too long for the ski, with the longest allowed value.
 
     Raises
     ------

@@ -61,7 +61,7 @@ class Equilibrium(Shown):
         "bridges": the contact is not one piece or misses the boot; "sinks" and "not_converged" have no numbers.
         Where several apply: not_converged, sinks, slips, bridges, equilibrium.
     remedy
-        What to do about it, in words.
+        Recommended action.
     side_force, side_force_limit
         Load × tan ϑ, and S_f ∫ e ds over the edge that is below the surface (N). With a shear law S_f is its failure
         stress there; with a penetration law along the base's normal the limit is the pressure's part across,
@@ -77,8 +77,8 @@ class Equilibrium(Shown):
     turn_radius_chord
         Radius of the circle through the edge line at the boot and at both ends of the contact (m).
     contact_length
-        Between the first and the last place at which the edge is below the undisturbed surface (m): there it meets
-        snow or its groove, and can hold side force.
+        First and last place at which the edge is below the undisturbed surface (m). Between them it meets snow or its
+        groove and can carry side force.
     bearing_length
         Length of the places that carry force (m): without a rebound of the groove, parts of the contact carry none.
     afterbody_depth_ratio
@@ -104,7 +104,7 @@ class Equilibrium(Shown):
         Differences of the snow's force and its moment about the boot from load and moment (N, N m); the moment is the
         balanced one.
     warnings
-        Where the answer is outside what the model can say, in words.
+        Reasons why the answer is outside the range of the model.
     iterations
         Of Newton's method.
     request
@@ -148,7 +148,7 @@ class Equilibrium(Shown):
         Raises
         ------
         ParameterError
-            There is no equilibrium, or its groove follows the path, other laws of the snow act, or the footprint is
+            There is no equilibrium; or its groove follows the path, other laws of the snow apply, or the footprint is
             not rigid.
         """
         if self.request is None:
@@ -217,7 +217,7 @@ class Equilibrium(Shown):
 
 
 def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:
-    """Whether the load is beyond what the snow bears with the whole base pushed to the sinking depth."""
+    """True if the snow cannot carry the load even with the whole base at the largest depth."""
     area = float(model.stations.weight @ model.stations.width) * math.cos(conditions.edge_angle)
     return conditions.load > conditions.hardness * SINKING_DEPTH * area
 
@@ -231,9 +231,9 @@ def equilibrium_of(
     *,
     elements: int | None = None,
 ) -> Equilibrium:
-    """Outcome and numbers of a solution; `note` stands before its own warnings.
+    """Outcome and numbers of a solution; `note` precedes its own warnings.
 
-    `elements`: those that were asked for; None where the equilibrium has no derivatives.
+    `elements`: those of the request; None where the equilibrium has no derivatives.
     """
     station = model.stations.station
     deepest = float(np.max(solution.edge_depth))

@@ -107,7 +107,7 @@ class _Direction:
 
 @dataclass(slots=True, eq=False)
 class CarveDerivatives:
-    """Derivatives at one equilibrium; what outputs and parameters share is computed once.
+    """Derivatives at one equilibrium; quantities that several outputs and parameters need are computed once.
 
     Parameters
     ----------

@@ -129,7 +129,7 @@ def _print_error(error: SkisnowError | MemoryError) -> None:
 
 
 def _short(message: str) -> str:
-    """A message that a screen holds, whatever was given."""
+    """The message, shortened to the width of a screen."""
     return message if len(message) <= LONGEST_MESSAGE else f"{message[:LONGEST_MESSAGE]} …"
 
 

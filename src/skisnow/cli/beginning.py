@@ -35,7 +35,7 @@ def add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
 
 
 def write_new(options: argparse.Namespace) -> int:
-    """Write the templates and say where."""
+    """Write the templates and print their paths."""
     from ..campaign.templates import write_new_campaign
 
     written = write_new_campaign(options.folder, xlsx=options.xlsx)
@@ -78,7 +78,7 @@ def add_samples(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 
 
 def write_samples(options: argparse.Namespace) -> int:
-    """Write the sample files and print what each is."""
+    """Write the sample files and print a description of each."""
     from .. import samples
 
     samples.write_samples(options.folder, seed=options.seed)

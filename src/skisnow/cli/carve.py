@@ -1,4 +1,4 @@
-"""``skisnow carve``: how deep, what pressure where, what bend and twist, what radius: a ski in snow, in one line."""
+"""``skisnow carve``: depth, pressure, bending, twist and radius of a ski in snow."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ LATER: Final = "writing the computed results first; a second request stops at on
 
 
 class Ended(KeyboardInterrupt):
-    """The system asked this process to end."""
+    """The system requested the end of this process."""
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""``skisnow new ski``: a ski file of what was measured of a ski."""
+"""``skisnow new ski``: a ski file from measurements of a ski."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def add_ski(kinds: argparse._SubParsersAction[Parser]) -> None:
 
 
 def run_ski(options: argparse.Namespace) -> int:
-    """Write the ski file and say what it is made of."""
+    """Write the ski file and print its sources and assumptions."""
     from .._support.units import DEGREE, MM
     from ..design.measured_ski import Measured, measured_ski
     from ..design.ski_tables import Mapped
@@ -91,7 +91,7 @@ def run_ski(options: argparse.Namespace) -> int:
 
 
 def _pairs(option: str, texts: list[str]) -> dict[str, str]:
-    """Headings and what is stated of them."""
+    """Pairs of heading and statement from an option."""
     for text in texts:
         if "=" not in text:
             raise ParameterError(

@@ -52,7 +52,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
-    """Add the option that says in which compass direction x of a slope's axes points, and what for."""
+    """Add the option for the compass direction of x of a slope's axes; `why`: purpose."""
     parser.add_argument(
         "--fall-line-azimuth-deg",
         type=number("degrees", lowest=-360, highest=360),
@@ -62,7 +62,7 @@ def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
 
 
 def add_language(parser: argparse.ArgumentParser, what: str = "the page and the figures that --out writes") -> None:
-    """Add the option that says which language a report is in; `what`: all that is in it."""
+    """Add the option for the language of a report; `what`: the parts that are translated."""
     parser.add_argument(
         "--language",
         choices=languages(),
@@ -72,7 +72,7 @@ def add_language(parser: argparse.ArgumentParser, what: str = "the page and the 
 
 
 def add_changes(parser: argparse.ArgumentParser, more: str = "") -> None:
-    """Let a command take other values for keys of its scenario; `more` follows the help."""
+    """Add the option that overrides keys of a scenario; `more` is appended to the help."""
     parser.add_argument(
         "--set",
         action="append",
@@ -98,7 +98,7 @@ def scenario_of(options: argparse.Namespace) -> ScenarioFile:
 
 
 def add_workers(parser: argparse.ArgumentParser) -> None:
-    """Add the option that says how many processes compute."""
+    """Add the option for the number of processes."""
     workers = "processes; default: one for each core"
     parser.add_argument("--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help=workers)
 
@@ -112,7 +112,7 @@ def _meant(name: str, options: Iterable[str]) -> str:
 def number(
     unit: str, *, lowest: float = -math.inf, highest: float = math.inf, above: bool = False
 ) -> Callable[[str], float]:
-    """A reader of numbers that says how to write one.
+    """Converter of numbers for an option; its error states the allowed form.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def number(
     lowest, highest
         Allowed range; None if a table of keys declares it, which is checked before the work begins.
     above
-        Whether the lowest itself is left out.
+        True if the lowest value itself is excluded.
     """
     ranged = highest < math.inf
 
@@ -191,7 +191,7 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 
 def scheduler_of(options: argparse.Namespace) -> str | None:
-    """Who computes, refused where nothing can come of it; warns that a network must be trusted.
+    """Executor of the options; an error if it cannot work, and a warning that the network must be trusted.
 
     Raises
     ------

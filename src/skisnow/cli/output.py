@@ -29,7 +29,7 @@ USUAL_S: Final = 10.0
 
 
 def list_fonts() -> None:
-    """Let matplotlib list the fonts before the work begins, with a message, if it has no list yet."""
+    """Let matplotlib scan the fonts before the work begins, with a message, if it has no list yet."""
     import matplotlib
 
     if not list(Path(matplotlib.get_cachedir()).glob("fontlist-*.json")):

@@ -1,4 +1,4 @@
-"""Progress on stderr for what takes longer than a second."""
+"""Progress on stderr for work that takes longer than a second."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class MovingLine:
         self._width = 0
 
     def show(self, text: str) -> None:
-        """Write a text over the one before; what a line does not hold is cut off, for a second line would stay."""
+        """Overwrite the previous text; longer texts are cut, because a second line would remain."""
         if self.moves:
             room = max(shutil.get_terminal_size().columns - 1, 10)
             shown = text if len(text) <= room else f"{text[: room - 1]}…"
@@ -50,7 +50,7 @@ class MovingLine:
 
 
 class Progress:
-    """A callable that says what is being done, once the work has taken a second and then now and then.
+    """Callable that prints the current step, first after one second and then from time to time.
 
     On a terminal one line is rewritten at most twice a second; elsewhere a line is written at most every ten seconds.
     """
@@ -97,7 +97,7 @@ class Progress:
 
 @contextmanager
 def announced(doing: str, *, patience_s: float = 2.0, usual_s: float | None = None) -> Iterator[None]:
-    """Say what is being done if it takes longer than that; on a terminal also for how long, and how long it takes."""
+    """Print the current step if it takes longer than this; on a terminal also the elapsed and the usual time."""
     line, done, begun = MovingLine(), threading.Event(), time.monotonic()
     about = "" if usual_s is None else f" of about {usual_s:.0f} s"
 

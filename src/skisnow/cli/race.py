@@ -1,4 +1,4 @@
-"""``skisnow race``: the quickest line through a course, and what ski and snow are worth on it."""
+"""``skisnow race``: the quickest line through a course, and the time that a change of ski or snow costs on it."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _add_worth(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Search, race again as the scenario says, compare, print, write; 1 where no line comes through."""
+    """Search, simulate the result by the scenario's method, compare, print, write; 1 if no line passes all gates."""
     try:
         with ending_is_an_interrupt():
             raced = _raced(options)
@@ -180,7 +180,7 @@ def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None
 def _checked(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
-    """Both lines raced as the scenario says it, where the search raced by a quicker method; the run on the quickest."""
+    """Scores of both lines by the scenario's method if the search used a quicker one; run on the quickest line."""
     from ..racing.point import run_score, ski_line
 
     if fastest.model == "point":

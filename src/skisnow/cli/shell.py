@@ -223,7 +223,7 @@ def _called(action: argparse.Action) -> str:
 
 
 def _filled(text: str, parser: argparse.ArgumentParser, action: argparse.Action | None = None) -> str:
-    """A help with what argparse puts in for %(default)s and %%."""
+    """Help text with argparse's values of %(default)s and %%."""
     return text % {**(vars(action) if action is not None else {}), "prog": parser.prog}
 
 

@@ -79,7 +79,7 @@ def _add_sync(add_parser: Callable[..., argparse.ArgumentParser], every: argpars
 
 
 def run(args: argparse.Namespace) -> int:
-    """Do what was asked; 1 if verify found damage, else 0."""
+    """Run the subcommand; returns 1 if verify found damage, else 0."""
     from ..campaign.store import Store
 
     act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify, "sync": _sync}
@@ -181,7 +181,7 @@ def _sync(store: Store, args: argparse.Namespace) -> Answer:
 
 
 def _group_place(word: str) -> StorePlace:
-    """Where the group's store is; a file is made in a folder that exists, not where a stick is not plugged in."""
+    """Place of the group's store; a missing file is created only in an existing folder, such as a plugged-in stick."""
     from ..campaign.store import store_place
 
     place = store_place(word)

@@ -41,7 +41,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run, finish or put together the study; 1 if not one of its points could be asked."""
+    """Run, resume or combine the study; returns 1 if no point could be computed."""
     if options.merge is not None:
         return _merge(options)
     if len(options.study) > 1:

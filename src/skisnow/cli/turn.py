@@ -71,7 +71,7 @@ def _add_ensemble(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compute the chain, print what the contacts do otherwise or the JSON, write the report."""
+    """Compute from campaign to turn, print the differences between the contacts or the JSON, write the report."""
     with announced("loading"):
         from ..pipeline.turn import turn
         from ..scenario.identify_section import prior_of
@@ -102,7 +102,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _given(changes: Mapping[str, object], contact: Contact) -> dict[str, Any]:
-    """k_u/H_V and u_y that stand among the changes: they come before what the campaign says of them."""
+    """k_u/H_V and u_y among the changes, which override the values of the campaign."""
     values = {
         "snow.unloading_ratio": ("unloading_ratio", contact.unloading_ratio),
         "snow.shear_displacement_mm": ("shear_displacement", contact.shear_displacement),

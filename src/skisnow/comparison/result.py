@@ -75,7 +75,7 @@ class FittedOffsets(Shown):
     rms
         Root mean square (m) of the minimised nearest distances; None if only the time was fitted.
     rival
-        Another motion that fits about as well; None if there is no such motion.
+        Another motion that fits nearly as well; None if there is none.
     before
         Comparison without the fit.
     slope_angle

@@ -1,4 +1,4 @@
-"""The compiled core, which must have been built from the C++ sources that lie beside it in a checkout."""
+"""The compiled core, which must be built from the C++ sources in the same checkout."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Skis in history-dependent (plastic) snow: forces at a pose, and what a step leaves behind.
+"""Skis in history-dependent (plastic) snow: forces at a pose, and the snow after a step.
 
-``SnowField`` is the snow, ``Runner`` the shape of what slides on it, ``SnowContact`` any number of runners in one snow,
-each with its own pose. Friction, shear and penetration follow any law of `skisnow.forces`, also your own;
-``Laws`` hands them to a simulated turn.
+``SnowField`` is the snow, ``Runner`` the shape of a sliding body, ``SnowContact`` any number of runners in one snow,
+each with its own pose. Friction, shear and penetration follow any law of `skisnow.forces`, also your own; ``Laws``
+passes them to a simulated turn.
 """
 
 from __future__ import annotations

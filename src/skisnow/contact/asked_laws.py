@@ -1,4 +1,4 @@
-"""Laws in Python as the compiled core asks them: arrays over places in, finite numbers back."""
+"""Laws in Python in the form that the compiled core calls: arrays over places in, finite numbers out."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class AskedFriction:
 class AskedStrength:
     """Strength and thrust (N/m²) of a law, (2, n), for depths (m) and edge angles (rad); 0 where no snow is met.
 
-    Where they are not finite ``refused`` says so: a step that is tried may look at a pose that no ski comes to.
+    Values that are not finite are recorded in ``refused``: a trial step may reach a pose that no ski reaches.
     """
 
     def __init__(self, law: ShearLaw) -> None:
@@ -38,7 +38,7 @@ class AskedStrength:
         self.refused: Message | None = None
 
     def __call__(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Both, or what is not finite."""
+        """Both values, or the first that is not finite."""
         meets = depth > 0.0
         found = np.zeros((2, len(depth)))
         found[:, meets] = self.law.stress_and_thrust(depth[meets], edge_angle[meets])

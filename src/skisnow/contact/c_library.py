@@ -1,4 +1,4 @@
-"""Where the contact lies as a library for programs in C."""
+"""Path of the contact as a library for programs in C."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def c_library() -> Path:
 
 
 def c_header() -> Path:
-    """The C header of the library, which says what each function takes and gives.
+    """Text of the C header of the library, which describes the arguments and results of each function.
 
     Raises
     ------

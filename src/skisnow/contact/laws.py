@@ -24,8 +24,8 @@ class Laws(Shown):
     shear
         Strength of the edge over its depth and edge angle, with the thrust that comes with it; replaces S_f.
     penetration
-        Stress at a place over its depth and its maximum depth so far; replaces H_V and k_u. One that acts along
-        the base's normal carries the side force by itself, and S_f is 0 with it.
+        Stress at a place over its depth and its maximum depth so far; replaces H_V and k_u. A law that acts along the
+        base's normal also carries the side force, and S_f is then 0.
     """
 
     friction: FrictionLaw | None = None

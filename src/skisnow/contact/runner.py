@@ -101,7 +101,7 @@ class Runner(Shown):
 
     @classmethod
     def of(cls, ski: Ski, *, nodes: npt.ArrayLike | None = None) -> Runner:
-        """The base of a ski, rigid, or with these beam nodes bending with what `SnowContact` is given of them."""
+        """The base of a ski: rigid, or bending with these beam nodes as `SnowContact` receives them."""
         beam = None if nodes is None else np.asarray(nodes, float)
         return cls(ski.station, ski.width / 2.0, ski.base_height, beam, ski.edge_shape)
 

@@ -110,8 +110,8 @@ class Sections(Shown):
 class SnowContact(Shown):
     """Runners in history-dependent snow.
 
-    ``force`` evaluates a pose and leaves the snow as it is; ``update`` accepts a step. In between the history advances
-    along the path from the last accepted pose by itself, so that forces and acceptance of a long step agree.
+    ``force`` evaluates a pose and leaves the snow unchanged; ``update`` accepts a step. Between them the history
+    advances along the path from the last accepted pose, so that forces and acceptance of a long step agree.
 
     Parameters
     ----------
@@ -258,7 +258,7 @@ class SnowContact(Shown):
         return ContactState.of(self.compiled)
 
     def restore(self, state: ContactState) -> None:
-        """Go back to a state: what follows has the same bits as it had from there.
+        """Return to a state: the following steps have the same bits as after that state.
 
         A state from bytes brings its tracks with it: all others in the snow are forgotten.
 

@@ -34,7 +34,7 @@ PART_ACROSS: Final = 2e-3
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SnowField(Shown):
-    """One snow, which any number of contacts share; what one leaves behind, the others meet.
+    """One snow, shared by any number of contacts: each meets the grooves of the others.
 
     Attributes
     ----------
@@ -53,8 +53,7 @@ class SnowField(Shown):
     friction_share
         Factor of μ: a number > 0 or a `Grid` over the place.
     friction_acts_on
-        Load that μ acts on: the pressure along the snow's normal, or what presses square on the base, side force
-        included.
+        Load that μ acts on: the pressure along the snow's normal, or the pressure on the base with the side force.
     friction_direction
         ``vector``: against the sliding velocity, in the surface, or where μ acts on what presses on the base, in the
         base's plane; ``along-ski``: μ times the load along the ski, at any slip angle. `MachiningShear` contains
@@ -62,11 +61,11 @@ class SnowField(Shown):
     residual_ratio, slip_weakening
         Share of the strength that is left where an edge has slipped, 0 to 1, and the slip (m) over which it is reached.
     shear_bearing
-        Height by which an edge holds against a motion inwards: of the whole edge, or of the part of the base that bears
+        Height by which an edge resists an inward motion: of the whole edge, or of the bearing part of the base
         (``loaded-height``), not with ``penetration``.
     penetration
-        A law for the stress over depth and deepest depth, asked at three Gauss points of each straight piece; ``None``:
-        H_V and k_u, in closed form.
+        A law for the stress over depth and maximum depth, evaluated at three Gauss points of each straight piece;
+        ``None``: H_V and k_u, in closed form.
     damping
         c ≥ 0 of p = H_V ε + c ε̇ (N s/m³); only without ``penetration``.
     delayed_share, retardation_time
@@ -79,7 +78,7 @@ class SnowField(Shown):
     shear_displacement
         Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
     stick_displacement, knot_area, part_along, part_across, delayed_spacing
-        Numerics, see the constants of this module for what each does.
+        Constants of the method; the constants of this module describe the effect of each.
 
     Raises
     ------

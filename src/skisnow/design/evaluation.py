@@ -62,7 +62,7 @@ class Evaluator:
         Raises
         ------
         SolverError
-            There is no such ski, or no equilibrium.
+            The ski is impossible, or has no equilibrium.
         """
         place = z.tobytes()
         if place not in self._points:
@@ -113,7 +113,7 @@ class Evaluator:
         return np.array(out)
 
     def _factor(self, name: str, value: float, z: FloatArray) -> float:
-        """What a parameter of the ski grows by with a variable: factors and rows of a list multiply each other."""
+        """Factor of a ski parameter by a variable: factors and rows of a list are multiplied."""
         if name in COMBINED:
             return 1.0 if name == "sidecut_mm" else 1.0 / value
         places = zip(self.task.variables, self.values(z), strict=True)

@@ -1,4 +1,4 @@
-"""A ski from what a maker has measured: tables, bend and torsion tests, or three widths alone.
+"""A ski from the measurements of a maker: tables, bend and torsion tests, or only three widths.
 
 Three-point bend tests of a ski whose stiffness varies, with the load F in the middle of the span L at the station s:
 
@@ -40,12 +40,12 @@ _POINTS: Final = 801
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measured:
-    """What is known of a ski, in SI; None: not known.
+    """Known values of a ski, in SI; None: not known.
 
     Attributes
     ----------
     name, tables, mapped
-        Name of the ski, its files, and what the user states of their headings.
+        Name of the ski, its files, and the user's statements about their headings.
     stations_from
         Where the stations of the tables count from: tip, tail or boot.
     boot
@@ -91,7 +91,7 @@ class Stiffness:
 
 @dataclass(frozen=True, slots=True)
 class MeasuredSki:
-    """The ski, its measured stiffnesses, and what is assumed."""
+    """The ski, its measured stiffnesses, and the assumptions."""
 
     ski: Ski
     bending: Stiffness | None
@@ -260,7 +260,7 @@ class _Maker:
         return StationTable(station[order], column[1][order] * unit)
 
     def _stiffness(self, name: str, test: Sequence[str], layout: Layout) -> Stiffness | None:
-        """The column of a stiffness, or what tests give; None without both."""
+        """Column of a stiffness from the table or from tests; None without both."""
         column, tests = self._column(name), self._column(*test)
         if column is not None and tests is not None:
             raise ParameterError(

@@ -50,7 +50,7 @@ class Search:
         return np.asarray(np.sqrt(goal.weight) * self.evaluator.goal_growth(goal, z) / (goal.target or 1.0))
 
     def room(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """How far a limit is kept, relative; negative where it is broken."""
+        """Relative distance to a limit; negative where it is violated."""
         limit, side = (goal.at_most, -1.0) if goal.at_most is not None else (goal.at_least or 1.0, 1.0)
         return np.asarray(side * (self.evaluator.goal_values(goal, z) / limit - 1.0))
 
@@ -97,7 +97,7 @@ class Search:
         return lambda x: np.pad(matrix, ((0, 0), (0, len(x) - self.count)))
 
     def run(self, z: FloatArray) -> FloatArray:
-        """Smallest deviations from a start; where all targets are reached, the design with the least change."""
+        """Smallest deviations from a start; if all targets are reached, the design with the least change."""
         from scipy import optimize
 
         minimize: Any = optimize.minimize  # its overloads know no vectors of constraints

@@ -25,12 +25,12 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     task
         A DESIGN.toml, its contents, or a task that was read.
     progress
-        Is told how many of the starts are done.
+        Called with the share of finished starts.
 
     Returns
     -------
     Design
-        With the ski before and after, the outputs at each condition, the local optima and what was not reached.
+        The ski before and after, the outputs at each condition, the local optima, and the goals that were not reached.
 
     Raises
     ------

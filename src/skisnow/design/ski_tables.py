@@ -92,7 +92,7 @@ def read_ski_table(path: Path, mapped: Mapped) -> dict[str, FloatArray]:
     Raises
     ------
     ParameterError
-        There is no column that is known, a unit is neither named nor stated, or a cell is not a number.
+        No column is known, a unit is neither named nor stated, or a cell is not a number.
     """
 
     def count(cells: Sequence[str]) -> int:

@@ -66,7 +66,7 @@ class DesignTask:
     ski
         The ski to begin with.
     variables
-        What may change, in the order of the file.
+        Variables in the order of the file.
     conditions
         Questions of a carve, one for each combination of the listed edge angles, loads and snows.
     goals, constraints

@@ -31,7 +31,7 @@ class Variable:
 
 
 def combined_names(name: str) -> tuple[str, ...]:
-    """Parameters of the ski whose derivatives make that of a variable."""
+    """Ski parameters from whose derivatives that of a variable follows."""
     if name == "sidecut_mm":
         return tuple(f"ski.{key}" for key in COMBINED[name])
     if name in COMBINED:

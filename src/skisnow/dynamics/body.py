@@ -1,4 +1,4 @@
-"""A rigid body on flexible skis: masses, stiffness and what pulls at it, as arrays."""
+"""A rigid body on flexible skis: masses, stiffness and loads, as arrays."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class Body(ShownFields):
     Raises
     ------
     ParameterError
-        Shapes do not fit, a number is not finite, or there is no ski.
+        Shapes do not match, a number is not finite, or there is no ski.
     """
 
     inertia: FloatArray

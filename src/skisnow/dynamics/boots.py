@@ -22,7 +22,7 @@ FARTHEST_TURN: Final = 1.0
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class BootPose(Shown):
-    """Where a boot is and how it moves, in the frame of the body that carries it.
+    """Pose and motion of a boot in the frame of the body that carries it.
 
     Attributes
     ----------

@@ -31,7 +31,7 @@ its contraction, so a value ten times smaller moves ends by less than their erro
 
 
 class Ended(IntEnum):
-    """How `Dynamics.advance` ended."""
+    """Outcome of `Dynamics.advance`."""
 
     REACHED = 0
     STEP_TOO_SMALL = 1
@@ -119,8 +119,8 @@ class Dynamics:
     Raises
     ------
     ParameterError
-        The contact has another number of runners than the body has skis, a runner not the nodes of its ski, or place
-        and rotation are none.
+        The numbers of runners and skis differ, the nodes of a runner differ from those of its ski, or place and
+        rotation are invalid.
     """
 
     def __init__(
@@ -157,9 +157,9 @@ class Dynamics:
         return self._core
 
     def move_boots(self, motions: Sequence[BootMotion]) -> None:
-        """Let each boot move against the body by its motion. Set new motions before these end.
+        """Move each boot against the body by its motion. Set new motions before these end.
 
-        Before `find_equilibrium` they say where the boots are at rest.
+        Before `find_equilibrium` they state the boots' places at rest.
 
         Raises
         ------
@@ -182,7 +182,7 @@ class Dynamics:
         self._core.hold_body()
 
     def push(self, force: npt.ArrayLike, at: npt.ArrayLike) -> None:
-        """Let a force (N, in space) act on the body at a place in its own frame (m) until another is given."""
+        """Apply a force (N, in space) to the body at a place in its own frame (m), until another one is set."""
         self._core.set_push(shaped("push", force, (3,)), shaped("place of the push", at, (3,)))
 
     @property
@@ -215,7 +215,7 @@ class Dynamics:
         self._core.set_pose(shaped("position", position, (3,)), shaped("rotation", rotation, (3, 3)))
 
     def begin(self, velocity: FloatArray) -> None:
-        """Let the motion begin where the body is: velocity and angular velocity in its own axes (6,)."""
+        """Start the motion at the present place of the body: velocity and angular velocity in its own axes (6,)."""
         self._core.set_velocity(shaped("velocity", velocity, (6,)))
         self._core.begin()
 
@@ -282,7 +282,7 @@ class Dynamics:
 
     @property
     def touches(self) -> bool:
-        """Whether any ski was in the snow at the last time reached."""
+        """True if a ski was in the snow at the end of the last step."""
         return bool(self._core.touches)
 
     @property
@@ -307,7 +307,7 @@ class Dynamics:
     def work(self) -> tuple[float, float, float, float, float, float]:
         """Since `begin` (J): taken by shear and friction, given by the normal force, taken by air and skis.
 
-        The last: what of the normal force's work the snow's dashpot took.
+        The last: the part of the normal force's work that the snow's dashpot absorbed.
         """
         return self._core.work[:6]
 

@@ -233,7 +233,7 @@ def analyse(
     Parameters
     ----------
     campaign
-        A campaign, or the folder that holds one.
+        A campaign, or the path of its folder.
     geometry
         ``extended``: the ski piece with its trapezoid continuation; ``paper``: the plain wedge of Eqn 2.
     seed
@@ -241,8 +241,8 @@ def analyse(
     n_resamples
         Bootstrap resamples of whole experiments, ≥ 100.
     difference
-        Relative difference of two sites, tools, observers or days that the campaign is to detect, > 0; the result tells
-        how many experiments that takes.
+        Relative difference of two sites, tools, observers or days that the campaign should detect, > 0; the result
+        contains the number of experiments for it.
     progress
         Called with a line of text now and then.
 
@@ -260,9 +260,8 @@ def analyse(
 
     See Also
     --------
-    skisnow.read_campaign : the campaign to analyse.
-    skisnow.write_report : what was found, as a page.
-    skisnow.Analysis.snow : the snow of a site for a turn.
+    skisnow.read_campaign : the campaign to analyse. skisnow.write_report : the result as a page. skisnow.Analysis.snow
+    : the snow of a site for a turn.
 
     References
     ----------

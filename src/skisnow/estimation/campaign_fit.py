@@ -94,7 +94,7 @@ class _Line(NamedTuple):
 
 
 class _Reduced(NamedTuple):
-    """Normal equations of (g, δ) of each series after the elimination of ln H, and what gives ln H back."""
+    """Normal equations of (g, δ) of each series after the elimination of ln H, and the terms that give ln H."""
 
     hh: FloatArray
     hg: FloatArray

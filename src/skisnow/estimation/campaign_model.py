@@ -141,7 +141,8 @@ class CampaignModel(ShownFields):
     def factor(self, parts: Parts, group: IntArray, *further: tuple[FloatArray, FloatArray]) -> FloatArray:
         """Student's factor by Welch and Satterthwaite, with at least one degree of freedom.
 
-        ``further`` are parts of the variance with their own degrees of freedom. What no part explains counts as known.
+        ``further`` are parts of the variance with their own degrees of freedom. Variance without a part counts as
+        known.
         """
         pairs = [(getattr(parts, name), getattr(self.freedom, name)[group]) for name in _SPREADS]
         variances, degrees = (np.stack(values, axis=-1) for values in zip(*pairs, *further, strict=True))

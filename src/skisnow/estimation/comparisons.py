@@ -1,4 +1,4 @@
-"""The campaign beside what others published."""
+"""Comparison of the campaign with published values."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class OwnValue:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One published value or range beside the campaign's own; the name of the quantity contains the unit."""
+    """One published value or range next to the campaign's own; the name of the quantity contains the unit."""
 
     source: str
     quantity: str

@@ -175,7 +175,7 @@ class VolumeFactor(ShownFields):
     n
         Number of series.
     raw, expected_raw
-        By least squares, and the value that these estimate where F = H_V V holds, with these errors and layers.
+        By least squares, and the value that these estimate if F = H_V V is true, with these errors and layers.
     value, low, high
         Corrected, and its 95 % interval, NaN with one series.
     """

@@ -225,7 +225,7 @@ class _EffectsFit:
         self.scatter = float(np.sqrt(pooled + error2.mean())) if degrees > 0.5 else float("nan")
 
     def is_estimable(self, a: int, b: int) -> bool:
-        """Whether the data determine the difference of two groups."""
+        """True if the data determine the difference of two groups."""
         off = self._projection[:, a] - self._projection[:, b]
         off[a] -= 1.0
         off[b] += 1.0

@@ -193,7 +193,7 @@ def inverse_of_each(normal: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class GrowingHardness(ShownFields):
-    """Of m series; NaN with fewer than five readings or where the fit found no answer.
+    """Results of m series; NaN with fewer than five readings or where the fit did not converge.
 
     Attributes
     ----------

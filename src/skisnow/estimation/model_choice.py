@@ -1,8 +1,8 @@
 """Tests between nested rows and bootstrap intervals of the coefficients.
 
-The seven readings of a series share one H, so they are not independent, and where a coefficient sits on its bound the F
-distribution does not hold. The F tests are therefore given as the paper gives them, beside the effect size and
-intervals from a bootstrap that draws whole experiments.
+The seven readings of a series share one H, so they are not independent, and for a coefficient at its bound the F
+distribution is not valid. The F tests are therefore given as in the paper, next to the effect size and intervals from a
+bootstrap that draws whole experiments.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ class _HardnessRows:
 
 
 def _undetermined(normal: FloatArray) -> BoolArray:
-    """Which of B normal matrices (B, p, p) leave a coefficient free: no experiment drawn at one end of the angles."""
+    """True for normal matrices (B, p, p) with an undetermined coefficient: no experiment at one end."""
     length = np.sqrt(np.einsum("bii->bi", normal))
     present = (length > 0).all(axis=1)
     scale = np.where(length > 0, length, 1.0)

@@ -69,7 +69,7 @@ class Model:
         return (self.a != "none") + (self.b != "none")
 
     def contains(self, other: Model) -> bool:
-        """Whether the other row is a special case of this one."""
+        """True if the other row is a special case of this one."""
         return (
             self != other
             and self.hardness == other.hardness
@@ -137,7 +137,7 @@ class ModelFit(ShownFields):
 class EndBasis:
     """The four regressors H A (1-t), H A t, H V (1-t), H V t, with t = (ϑ - ϑ_low)/(ϑ_high - ϑ_low).
 
-    Their coefficients are a(ϑ_low), a(ϑ_high), b(ϑ_low), b(ϑ_high). ``flat`` says that ϑ does not vary: t = 0.
+    Their coefficients are a(ϑ_low), a(ϑ_high), b(ϑ_low), b(ϑ_high). ``flat``: ϑ does not vary, and t = 0.
     """
 
     columns: FloatArray
@@ -146,7 +146,7 @@ class EndBasis:
 
     @property
     def flat(self) -> bool:
-        """Whether all series have one edge angle."""
+        """True if all series have the same edge angle."""
         return self.high <= self.low
 
     def projection(self, model: Model) -> FloatArray:
@@ -197,7 +197,7 @@ def end_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b
 
 
 def fit_model(readings: Readings, basis: EndBasis, model: Model, of_load: Condensed) -> ModelFit:
-    """Least-squares fit of one row to all readings (Eqn 6), of which `of_load` holds the basis and the loads."""
+    """Least-squares fit of one row to all readings (Eqn 6); `of_load` contains the basis and the loads."""
     projection, ends = basis.projection(model), basis.offset(model)
     bound, n_parameters = np.zeros(4, dtype=bool), 0
     if model.n_parameters:
@@ -292,7 +292,7 @@ def why_no_choice(readings: Readings) -> str:
 
 
 def select_model(fits: tuple[ModelFit, ...], *, tolerance: float = 0.05) -> ModelFit:
-    """Pick the simplest row whose rmse is within a share of the best: fewest parameters, smaller rmse, fewer terms.
+    """The simplest row with an rmse within a tolerance of the best: fewest parameters, smaller rmse, fewer terms.
 
     Where rows repeat each other, because the edge angle does not vary, the nominally simpler one is chosen.
     """

@@ -90,7 +90,7 @@ class ShearAnalysis(Shown):
 
 
 def used_of(screened: Screened) -> str:
-    """How many of the experiments take part, in words."""
+    """Number of used experiments, in words."""
     return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"
 
 

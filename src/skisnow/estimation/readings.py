@@ -1,4 +1,4 @@
-"""The readings of a campaign with the geometry of their tools: what every estimate starts from."""
+"""Readings of a campaign with the geometry of their tools: the input of every estimate."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Observations(ShownFields):
 def penetration_observations(
     campaign: Campaign, hardness: FloatArray, used: BoolArray, pen: SnowMicroPenAnalysis | None = None
 ) -> Observations:
-    """The used penetration experiments; ``hardness`` is H_V of all of them in N/m³, ``pen`` what recordings say."""
+    """The used penetration experiments; ``hardness``: H_V of all of them in N/m³, ``pen``: results of recordings."""
     keys = (HARDNESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
     tests = campaign.penetration
     if tests is None:
@@ -139,7 +139,7 @@ _ACTION: Final = Message("Look for wrong units, depths or tools, and for snow th
 
 @dataclass(frozen=True, slots=True)
 class RegressionPlan:
-    """Which response on which predictor, over which observations; ``by_site`` adds a regression for each site."""
+    """Response, predictor and observations of a regression; ``by_site`` adds a regression for each site."""
 
     source: Source
     response: str

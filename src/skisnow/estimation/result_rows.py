@@ -44,7 +44,7 @@ def experiment_results(
     geometry
         As in `skisnow.estimation.analyse`.
     screened
-        What `screened_both` gives, where that is at hand.
+        Result of `screened_both`, if already computed.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def without_nan(value: Any) -> Any:
 
 
 class Rows(list[Json]):
-    """Rows made from columns by `column_rows`, in which what does not exist already is None."""
+    """Rows made from columns by `column_rows`; missing values are already None."""
 
 
 def column_rows(columns: dict[str, list[Any]]) -> Rows:
@@ -114,7 +114,7 @@ def finite_or_none(values: FloatArray) -> list[Any]:
 def penetration_experiments(
     tests: PenetrationTests, screened: Screened, estimates: SeriesEstimates | PenetrationAnalysis
 ) -> list[Json]:
-    """The rows ``penetration.experiments``: of each series what it was, its flags, its hardness, its unloading."""
+    """The rows ``penetration.experiments``: description of each series, its flags, its hardness, its unloading."""
     columns: dict[str, list[Any]] = {
         "experiment": list(tests.experiment),
         "site": list(tests.site),
@@ -147,7 +147,7 @@ def _unloading_columns(unloading: Unloading) -> dict[str, list[Any]]:
 
 
 def campaign_model_results(model: CampaignModel, unloading: Unloading) -> Json:
-    """``penetration.campaign_model``: spreads with degrees of freedom by group, priors, and readings left out."""
+    """``penetration.campaign_model``: spreads with degrees of freedom by group, priors, and omitted readings."""
     spreads, freedom, priors = model.spreads, model.freedom, model.priors
     n_series = np.bincount(model.group[model.counts], minlength=len(model.group_names))
     columns = {
@@ -190,7 +190,7 @@ def whole_degrees(angle: FloatArray) -> list[float]:
 def shear_experiments(
     tests: ShearTests, screened: Screened, stress: ShearStress, displacement: ShearDisplacement
 ) -> list[Json]:
-    """The rows ``shear.experiments``: of each test what it was, its flags, its force and stress."""
+    """The rows ``shear.experiments``: description of each test, its flags, its force and stress."""
     return column_rows(
         {
             "experiment": list(tests.experiment),

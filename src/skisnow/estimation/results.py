@@ -1,7 +1,7 @@
 """An analysis as the contents of results.json: the contract with users and other programs.
 
-Each key names its unit; every interval is ``[low, high]`` at 95 %; what does not exist is None, never NaN; numbers are
-not rounded.
+Each key names its unit. Every interval is ``[low, high]`` at 95 %. Missing values are None, never NaN. Numbers are not
+rounded.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def results_dict(analysis: Analysis) -> Json:
     Parameters
     ----------
     analysis
-        What `analyse` gave.
+        Result of `analyse`.
 
     Returns
     -------

@@ -40,7 +40,7 @@ NORMAL_MAD: Final = 1.4826
 class Screened(ShownFields):
     """Quality flags of each experiment by code, and which experiments are used (masks over the experiments).
 
-    ``estimates`` of the penetration series, whose spreads come from the used ones.
+    ``estimates`` of the penetration series; their spreads come from the used series.
     """
 
     flags: Mapping[str, BoolArray]
@@ -113,7 +113,7 @@ def quality_flags(
 ) -> list[Problem]:
     """Every quality flag of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
 
-    ``screened`` is what `screened_both` gives, where that is at hand.
+    ``screened`` is the result of `screened_both`, if already computed.
     """
     penetration, shear = screened or screened_both(campaign, geometry=geometry)
     problems = flag_problems(campaign, penetration.flags, shear.flags, geometry=geometry)

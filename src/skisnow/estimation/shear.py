@@ -67,8 +67,8 @@ def failure_shear_stress(
 def shear_stress(campaign: Campaign, tests: ShearTests) -> ShearStress:
     """F_t and S_f of every test; u²(ln S_f) = (u_M/M)² + (u_r/r)² + (u_e/e)².
 
-    One reading has no scatter of its own: the interval is that of the instruments, without the snow's variation. It is
-    NaN where the campaign states no uncertainty at all. At M = 0 the stress is 0 and the interval one-sided.
+    A single reading has no scatter: its interval is that of the instruments, without the variation of the snow. It is
+    NaN if the campaign states no uncertainty. At M = 0 the stress is 0 and the interval one-sided.
     """
     length = np.array([campaign.plates[name] for name in tests.plate])
     force = failure_shear_force(tests.moment, tests.lever_arm)

@@ -93,7 +93,7 @@ class EvaluatedRecording:
 
     @property
     def is_used(self) -> bool:
-        """Whether it takes part in means and regressions."""
+        """True if the recording is included in means and regressions."""
         return not self.flags
 
 
@@ -174,7 +174,7 @@ def evaluate_profile(
     surface
         Where the snow begins (m from the first sample); NaN: it is estimated.
     is_cancelled
-        Whether its row says so.
+        True if the row states it.
 
     References
     ----------
@@ -292,7 +292,7 @@ def _windows(force: FloatArray, sample_distance: float, area: float, name: str) 
 
 
 def snow_micro_pen_results(analysis: SnowMicroPenAnalysis) -> Json:
-    """The settings, and a row for each recording; NaN stands if the value is missing."""
+    """The settings, and a row for each recording; NaN for missing values."""
     recordings = analysis.recordings
     names = zip(recordings.recording, recordings.site, recordings.spot, recordings.file, strict=True)
     return {

@@ -1,4 +1,4 @@
-"""Groups of series with their own spreads, where one spread for the whole campaign does not hold.
+"""Groups of series with separate spreads, where one spread does not fit the whole campaign.
 
 `campaign_model` has one seating τ and one relative scatter s. Where some sites or tools are several times noisier than
 the others, their intervals would be too narrow and those of the others too wide. Bartlett's test (1937, Proc. R. Soc.
@@ -59,7 +59,7 @@ class SpreadTest:
 
     @property
     def is_clear(self) -> bool:
-        """Whether the spreads differ beyond chance and by a clear factor."""
+        """True if the spreads differ beyond chance and by a clear factor."""
         return self.p < LEVEL and self.factor > CLEAR_FACTOR
 
 
@@ -112,7 +112,8 @@ def spread_tests(model: CampaignModel, index: IntArray) -> tuple[SpreadTest, Spr
 def _offset_squares(model: CampaignModel) -> tuple[FloatArray, FloatArray, FloatArray]:
     """δ² of each series as a sum of squares with degrees of freedom, and its share of τ².
 
-    Under the model the estimate of δ has the variance τ² B, B = 1 - C_δδ/τ²: what the prior leaves to the data.
+    Under the model the estimate of δ has the variance τ² B, B = 1 - C_δδ/τ²: the share that the prior leaves to the
+    data.
     """
     seating2 = model.spreads.seating2[0]
     share = 1.0 - model.covariance[:, 2, 2] / seating2
@@ -164,7 +165,7 @@ def scatter_warning(model: CampaignModel, experiment: Sequence[str]) -> tuple[Me
 def _two_classes(sums: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
     """Probability of the noisier class, twice the gain in log likelihood, and the factor between the first scatters.
 
-    ``sums`` are independent sums of squares with their degrees of freedom; one with 0 says nothing.
+    ``sums`` are independent sums of squares with their degrees of freedom; those with 0 contain no information.
     """
     noisier = np.where(sums[0][0] / sums[0][1] > np.median(sums[0][0] / sums[0][1]), 0.9, 0.1)
     for _ in range(_EM_ROUNDS):

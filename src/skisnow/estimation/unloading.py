@@ -70,8 +70,8 @@ class Unloading(ShownFields):
     unloading_stiffness, unloading_stiffness_interval
         k_u (N/m³) with H_V of Eqn 1, and its 95 % interval (m, 2).
     below_step
-        Mask of the series that came back by less than one step of the gauge. Rounding is no independent error there, so
-        the interval of s is the bound that one step allows, and k_u/H_V has no upper end.
+        Mask of the series that rebounded by less than one step of the gauge. Rounding is not an independent error
+        there, so the interval of s is the bound that one step allows, and k_u/H_V has no upper end.
     rebound_scatter, rebound_freedom
         r, the relative scatter of the rebound, and its degrees of freedom, by group of the model; NaN if not unloaded.
     """
@@ -90,7 +90,7 @@ class Unloading(ShownFields):
 
     @property
     def is_unresolved(self) -> BoolArray:
-        """Series whose rebound ratio could be 0, or whose readings are too few to resolve it."""
+        """Series whose rebound ratio could be 0, or that have too few readings to resolve it."""
         return np.isfinite(self.rebound_ratio) & ~np.isfinite(self.unloading_ratio_interval).all(axis=1)
 
 
@@ -106,7 +106,7 @@ class SiteUnloading:
     low_rebound, high_rebound
         95 % interval of the mean of H_V/k_u.
     stiffness, stiffness_low, stiffness_high
-        k_u (N/m³), the geometric mean over the series whose tool came back, and its 95 % interval from their scatter.
+        k_u (N/m³), the geometric mean over the series whose tool rebounded, and its 95 % interval from their scatter.
     """
 
     site: str | None
@@ -122,7 +122,7 @@ class SiteUnloading:
 
     @property
     def is_resolved(self) -> bool:
-        """Whether both ends of the ratio are known: only such a ratio goes into a snow."""
+        """True if both ends of the ratio are known; only such a ratio is passed to a snow."""
         return bool(np.isfinite([self.ratio, self.low, self.high]).all())
 
 

@@ -50,7 +50,7 @@ class WeatherAtTests(Shown):
         return Facts(f"at {count} of {len(self.experiment)} experiments")
 
     def site_means(self) -> Iterator[tuple[str, int, dict[str, float]]]:
-        """Each site with the number of its experiments whose weather is known, and their means."""
+        """Each site with the number of its experiments with known weather, and their means."""
         names, site_of = index_names(self.site)
         for index, name in enumerate(names):
             mine = {key: values[site_of == index] for key, values in self.quantities.items()}
@@ -64,7 +64,7 @@ def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
 
     Notes
     -----
-    An experiment has weather where the column ``time`` of one of its rows holds a day and a time of day.
+    An experiment has weather if the column ``time`` of one of its rows contains a day and a time of day.
 
     References
     ----------
@@ -115,7 +115,7 @@ def _moment(text: str, utc_offset: float) -> float:
 
 
 def weather_results(weather: CampaignWeather, at_tests: WeatherAtTests) -> Json:
-    """The station, a row for each experiment and one for each site; NaN stands where nothing is known."""
+    """The station, a row for each experiment and one for each site; NaN for unknown values."""
     series = weather.series
     columns = {"kind": at_tests.kind, "experiment": at_tests.experiment, "site": at_tests.site, "time": at_tests.time}
     rows = [dict(zip(columns, cells, strict=True)) for cells in zip(*columns.values(), strict=True)]

@@ -29,7 +29,7 @@ def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:
 
 
 def angles_of(axes: FloatArray) -> FloatArray:
-    """Edge angle, pitch and heading (rad) of axes, (…, 3, 3) to (…, 3): what `axes_of` takes.
+    """Edge angle, pitch and heading (rad) of axes, (…, 3, 3) to (…, 3): the inverse of `axes_of`.
 
     Examples
     --------

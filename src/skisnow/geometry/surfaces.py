@@ -31,12 +31,12 @@ class Grid(ShownFields):
     x, y
         Places (m), (n,) and (m,), evenly spaced and rising; one place in x or y: the same at every x or y.
     values
-        (n, m): height (m), or what varies over the place in its own unit.
+        (n, m): height (m), or another quantity over the place in its unit.
 
     Notes
     -----
     Ferguson's bicubic patches with slopes from central differences: value and slope are continuous, a plane is exact.
-    Beyond its border a height goes on along its slope, another quantity with its last value.
+    Beyond the border a height continues along its slope, another quantity with its last value.
 
     Raises
     ------
@@ -140,7 +140,7 @@ class Patched(NamedTuple):
 
 
 class _Weights(NamedTuple):
-    """Weights of the two ends of a cell along one axis: what multiplies their values, and their slopes."""
+    """Weights of the two ends of a cell along one axis: factors of their values and of their slopes."""
 
     value: tuple[FloatArray, FloatArray]
     slope: tuple[FloatArray, FloatArray]
@@ -225,7 +225,7 @@ HALVING: Final = math.sqrt(math.log(2.0) / math.pi)
 
 
 def smoothed(values: FloatArray, steps: tuple[float, float], *, cutoff: float) -> FloatArray:
-    """Values over a grid without what is shorter than a length.
+    """Values over a grid without structures shorter than a length.
 
     Parameters
     ----------

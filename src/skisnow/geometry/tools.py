@@ -1,8 +1,8 @@
 """Tools pressed into a flat snow surface: projected contact area A and displaced volume V.
 
 Sources: Mössner and others (2013), Eqns 2 and 3, for the edged and the flat ski piece; the continuations are exact
-geometry. Side walls do not count, in A nor in V. For every tool here A = dV/de, because the area is the one projected
-on the snow surface; the tests hold each tool to it.
+geometry. Side walls count neither in A nor in V. For every tool here A = dV/de, because the area is the one projected
+on the snow surface; tests check this for each tool.
 
 All depths are in m, areas in m², volumes in m³, angles in rad. Functions take scalars or arrays and return arrays.
 """
@@ -141,7 +141,7 @@ class PlainWedge(Tool):
 
     Notes
     -----
-    Kept to reproduce the paper. Beyond e = W sin ϑ it counts snow beside the tool; such readings are marked.
+    Kept to reproduce the paper. Beyond e = W sin ϑ it includes snow next to the tool; such readings are marked.
     """
 
     length: Annotated[

@@ -3,7 +3,7 @@
 The ski is computed by `skisnow.carve` at the given edge angle, with half of the normal component of the weight on each
 ski. The remaining depth is e_max (1 - H_V/k_u), the width e_max/tan ϑ at the deepest place, the radius that of the
 circle through the edge line at the boot and both ends of the contact. S_f has no effect while the edge holds. If the
-edge slides, the snow gives its whole resistance 2 S_f ∫ e ds, and the radius follows from the balance across the path:
+edge slides, the snow gives its full resistance 2 S_f ∫ e ds, and the radius follows from the balance across the path:
 
     m v²/R = 2 S_f ∫ e ds - m g sin α sin χ (turn to the left; χ heading from the fall line)
 """
@@ -102,12 +102,12 @@ class GrooveResiduals:
 
     @property
     def accuracy_is_stated(self) -> bool:
-        """Whether the file has standard deviations."""
+        """True if the file contains standard deviations."""
         return self.measured.stated
 
     @property
     def series(self) -> tuple[int, ...]:
-        """How many depths, widths, radii are used."""
+        """Number of depths, widths and radii that are used."""
         return tuple(int(np.sum(use)) for _, _, use in self._columns())
 
     def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:

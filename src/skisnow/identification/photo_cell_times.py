@@ -107,7 +107,7 @@ class PhotoCellTimes:
 
     @property
     def accuracy_is_stated(self) -> bool:
-        """Whether the file has standard deviations."""
+        """True if the file contains standard deviations."""
         return self.cells.runs[0].time_sd is not None
 
     @property

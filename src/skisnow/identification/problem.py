@@ -42,7 +42,7 @@ class Problem:
 
     @property
     def accuracy_is_stated(self) -> bool:
-        """Whether all data state their accuracy."""
+        """True if all data state their accuracy."""
         return all(observation.accuracy_is_stated for observation in self.observations)
 
     @property
@@ -117,7 +117,7 @@ class Problem:
 
 
 def unweighted_problem(parameters: tuple[Parameter, ...], observations: tuple[Observations, ...]) -> Problem:
-    """A problem whose noise is not estimated yet."""
+    """A problem before the estimate of its noise."""
     return Problem(parameters, observations, tuple(1.0 for _ in observations))
 
 

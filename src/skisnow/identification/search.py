@@ -359,7 +359,7 @@ def _moved(state: SearchState, place: FloatArray, residuals: FloatArray) -> Sear
 def _slope_and_bend(
     ends: Sequence[tuple[float, FloatArray | None]], middle: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """First and second derivative of the residuals from the places beside `middle`; 0 if both are missing."""
+    """First and second derivative of the residuals from the points next to `middle`; 0 if both are missing."""
     sides = [(away, value) for away, value in ends if value is not None and abs(away) > 1e-12]
     slopes = [(value - middle) / away for away, value in sides]
     if not slopes:

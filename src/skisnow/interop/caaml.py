@@ -199,7 +199,7 @@ def _text(name: str, text: str, *, uom: str | None = None) -> str:
 
 
 def _printable(text: str) -> str:
-    """Without the control characters that no XML can hold."""
+    """Text without control characters, which XML does not allow."""
     return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", " ", text)
 
 
@@ -208,7 +208,7 @@ def _cm(name: str, length: float) -> str:
 
 
 def _number(value: float) -> str:
-    """Twelve digits: what a unit's size adds to the last ones is taken off."""
+    """Number with twelve digits, which removes the rounding of a unit conversion."""
     return f"{value:.12g}"
 
 

@@ -1,7 +1,7 @@
 """A campaign as NetCDF-3 with CF conventions, for xarray, MATLAB and other readers of labelled arrays.
 
 All numbers are SI. Each table has its own dimension; readings are a contiguous ragged array (CF 9.3.3): ``row_size`` of
-an experiment says how many of the readings, in their order, belong to it.
+an experiment is the number of its consecutive readings.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ def write_chrono_terrain(
     scenario
         Its snow; its slope has to be a plane, which gravity is tilted against in Chrono.
     folder
-        Made where it is missing; Chrono looks for snow.json under its own data folder for vehicles.
+        Created if missing; Chrono searches for snow.json under its own data folder for vehicles.
     size
         Along and across (m), > 0.
     spacing

@@ -1,4 +1,4 @@
-"""From one format to another by the endings of the files: what ``skisnow convert`` does.
+"""Conversion between file formats, chosen by the endings of the files (``skisnow convert``).
 
 A further conversion is one more entry in `CONVERSIONS`.
 """
@@ -54,11 +54,11 @@ class ConvertOptions:
     site
         Site of a campaign; None if it has a single one.
     snow_height
-        Height of the snow on the ground (m), where the source does not say it.
+        Height of the snow on the ground (m), if the source does not state it.
     time
-        ISO 8601, where the source does not say it.
+        ISO 8601, if the source does not state it.
     forces
-        A .mot or .sto file whose columns go into a .c3d file beside the markers.
+        A .mot or .sto file; its columns are written to the .c3d file together with the markers.
     report
         Called with each note about the source, such as the points of a .c3d file that were omitted.
     """
@@ -80,8 +80,8 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     Raises
     ------
     ParameterError
-        No such conversion is known; the message names those that are. Or the target's format demands what the source
-        does not hold.
+        The conversion is unknown (the message lists the known ones), or the target's format requires data that the
+        source does not contain.
     FieldDataError
         The source cannot be read.
     OutputError

@@ -42,7 +42,7 @@ def ski_mjcf(
     segments
         Number of segments of the chains before and behind the binding together, ≥ 4.
     clamp_length
-        That the binding holds straight (m), > 0.
+        Length that the binding keeps straight (m), > 0.
     damping
         Damping of each hinge over its stiffness (s).
     free
@@ -187,7 +187,7 @@ class SnowForces:
     Parameters
     ----------
     model
-        An ``mujoco.MjModel`` whose world's axes are those of the slope.
+        An ``mujoco.MjModel`` whose world axes are those of the slope.
     contact
         Its runners are rigid. The callback takes it over.
     sites
@@ -201,9 +201,9 @@ class SnowForces:
 
     Notes
     -----
-    Explicit: the force at a step's beginning acts over the step, which MuJoCo's Euler takes to the new velocity at
-    once. How long a step may be says docs/how-to/fmu.md. Other models of the process are not stopped. Where the time
-    goes back (a reset), the snow is as it was when this was made.
+    Explicit: the force at the beginning of a step acts over the whole step, and MuJoCo's Euler method applies it to the
+    new velocity at once. docs/how-to/fmu.md gives the largest step. Other models of the process are not affected. A
+    reset of the time restores the snow to the state at construction.
     """
 
     def __init__(self, model: Any, contact: SnowContact, sites: Sequence[str]) -> None:
@@ -273,7 +273,7 @@ class SnowForces:
 
     @contextmanager
     def installed(self) -> Iterator[SnowForces]:
-        """MuJoCo calls this within the block; what it called before, it calls again behind it."""
+        """MuJoCo calls this within the block; the previously installed callback is called after it."""
         before = self._engine.get_mjcb_passive()
         self._engine.set_mjcb_passive(self)
         try:

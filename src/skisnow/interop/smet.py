@@ -35,7 +35,7 @@ def write_smet(series: StationSeries, path: str | Path) -> Path:
 
 
 def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
-    """Write what a campaign takes over of a station: time with its zone, temperatures in °C, humidity in percent.
+    """Write the station's columns that a campaign uses: time with its zone, temperatures in °C, humidity in percent.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Snow pits of a campaign's sites, and their export as CSV with the column names of the NASA SnowEx campaigns.
 
-Heights count from the ground in cm, as there; -9999 means what is not known.
+Heights are above the ground in cm, as in SnowEx; -9999 means unknown.
 """
 
 from __future__ import annotations
@@ -160,9 +160,9 @@ _NO_DEPTH: Final = "Densities and temperatures were noted without a depth and ar
 def site_pit(analysis: Analysis, site: str) -> SnowPit:
     """Snow pit of a site of a campaign.
 
-    Densities of density.csv and beside experiments, and the mean ``snow_temperature_C``, have no depth in a campaign
-    and are put at the surface, which the comment says. Forces are those of the used recordings of a SnowMicroPen, from
-    the surface on.
+    Densities of density.csv and of experiments, and the mean ``snow_temperature_C``, have no depth in a campaign and
+    are put at the surface, as the comment states. Forces are those of the used recordings of a SnowMicroPen, from the
+    surface down.
 
     Raises
     ------
@@ -240,7 +240,7 @@ def _times(campaign: Campaign, site: str) -> list[str]:
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
-    """Every sample of density.csv; then densities beside experiments that are not one of them, each once."""
+    """Every sample of density.csv; then densities of experiments that are not among them, each once."""
     tables = campaign.density, campaign.penetration, campaign.shear
     sampled, *beside = ([] if table is None else list(_densities_of(table, site)) for table in tables)
     others = {density: None for densities in beside for density in densities if density not in sampled}

@@ -1,4 +1,4 @@
-"""A quantity, declared once on the dataclass that holds it: for files, checks, command line, schemas, docs, forms."""
+"""A quantity, declared once on its dataclass: for files, checks, command line, schemas, docs, forms."""
 
 from .._support.errors import meant, nearest
 from .declared import (

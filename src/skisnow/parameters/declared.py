@@ -57,7 +57,7 @@ class Word(Quantity):
 
 
 class Section(NamedTuple):
-    """Where the quantities of a field's own dataclass stand; with `otherwise` words may be for them."""
+    """Place of the quantities of a field's own dataclass; with `otherwise` words may replace them."""
 
     name: str
     otherwise: bool = False
@@ -68,7 +68,7 @@ APART: Final = "apart"
 
 
 class _Slot(NamedTuple):
-    """A field with what its annotation says: its own quantities, and the dataclasses that it may hold."""
+    """A field and its annotation: its own quantities, and the dataclasses that it may contain."""
 
     field: Field[Any]
     own: tuple[Quantity, ...]
@@ -83,14 +83,14 @@ def own_quantities(owner: type) -> tuple[Quantity, ...]:
 
 
 def quantities(owner: type) -> tuple[Quantity, ...]:
-    """The quantities of a dataclass and of the dataclasses that it holds, by section in the order of first sight."""
+    """The quantities of a dataclass and of its nested dataclasses, by section in the order of first occurrence."""
     listed = list(_all(owner))
     sections = list(dict.fromkeys(_section(quantity) for quantity in listed))
     return tuple(sorted(listed, key=lambda quantity: sections.index(_section(quantity))))
 
 
 def require_declared(thing: Any) -> None:
-    """Refuse what a file could not give: what a dataclass's ``__post_init__`` calls.
+    """Raise an error for values that a file could not contain; ``__post_init__`` of a dataclass calls it.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
 
 
 def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
-    """A dataclass of values as given, by name, in the units that the names say, with the dataclasses that it holds.
+    """A dataclass from values by name, in the units in the names, with its nested dataclasses.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
     values
         Values in their ranges; None and missing ones leave the default.
     section
-        Where names without one stand.
+        Section for names without one.
     parts
         Other fields, in SI; they go before.
     """
@@ -227,7 +227,7 @@ _WIDEST: Final = 160
 
 
 def declared_text(thing: Any) -> str:
-    """A dataclass by the names of its quantities, which tell the units: what its ``__repr__`` gives.
+    """Text of a dataclass by the names of its quantities, with units, for its ``__repr__``.
 
     >>> @dataclass(frozen=True, repr=False)
     ... class Step:
@@ -321,7 +321,7 @@ def _members(hint: Any) -> tuple[Any, ...]:
 
 
 def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], needed: bool) -> Quantity:
-    """With what the field says: kind, choices, default."""
+    """The quantity, completed from its field: kind, choices, default."""
     (type_,) = (member for member in members if member is not NoneType)
     choices = get_args(type_) if get_origin(type_) is Literal else ()
     kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
@@ -335,16 +335,16 @@ def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], n
 
 
 def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str, Any]:
-    """The values of a table in their kinds and units, what is left out not among them.
+    """The stated values of a table in their kinds and units.
 
     Parameters
     ----------
     owner
-        The dataclass that declares what may be there; `made` makes one of the values.
+        The dataclass that declares the allowed values; `made` makes one of the values.
     table
         As parsed.
     place
-        Where it stands, for messages.
+        Place of the table, for messages.
 
     Raises
     ------

@@ -47,7 +47,7 @@ def table_schema(quantities: Iterable[Quantity]) -> Schema:
 
 
 def output_schema(quantities: Iterable[Quantity], *, every_null: bool = False) -> Schema:
-    """The schema of a table that says the value in force under every key; null if missing.
+    """Schema of a table with the used value under every key; null if missing.
 
     With `every_null` also a key that has a default, or must be given, may have none in force.
     """

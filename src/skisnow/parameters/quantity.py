@@ -24,7 +24,7 @@ InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How a quantity is searched for: size in its unit (of its logarithm where `logarithmic`), and usual bounds.
+    """Search range of a quantity: size in its unit (of its logarithm if `logarithmic`), and usual bounds.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Quantity:
     origin
         Where the default or the range comes from.
     example
-        How it is given on the command line, with what its values mean.
+        Form on the command line, with the meaning of its values.
     label, symbol
         Short name, such as on the axis of a figure, and its symbol there.
     usual
@@ -102,14 +102,14 @@ class Quantity:
     search
         How it is searched for; None: by the value that the search begins with.
     index
-        Its place, where the field holds several numbers.
+        Index of the quantity, if the field contains several numbers.
     needed
         Whether a value must be given, where the field has no default.
     condition
         Without it the quantity has no effect, and any other value than the default is rejected (default: none).
     kind, choices, default, field
-        Come from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name (None
-        without one), the field's name.
+        Taken from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name
+        (None without one), the field's name.
 
     The range of numbers is that of each.
     """
@@ -196,7 +196,7 @@ class Quantity:
         return f"{words}{f' ({self.unit})' if self.unit else ''}" if words else self.name
 
     def outside(self, values: FloatArray) -> BoolArray:
-        """Which of an array's values, in the unit of the name, are outside the range; NaN is not."""
+        """True for the values of an array, in the unit of the name, outside the range; False for NaN."""
         low = values <= self.lowest if self.above else values < self.lowest
         return low | (values >= self.highest if self.below else values > self.highest)
 
@@ -275,11 +275,11 @@ class Quantity:
 
     @property
     def _held(self) -> float:
-        """Size in SI of the unit that the field holds it in: a field that bears the whole name holds it as given."""
+        """Size in SI of the unit of the field: a field with the whole name stores the value as stated."""
         return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
 
     def in_si(self, value: Any) -> Any:
-        """Give a value in SI, three numbers as a tuple; what is not a number stays.
+        """Value in SI, three numbers as a tuple; values that are not numbers are returned unchanged.
 
         >>> Quantity("solver.step_ms", "step").in_si(0.5)
         0.0005

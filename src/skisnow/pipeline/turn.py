@@ -54,7 +54,7 @@ def turn(
     workers: int | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> TurnChain:
-    """From a campaign to a turn: its snow, the turn on it with two contacts, and a band over what is not known of it.
+    """From a campaign to a turn: its snow, the turn on it with two contacts, a band for the unknown inputs.
 
     Parameters
     ----------
@@ -72,9 +72,9 @@ def turn(
     shear_displacement
         u_y (m) > 0; default: the measured one of the site, or the scenario's own where none is.
     priors
-        Further inputs of the band beside H_V and S_f with the same key, or beside it. Without one, k_u/H_V and
-        u_y are drawn from their measured intervals where the site has them and neither is given above; all else, and
-        they where they were not measured, from `skisnow.pipeline.turn.PRIORS`.
+        Further inputs of the band, which replace those with the same key. By default k_u/H_V and u_y are drawn from
+        their measured intervals if the site has them and neither is stated above; the others from
+        `skisnow.pipeline.turn.PRIORS`.
     runs
         Number of runs of the ensemble, 3 or more.
     seed
@@ -92,7 +92,7 @@ def turn(
     Raises
     ------
     FieldDataError
-        The campaign holds errors.
+        The campaign contains errors.
     ParameterError
         The site has no used penetration experiment, or too few of either kind for intervals; a number is outside its
         range; the scenario or the ski cannot be read.
@@ -236,13 +236,13 @@ OUTPUT: Final = 0.05
 def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Prior, ...]:
     """Inputs of the band next to H_V and S_f, in the order of its columns.
 
-    A prior that is given comes first, then what the snow has measured with an interval, then the usual prior. The
-    camber's rounding is one only where the ski has a camber, as one number.
+    Order of precedence: a stated prior, a measured interval of the snow, the usual prior. The rounding of the camber is
+    an input only for a ski with a camber as one number.
 
     Raises
     ------
     ParameterError
-        One is of what the campaign measures.
+        A prior is for a quantity that the campaign measures.
     """
     measured = {uncertain.key: uncertain for uncertain in measured_of(turn.contact.snow)}
     inputs = {prior.key: measured.get(prior.key, prior) for prior in PRIORS}
@@ -277,7 +277,7 @@ def drawn_scenarios(nominal: Scenario, inputs: Sequence[Measured | Prior], count
 
 
 def latin_hypercube(count: int, inputs: int, generator: np.random.Generator) -> Any:
-    """Shares (count, inputs): each of `count` equal slices of every input holds one, at a random place in its slice."""
+    """Shares (count, inputs): each of `count` equal slices of an input contains one, at a random place."""
     slices = generator.permuted(np.tile(np.arange(count), (inputs, 1)), axis=1).T
     return (slices + generator.random((count, inputs))) / count
 

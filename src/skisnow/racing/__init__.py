@@ -1,4 +1,4 @@
-"""Races: the quickest line through a course, and what ski and snow are worth on it in time."""
+"""Races: the quickest line through a course, and the time that changes of ski and snow cost on it."""
 
 from __future__ import annotations
 

@@ -71,9 +71,9 @@ class RacingLine(Shown):
 
     Notes
     -----
-    Along the way between two apexes the first turn ends at the share τ₁, and the next one begins at 1 - τ₂. The slope
-    of the line there is P sin(πu/(2τ₁)), P between, P sin(π(1 - u)/(2τ₂)), where P follows from the apexes. With
-    τ = ½ it is a half wave. The greatest edge angle follows from the curvature at the apex, π P/(2τ L).
+    Between two apexes the first turn ends at the share τ₁, and the next one begins at 1 - τ₂. The slope of the line
+    there is P sin(πu/(2τ₁)), P between, P sin(π(1 - u)/(2τ₂)), where P follows from the apexes. With τ = ½ it is a half
+    wave. The largest edge angle follows from the curvature at the apex, π P/(2τ L).
 
     References
     ----------
@@ -208,7 +208,7 @@ def skier_of(scenario: Scenario) -> Skier:
 
 
 def follower_line(scenario: Scenario) -> RacingLine:
-    """The line that a scenario's skier follows by itself: half waves past the poles at its clearance."""
+    """The line of a scenario's skier without a search: half waves past the poles at its clearance."""
     course, start = course_of(scenario), (scenario.start.x, scenario.start.y)
     apexes = BalancedSkier(scenario).apexes(course)[1:]
     asides = [abs(y - gate.turning[1]) for (_, y), gate in zip(apexes, course.gates, strict=True)]

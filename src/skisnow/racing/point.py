@@ -56,8 +56,8 @@ class PointRacer:
 
     Notes
     -----
-    v dv/ds = g sin α cos χ - μ √((g cos α)² + a²) - ρ c A v²/(2 m), where a = κ v² + g sin α sin χ is what the
-    snow gives aside: the base bears the load of a carve in balance. Runge and Kutta's method of fourth order.
+    v dv/ds = g sin α cos χ - μ √((g cos α)² + a²) - ρ c A v²/(2 m), where a = κ v² + g sin α sin χ is the side force of
+    the snow per mass: the base bears the load of a carve in balance. Fourth-order Runge–Kutta method.
     """
 
     slope_angle: float
@@ -72,12 +72,12 @@ class PointRacer:
 
     @classmethod
     def of(cls, scenario: Scenario) -> PointRacer:
-        """That of a scenario: its mass with skis, friction, drag and start; its ski at the skier's greatest edge angle.
+        """Point of a scenario: its mass with skis, friction, drag and start; its ski at the skier's largest edge angle.
 
         Raises
         ------
         ParameterError
-            The slope is not a plane, or there is no skier.
+            The slope is not a plane, or the scenario has no skier.
         """
         if not isinstance(scenario.slope, Plane):
             raise ParameterError(
@@ -97,7 +97,7 @@ class PointRacer:
         )
 
     def rates(self, line: Line, x: float, square: float) -> tuple[float, float]:
-        """Of v² (m/s²) and of the time (s/m), down the slope at a place x (m), there v² (m²/s²)."""
+        """Rates of v² (m/s²) and of the time (s/m) per metre down the slope, at a place x (m) with v² (m²/s²)."""
         _, slope, bend = line.at(x)
         long = math.sqrt(1.0 + slope * slope)
         cosine, sine = 1.0 / long, slope / long
@@ -147,7 +147,7 @@ class PointRacer:
         return passages(line.course, MovingPoint(time, place, velocity), sides), (float(x[-1]), float(y[-1]))
 
     def score(self, line: RacingLine) -> Score:
-        """How good a line is; too tight a one fails."""
+        """Score of a line; a line that is too tight fails."""
         result, end = self.race(line)
         own_score = score_of(result, end, finished=True, words="finished")
         tight = self.least_radius * line.greatest_curvature() - 1.0
@@ -187,7 +187,7 @@ class LineSkier:
         return self.skier.period
 
     def __call__(self, moment: Moment) -> Any:
-        """Where the boots shall be at the moment's end."""
+        """Target of the boots at the end of the moment."""
         return self.skier(moment)
 
 
@@ -197,7 +197,7 @@ def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None 
     Parameters
     ----------
     scenario
-        With a skier; its course is not asked.
+        With a skier; its course is ignored.
     line
         Steered by.
     progress
@@ -208,12 +208,12 @@ def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None 
 
 
 def run_score(run: Run) -> Score:
-    """How good a run is; an interrupted one has no score.
+    """Score of a run; an interrupted one has no score.
 
     Raises
     ------
     KeyboardInterrupt
-        The run was interrupted: it says nothing of its line.
+        The run was interrupted, so it has no score.
     """
     if run.outcome == "interrupted":
         raise KeyboardInterrupt
@@ -241,7 +241,7 @@ class Racer:
     room: float = 0.0
 
     def score(self, line: RacingLine) -> Score:
-        """How good a line is."""
+        """Score of a line."""
         if self.model == "point":
             raced = PointRacer.of(self.scenario).score(line)
         else:

@@ -26,7 +26,7 @@ from .windows import RANGES, How, Progress, Search, Windows
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
 class QuickestLine(Shown):
-    """A line that was searched for, beside the one that it began from.
+    """Result of a search, next to the line that it started from.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class QuickestLine(Shown):
 
     @property
     def gained(self) -> float | None:
-        """Time (s) by which it is quicker than what the search began from; None where one of them fails."""
+        """Time (s) by which the result is quicker than the start of the search; None if one of them fails."""
         if self.score.time is None or self.start_score.time is None:
             return None
         return self.start_score.time - self.score.time
@@ -106,13 +106,13 @@ def quickest_line(
     model
         "skier": each evaluation is a simulated run; "point": a mass on the line, on a plane, 5 ms each.
     start
-        Where the search begins; None: the line that the skier follows by itself.
+        Start of the search; None: the skier's own line.
     evaluations
         After which no new batch begins; of each window. 1: only the line where it begins, which needs no cmaes.
     search
-        "surrogate": a Gaussian process of the evaluations so far says where the next four are made; where all turns
-        begin alike it varies them alike at first. "cma": only CMA-ES, for evaluations that cost next to nothing. None:
-        "surrogate" for the skier, "cma" for the point.
+        "surrogate": a Gaussian process of the evaluations so far chooses the next four; where all turns begin alike it
+        varies them alike at first. "cma": only CMA-ES, for very cheap evaluations. None: "surrogate" for the skier,
+        "cma" for the point.
     population
         Evaluations of a batch of CMA-ES; None: 4 + 3 ln n for n numbers.
     spread
@@ -121,15 +121,15 @@ def quickest_line(
         Ends a search before its evaluations are used up, where all values of its last batch, with the surrogate of its
         last two, lie within so much (s).
     window, step
-        Search the turns of so many gates at once, the turns before them as found, then move on by `step` gates; None:
-        all at once. The whole course is searched first, its turns alike where they begin so: turns that no window has
-        had stay as they were found there. Where no line of a window comes through, the window before is searched again.
+        Number of gates whose turns are searched at once; the turns before them stay as found, then the window moves by
+        `step` gates; None: all at once. The whole course is searched first, with equal turns if they begin equal: turns
+        outside all windows keep that result. If no line of a window passes, the window before is searched again.
     ahead
         Gates behind a window that its evaluations race through as well, by the turns that are there: too fast a way to
         the window's last gate fails at them, or is slow.
     room
-        Distance (m) by which both skis have to pass each pole at least, 0 to 1: a line that passes nearer fails. What
-        passes by less with one solver may straddle with another.
+        Smallest distance (m) of both skis from each pole, 0 to 1; a line that passes nearer fails. A smaller distance
+        may become a straddle with another solver.
     seed
         Seed of all random numbers, 0 or more.
     workers
@@ -137,7 +137,7 @@ def quickest_line(
     executor
         Executor used instead of processes of this computer, as of `skisnow.run_batch`.
     checkpoint
-        File of finished evaluations, with which the same call goes on; None: nothing is kept.
+        File of finished evaluations, from which the same call resumes; None: no file.
     progress
         Called with a line of text now and then.
 
@@ -149,8 +149,8 @@ def quickest_line(
     Raises
     ------
     ParameterError
-        There is no course or no skier, a number is out of its range, cmaes is not installed, or the checkpoint is of
-        another search.
+        The scenario has no course or no skier, a number is out of range, cmaes is not installed, or the checkpoint
+        belongs to another search.
 
     See Also
     --------

@@ -19,13 +19,13 @@ ABREAST: Final = 0.45
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Score(ShownFields):
-    """How good a line is.
+    """Score of a line.
 
     Attributes
     ----------
     value
-        What is made small: the time (s) where all gates are passed; else above 1000, and the larger the more gates are
-        not passed, the farther they were missed, and the farther from the last one it ended.
+        Value to minimise: the time (s) if all gates are passed; else above 1000, and larger with the number of missed
+        gates, the distances from them, and the distance of the end from the last gate.
     time
         From the start to the last gate (s); None where it fails.
     passed
@@ -48,7 +48,7 @@ class Score(ShownFields):
 
 
 def score_of(result: CourseResult | None, end: tuple[float, float], *, finished: bool, words: str) -> Score:
-    """The score of what became of the gates.
+    """Score from the passage of the gates.
 
     Parameters
     ----------

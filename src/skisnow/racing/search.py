@@ -42,20 +42,20 @@ class Evaluated:
 
     @property
     def value(self) -> float:
-        """What is made small."""
+        """Value to minimise."""
         return float(self.row["value"])
 
 
 @dataclass(slots=True)
 class Evaluations:
-    """Evaluates batches of places, on several processes, and keeps what is finished.
+    """Evaluates batches of points in several processes, and keeps finished ones.
 
     Attributes
     ----------
     pool
         Computes rows of points (frozen numbers, place).
     kept
-        Rows that are finished; each says its place.
+        Finished rows; each contains its point.
     done
         All evaluations, in their order.
     """
@@ -93,7 +93,7 @@ class Batches:
     evaluations
         Where they are made.
     point_of
-        From a place to what the function takes.
+        Input of the function for a point.
     told
         Called as evaluations come.
     first
@@ -107,12 +107,12 @@ class Batches:
 
     @property
     def found(self) -> list[Evaluated]:
-        """So far."""
+        """Results so far."""
         return self.evaluations.done[self.first :]
 
     @property
     def least(self) -> Evaluated:
-        """The first of the least so far."""
+        """The first minimum so far."""
         return min(self.found, key=lambda evaluation: _finite(evaluation.value))
 
     def evaluate(self, batch: Sequence[FloatArray]) -> None:
@@ -142,7 +142,7 @@ def least_of(
     seed: Sequence[int],
     settled: float = 0.0,
 ) -> Evaluated:
-    """Search the unit cube; the least of `count` evaluations or some more, the first of them at the start itself.
+    """Minimise over the unit cube with about `count` evaluations, the first of them at the start.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ class Surrogate:
 
     @classmethod
     def of(cls, places: FloatArray, values: FloatArray, kinds: int) -> Surrogate:
-        """The likeliest one, whose lengths are the same for each `kinds`-th number.
+        """Surrogate of maximum likelihood, whose length scales are equal for each `kinds`-th number.
 
         Parameters
         ----------
@@ -103,14 +103,14 @@ class Surrogate:
         return cls(places, lengths, level, scale, noise, factor, cho_solve(factor, standard))
 
     def at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Mean and standard deviation, (m,) or (m, q), of what places (m, d) give."""
+        """Mean and standard deviation, (m,) or (m, q), at points (m, d)."""
         kernel = _kernel(places, self.places, self.lengths)
         mean = self.level + self.scale * (kernel @ self._weights)
         left = 1.0 - np.sum(kernel * cho_solve(self._factor, kernel.T).T, axis=1)
         return mean, np.multiply.outer(np.sqrt(np.maximum(left, 1e-12)), self.scale)
 
     def with_mean_at(self, place: FloatArray) -> Surrogate:
-        """Surrogate with one more evaluation whose value is the mean expected there (Kriging believer)."""
+        """Surrogate with one more evaluation whose value is the mean predicted there (Kriging believer)."""
         expected = (self.at(place[None, :])[0] - self.level) / self.scale
         variance = (
             _kernel(self.places, self.places, self.lengths) @ self._weights + (self.noise**2 + SMALLEST) * self._weights
@@ -161,7 +161,7 @@ class Prospects:
 
     @classmethod
     def of(cls, evaluations: Sequence[Evaluated], kinds: int) -> Prospects:
-        """Prospects from two or more evaluations, whose places have `kinds` numbers a turn."""
+        """Prospects from two or more evaluations, whose points have `kinds` numbers for each turn."""
         places = np.array([evaluation.place for evaluation in evaluations])
         times, margins = times_of(evaluations), margins_of(evaluations)
         time = Surrogate.of(places, times, kinds)
@@ -180,10 +180,10 @@ class Prospects:
         return np.asarray(np.sum(log_ndtr(mean / scatter), axis=1))
 
     def worth(self, places: FloatArray, curiosity: float = 1.0, caution: float = 1.0) -> FloatArray:
-        """Logarithm of the time (s) by which places (m, d) may be expected to be quicker than the least.
+        """Logarithm of the expected time (s) by which points (m, d) are quicker than the best so far.
 
-        `curiosity` multiplies the deviation of the time: near 0 only what is expected counts, not what may be;
-        `caution` is the power of the probability of coming through.
+        `curiosity` multiplies the standard deviation of the time: near 0 only the mean counts; `caution` is the
+        exponent of the probability of passing all gates.
         """
         mean, deviation = self.time.at(places)
         deviation = deviation * curiosity
@@ -191,7 +191,7 @@ class Prospects:
         return np.asarray(gain + caution * self.through(places))
 
     def with_mean_at(self, place: FloatArray) -> Prospects:
-        """Prospects with one more evaluation whose values are the means expected there."""
+        """Prospects with one more evaluation whose values are the means predicted there."""
         margins, least = None if self.margins is None else self.margins.with_mean_at(place), self.least
         if self.through(place[None, :])[0] > math.log(0.5):
             least = min(least, float(self.time.at(place[None, :])[0][0]))
@@ -199,7 +199,7 @@ class Prospects:
 
 
 def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
-    """Which came through (n,)."""
+    """True for evaluations that pass all gates (n,)."""
     return np.array([evaluation.value < NOT_PASSED for evaluation in evaluations])
 
 
@@ -214,7 +214,7 @@ def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
 
 
 def margins_of(evaluations: Sequence[Evaluated]) -> FloatArray:
-    """Margins (n, q) (m) of evaluations whose rows have some, and -1 or 1 for failing where they have none."""
+    """Margins (n, q) (m) of evaluations whose rows contain them; without margins 1 for a pass and -1 for a failure."""
     if not evaluations[0].row.get("margins"):
         return np.where(passed_of(evaluations), 1.0, -1.0)[:, None]
     count = max(len(evaluation.row["margins"]) for evaluation in evaluations)

@@ -29,7 +29,7 @@ ALIKE: Final = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Daring:
-    """How a place of a batch is chosen.
+    """Choice of a point of a batch.
 
     Attributes
     ----------
@@ -38,8 +38,8 @@ class Daring:
     caution
         Power of the probability of coming through: with 1 most races fail by millimetres in the end.
     held
-        Share of all directions in which it stays at the centre, by chance: without it the places of a batch lie beside
-        one another.
+        Share of the directions that stay at the centre, at random: without it the points of a batch would be close
+        together.
     """
 
     curiosity: float
@@ -53,7 +53,7 @@ BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SurrogateSearch:
-    """How to search.
+    """Settings of the search.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class SurrogateSearch:
     seed
         Number, 0 or more.
     settled
-        Above 0: ends the search before, where three batches on end have not made the least less by so much.
+        Above 0: the search ends when three batches in a row have not lowered the minimum by this much.
     """
 
     batches: Batches
@@ -79,7 +79,7 @@ class SurrogateSearch:
     settled: float = 0.0
 
     def least(self, start: FloatArray, *, alike: bool = True) -> Evaluated:
-        """The least; where all turns begin `alike` they are searched so at first, then each for itself.
+        """Minimum; if all turns begin `alike`, first with equal turns, then for each turn separately.
 
         References
         ----------
@@ -96,20 +96,20 @@ class SurrogateSearch:
         return self.batches.least
 
     def least_alike(self, start: FloatArray, count: int) -> Evaluated:
-        """The least of about `count` evaluations that have the same numbers for all turns, as the start has."""
+        """Minimum of about `count` evaluations with the same numbers for all turns, as in the start."""
         directions = np.tile(np.eye(self.kinds), (len(start) // self.kinds, 1))
         self.batches.evaluate([np.asarray(start, float)])
         self._narrow(directions, self.first_of(self.kinds), count, 0)
         return self.batches.least
 
     def begins_alike(self, start: FloatArray) -> bool:
-        """Whether there are turns that all have the same numbers."""
+        """True if several turns have the same numbers."""
         turns = len(start) // self.kinds
         return turns > 1 and np.array_equal(np.tile(start[: self.kinds], turns), start)
 
     @staticmethod
     def first_of(numbers: int) -> int:
-        """Evaluations before the process is asked."""
+        """Evaluations before the surrogate is used."""
         return 2 * numbers + 2
 
     def _narrow(self, directions: FloatArray, drawn: int, count: int, phase: int) -> None:
@@ -132,7 +132,7 @@ class SurrogateSearch:
                 return
 
     def _chosen(self, directions: FloatArray, box: float, phase: int) -> list[FloatArray]:
-        """A batch, each place as if those before it had given what is expected."""
+        """A batch; for each point the earlier points of the batch count with their predicted values."""
         evaluations = self.batches.found
         prospects = Prospects.of(evaluations, self.kinds)
         centre = self._numbers(directions, np.array(self._centre(prospects).place))
@@ -168,7 +168,7 @@ def _best_within(
     prospects: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: Daring,
     seed: Sequence[int],
 ) -> FloatArray:  # fmt: skip
-    """Where most is to be expected, within a box about the centre and the unit cube (m,)."""
+    """Point of the largest prospect within a box about the centre and the unit cube (m,)."""
     limits = np.stack([np.maximum(centre - box, 0.0), np.minimum(centre + box, 1.0)], axis=1)
     optimiser = optimiser_within(limits, np.clip(centre, *limits.T), 0.4 * box, seed)
     best, most = centre, -math.inf

@@ -1,4 +1,4 @@
-"""Where in a course a line is searched: all turns at once, or those of a window that moves on."""
+"""Windows of a search over a course: all turns at once, or those of a window that moves."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LOW: Final = np.array([low for low, _ in RANGES.values()])
 
 @dataclass(frozen=True, slots=True)
 class How:
-    """How a window is searched: the arguments of `quickest_line`."""
+    """Settings of a window's search: the arguments of `quickest_line`."""
 
     search: Search
     evaluations: int
@@ -91,7 +91,7 @@ class Windows:
         return batches.least
 
     def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
-        """The least over the turns from a gate on and before another, raced up to an end."""
+        """Minimum over the turns from one gate to before another; the race ends at `end`."""
         batches, place = self._batches(line, first, last, end), _place(line, first, last)
         how = self.how
         if how.search == "cma" or how.evaluations == 1:
@@ -129,6 +129,6 @@ def _as_found(line: RacingLine, evaluation: Evaluated) -> RacingLine:
 
 
 def _place(line: RacingLine, first: int, last: int) -> FloatArray:
-    """Where the turns of a line from a gate on and before another are in the unit cube."""
+    """Point in the unit cube of the turns of a line from one gate to before another."""
     numbers = [[turn.aside, turn.along, turn.turning] for turn in line.turns[first:last]]
     return np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()

@@ -117,7 +117,7 @@ def compare_variants(
     scenario
         As it is.
     others
-        Variants by their names; what they change of the snow they change of each snow.
+        Variants by name; a change of the snow applies to each snow.
     line
         That all of them take.
     snows
@@ -128,7 +128,7 @@ def compare_variants(
     Raises
     ------
     ParameterError
-        There is no snow or no variant, or the checkpoint is of another comparison.
+        There is no snow or no variant, or the checkpoint belongs to another comparison.
     """
     require_choice("model", model, get_args(RacerModel))
     if AS_IT_IS in others:
@@ -174,7 +174,7 @@ class ScoredScenario:
 
 
 def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
-    """A snow and so many drawn from the uncertainty of its values: a Latin hypercube over H_V and S_f.
+    """A snow, and `count` snows drawn from the uncertainty of its values: a Latin hypercube over H_V and S_f.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def worth_changes(scenario: Scenario) -> dict[str, Scenario]:
 
 
 def wider(ski: Ski, more: float) -> Ski:
-    """A ski whose waist has so much more width (m), falling to none at the ends of its sidecut."""
+    """A ski with a waist wider by this width (m); the change falls to 0 at the ends of the sidecut."""
     along = np.clip((ski.station - ski.sidecut_middle) / (0.5 * ski.sidecut_length), -1.0, 1.0)
     return replace(ski, name=f"{ski.name}, waist {more * 1e3:+g} mm", width=ski.width + more * (1.0 - along**2))
 

@@ -209,9 +209,9 @@ def linear(colour: npt.ArrayLike) -> FloatArray:
 
 
 def end_of_force_scale(force: FloatArray) -> float:
-    """The end (N/m) of a scale of forces per length: a round number above what a twentieth of those that press exceed.
+    """Upper end (N/m) of a scale of forces per length: a round number that 5 % of the positive forces exceed.
 
-    The largest of a run may be a moment's, beside which most of a ski would be pale.
+    The largest force of a run may be a short peak; most of a ski would be pale next to it.
 
     >>> end_of_force_scale(np.array([*np.linspace(10.0, 2000.0, 200), 30_000.0])), end_of_force_scale(np.zeros(3))
     (2000.0, 1.0)

@@ -200,7 +200,7 @@ class Replay:
     title, facts
         Title, and lines of name and value for the reader.
     tilt
-        Angle of the shown plane's x axis below the horizontal (rad): a plane's inclination; 0 on a profile and a
+        Angle of the shown plane's x axis below the horizontal (rad): the inclination of a plane; 0 on a profile and a
         terrain, whose axes are horizontal and vertical.
     profile
         Distance and height of a measured slope (m), shape (p, 2).

@@ -107,7 +107,7 @@ def _draw_along_ski(axes: Axes, answers: list[Json], key: str, label: str) -> No
 
 
 def _draw_surface(axes: Axes, answers: list[Json]) -> None:
-    """Let depth grow downwards, and limit the height above the snow so that the groove stays visible."""
+    """Draw depth downwards, and limit the height above the snow so that the groove stays visible."""
     depths = [depth for answer in answers for depth in answer["edge_depth_mm"] or () if depth is not None]
     deepest = max(depths, default=1.0)
     axes.set_ylim(1.15 * deepest, -min(0.6 * deepest, max(0.0, -min(depths, default=0.0)) + 0.08 * deepest))

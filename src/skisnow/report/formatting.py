@@ -24,7 +24,7 @@ _LARGEST_P: Final = 0.99
 
 
 def significant(value: float | None, digits: int = 3, *, style: Style = "typeset") -> str:
-    """A number with so many significant digits; the digits before the point are kept below 10⁶.
+    """A number with this number of significant digits; the digits before the point are kept below 10⁶.
 
     >>> significant(0.034412), significant(1652.4), significant(-2.0e-7), significant(None)
     ('0.0344', '1652', '−2.00×10⁻⁷', '–')

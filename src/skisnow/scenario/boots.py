@@ -58,15 +58,15 @@ class Boots(Shown):
         "sledge": of the sledge, which the snow moves; "slope": of the slope, so that the boots follow the table
         and nothing else moves them.
     over
-        What ``at`` is; "distance" goes with the frame of the sledge.
+        Argument of ``at``; "distance" needs the frame of the sledge.
     source
         Where they come from, in words.
 
     Raises
     ------
     ParameterError
-        Fewer than four rows, shapes that do not fit, a number that is not finite, rows that do not rise, or axes that
-        are none.
+        Fewer than four rows, shapes that do not match, a number that is not finite, rows that do not rise, or invalid
+        axes.
 
     See Also
     --------
@@ -225,8 +225,8 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing or unknown, a cell holds no finite number (file, row, column and
-        value are named), or it is not a table of boots.
+        The file cannot be read, a column is missing or unknown, a cell is not a finite number (the message names file,
+        row, column and value), or the file is not a table of boots.
     """
     path = Path(path)
     (_, names), *rows = _rows(path, plain_text(path, most_bytes=_MOST_BYTES))
@@ -300,7 +300,7 @@ def _of_csv(path: Path, text: str) -> list[Row]:
 
 
 def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str]]:
-    """Rows of OpenSim's table, and what its head says."""
+    """Rows of OpenSim's table, and the statements of its header."""
     ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
     if not ends:
         raise ParameterError(

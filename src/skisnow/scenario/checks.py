@@ -33,20 +33,19 @@ def require_sound(
     Raises
     ------
     ParameterError
-        The first thing that is wrong: what it is, what is allowed, what to do.
+        The first error: problem, allowed values, fix.
     """
     for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
         raise ParameterError(complaint, code="contradiction")
 
 
 def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
-    """Refuse what a skier cannot do with the rest of a scenario.
+    """Raise an error for a skier that contradicts the rest of the scenario.
 
     Raises
     ------
     ParameterError
-        The boots are edged or moved by a table, there are no gates to steer by, or the legs are
-        too short.
+        The boots are edged or moved by a table, there are no gates to pass, or the legs are too short.
     """
     if skier is None:
         return

@@ -1,4 +1,4 @@
-"""How snow and skis of a scenario meet."""
+"""Contact of skis and snow in a scenario."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _map_source(snow_map: SnowMap | None) -> str | None:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Contact:
-    """How snow and skis meet.
+    """Contact of skis and snow.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Contact:
     damping, delayed_share, retardation_time
         c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
     friction, friction_by_speed, friction_acts_on, friction_direction
-        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); what it is multiplied with, and where the product points.
+        μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); the load that it multiplies, and the direction of the force.
 
     See Also
     --------
@@ -271,7 +271,7 @@ class Contact:
 
     @property
     def is_layered(self) -> bool:
-        """Whether the pressure is not in proportion to the depth."""
+        """True if the pressure is not proportional to the depth."""
         return self.layer_depth is not None or self.hardness_growth > 0.0
 
     @property

@@ -1,4 +1,4 @@
-"""The section ``[identify]`` of a scenario's file: what may be looked for. A run does not heed it, but reads it."""
+"""The section ``[identify]`` of a scenario file: parameters to identify. A run reads it without using it."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ class Prior:
         return (self.low * own, self.high * own) if self.about else (self.low, self.high)
 
     def at(self, shares: FloatArray, own: float) -> FloatArray:
-        """Values at shares (n,) between 0 and 1, kept inside what the key allows."""
+        """Values at shares (n,) between 0 and 1, within the range of the key."""
         low, high = self.ends(own)
         key = SCENARIO_KEYS[self.key]
         return np.clip(low * (self.high / self.low) ** shares, key.lowest, key.highest) if high > 0.0 else 0.0 * shares
@@ -232,7 +232,7 @@ class Measured:
     high: float
 
     def at(self, shares: FloatArray, own: float) -> FloatArray:  # noqa: ARG002
-        """Values at shares (n,) between 0 and 1, kept inside what the key allows; the scenario's own plays no part."""
+        """Values at shares (n,) from 0 to 1, within the range of the key; independent of the scenario's own value."""
         key = SCENARIO_KEYS[self.key]
         return np.clip(log_normal(self.value, (self.low, self.high), shares), key.lowest, key.highest)
 

@@ -140,8 +140,8 @@ def parse_change(text: str) -> tuple[str, object]:
 def scenario_values(scenario: Scenario) -> dict[str, Any]:
     """Every key of `SCENARIO_KEYS` with the value in force; None where the scenario does not have it.
 
-    Also of a scenario that was built in Python: its snow stands as numbers, a ski that is not in the catalogue and a
-    profile under the name and the source they have.
+    Also of a scenario that was built in Python: its snow appears as numbers; a ski that is not in the catalogue and a
+    profile appear with their name and source.
     """
     values = values_of(scenario)
     return {name: values.get(name) for name in SCENARIO_KEYS}
@@ -202,7 +202,7 @@ def free_key(word: str) -> str:
     Raises
     ------
     ParameterError
-        No key or several are meant, or the key is not a number that can be looked for; near ones are named.
+        No key or several keys match, or the key is not a number that can be identified; the message lists similar ones.
 
     Examples
     --------

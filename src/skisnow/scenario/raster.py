@@ -99,7 +99,7 @@ def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> flo
     Raises
     ------
     ParameterError
-        The cell holds no finite number, or one outside the limits of its column.
+        The cell is not a finite number, or outside the limits of its column.
     """
     value = row.number(column)
     allowed = limits or LIMITS[column]

@@ -31,8 +31,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     Raises
     ------
     ParameterError
-        rasterio is not installed, the file cannot be read, it has several bands or colours, it does not say where it
-        lies, its rows do not run east, or the grid breaks a rule of `raster`.
+        rasterio is not installed, the file cannot be read, it has several bands or colours, its position is missing,
+        its rows do not run east, or the grid breaks a rule of `raster`.
     """
     if not is_file(path):
         raise ParameterError(
@@ -314,9 +314,9 @@ def read_grid_table(path: str | Path, columns: Sequence[str], *, action: Message
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell holds no finite number or one outside `LIMITS`, a
-        place is listed twice or not at all, places are not evenly spaced, or x and y look like degrees; file, row,
-        column and value are named.
+        The file cannot be read, a column is missing, a cell is not a finite number or outside `LIMITS`, a place is
+        listed twice or missing, places are not evenly spaced, or x and y look like degrees; the message names file,
+        row, column and value.
     """
     names, rows, cells = ("x_m", "y_m", *columns), [], []
     for row in csv_rows(path, names, action=action):

@@ -78,13 +78,13 @@ def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     Raises
     ------
     ParameterError
-        There is no such scenario; a key is unknown (the nearest is named), missing, said twice or outside its range; a
-        file that it names cannot be read; or its parts do not go together.
+        The scenario does not exist; a key is unknown (the message names the nearest), missing, repeated or out of
+        range; a file that it names cannot be read; or its parts contradict each other.
 
     Warns
     -----
     RangeWarning
-        A value of a ski file is beyond what skis usually have.
+        A value of a ski file is outside the usual range.
 
     See Also
     --------
@@ -240,7 +240,7 @@ def scenario_names() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        What `skisnow.scenario` takes.
+        Names that `skisnow.load_scenario` accepts.
 
     See Also
     --------
@@ -260,18 +260,18 @@ def scenario_names() -> tuple[str, ...]:
 
 
 def scenario_place(name: str) -> Path:
-    """Where a built-in scenario lies."""
+    """Path of a built-in scenario."""
     return Path(str(_FOLDER / f"{name}.toml"))
 
 
 @cache
 def scenario_text(name: str) -> str:
-    """The text of a built-in scenario, every key with where its value comes from, defaults behind what the file names.
+    """Text of a built-in scenario: every key with the origin of its value; defaults follow the keys of the file.
 
     Raises
     ------
     ParameterError
-        There is no such scenario; the nearest is named.
+        The scenario does not exist; the message names the nearest.
     """
     if name not in scenario_names():
         raise ParameterError(

@@ -1,4 +1,4 @@
-"""Where a run begins, and when it is done."""
+"""Start and end of a run."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ Method: TypeAlias = Literal["default", "fast"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Solver:
-    """How it is computed; lengths in m, times in s. Values of None are derived from ski and snow.
+    """Settings of the computation; lengths in m, times in s. None: derived from ski and snow.
 
     See Also
     --------

@@ -1,6 +1,6 @@
 """A scenario: everything that a simulated turn follows from, SI, radians.
 
-Each field declares what a file may say of it: its key with unit, range, origin of the default, size for a search.
+Each field declares its key in a file with unit, range, origin of the default, and size for a search.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def course_on_slope(course: Course, slope: Slope) -> Course:
     Raises
     ------
     ParameterError
-        It is in degrees, and nothing says where x points.
+        The course is in degrees, and the direction of x is missing.
     """
     return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
@@ -68,9 +68,9 @@ class Scenario(Shown):
     sledge
         The rigid part with its edge angle, without the skis.
     ski, camber_rounding, stiffness_factor, clamp_length, footprint_stiffness, damping_ratio
-        The ski of both sides, the length over which its camber levels out (m; None: the ski's own), what its EI and GJ
-        are multiplied with, the length that its binding keeps straight (m), or holds with a stiffness (N/m²; None:
-        rigid), damping of its first bending mode.
+        The ski of both sides, the length over which its camber levels out (m; None: the ski's own), the factors of its
+        EI and GJ, the length that its binding keeps straight (m) or supports with a stiffness (N/m²; None: rigid),
+        damping of its first bending mode.
     boots
         Where the boots are against the sledge, or in the slope, over time or distance; None: they stay.
     start, stop, solver
@@ -78,7 +78,7 @@ class Scenario(Shown):
     gravity
         (m/s²), > 0.
     course
-        Gates whose passing a run reports; a course in degrees is laid on the slope. None: there are none.
+        Gates whose passing a run reports; a course in degrees is projected on the slope. None: no gates.
     skier
         Who moves the boots, keeps balance and steers; None without a skier.
 
@@ -229,9 +229,9 @@ class Scenario(Shown):
         Parameters
         ----------
         **changes
-            Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio is
-            taken over where it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers
-            by the keys of a scenario's file without their section, in the units that they name.
+            Parts by the names of the attributes above, and ``snow``: a `SnowProperties`, whose unloading ratio is used
+            if it has one, or the name of a published snow. ``ski`` may be a name or a file, too. Numbers by the keys of
+            a scenario file without their section, in the units in their names.
 
         Raises
         ------

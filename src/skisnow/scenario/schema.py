@@ -52,7 +52,7 @@ def scenario_schema() -> Schema:
 
 
 def output_scenario_schema() -> Schema:
-    """The schema of a scenario as summary.json says it: every key with the value in force."""
+    """Schema of the scenario in summary.json: every key with the value in force."""
     sections = {name: output_schema(_keys(name), every_null=True) for name in SECTIONS}
     return {"type": "object", "additionalProperties": False, "required": list(sections), "properties": sections}
 

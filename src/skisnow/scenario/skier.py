@@ -1,4 +1,4 @@
-"""The skier of a run: what it does, and the numbers of its control."""
+"""The skier of a run: its task, and the numbers of its control."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class Skier:
         The plan: when the first half turn begins (s), how long a whole turn takes (s), how many there are, the first
         one counted as a half, the course at the edge change (rad), and to which side the first one goes.
     pole_clearance, line_rate
-        Through gates: how far beside the turning poles the boots' middle is to pass (m), and the rate (1/s) at which
-        carved turns go back to the line.
+        Through gates: distance at which the boots' middle passes the turning poles (m), and the rate (1/s) at which
+        carved turns return to the line.
     brakes_to
-        To which skidded turns brake (m/s); 0: turns are carved, as far as the snow holds.
+        Target speed of the braking in skidded turns (m/s); 0: turns are carved as far as the snow holds.
     assumed_hardness, assumed_strength
         H_V (N/m³) and S_f (N/m²) that the control assumes; 0: those of the scenario.
     longest_leg, greatest_edge, greatest_hip, hip_torque, greatest_shift, greatest_shift_speed

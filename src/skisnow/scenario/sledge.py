@@ -198,11 +198,11 @@ class Shear:
     snow_density
         ρ (kg/m³) of ``by-density``.
     dynamic_shear_strength, transverse_friction, least_shear_plane
-        S (N/m²), μ_t and the least (ϑ - β)/2 (rad) of ``machining``.
+        S (N/m²), μ_t and the lower limit of (ϑ - β)/2 (rad) of ``machining``.
     residual_ratio, slip_weakening
         Share of the strength that slip leaves, and the slip (m) over which it is reached.
     bearing
-        Height that holds an edge against a motion inwards.
+        Height by which an edge resists an inward motion.
     """
 
     law: Annotated[

@@ -76,7 +76,7 @@ class Profile(Shown):
     source
         Where it comes from, in words.
     gap
-        What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
+        Action if neighbouring points are more than 5 m apart: "error", or "interpolate".
 
     Raises
     ------
@@ -152,7 +152,7 @@ class Profile(Shown):
         return np.asarray(self._curve.c)
 
     def heights(self, x: npt.ArrayLike) -> FloatArray:
-        """Heights (m) at x (m, any shape); beyond the ends the slope there goes on."""
+        """Heights (m) at x (m, any shape); beyond the ends the slope of the end continues."""
         at = np.asarray(x, float)
         within = np.clip(at, *self.ends)
         return np.asarray(self._curve(within) + self._curve(within, 1) * (at - within))
@@ -246,13 +246,13 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
         A CSV file with a first line ``x,y``: horizontal distance, rising, and height, both in m. Commas, semicolons or
         tabs between cells; decimal points, or commas where cells are parted otherwise. Other columns are not read.
     gap
-        What to do where neighbouring points are more than 5 m apart: "error", or "interpolate" over it.
+        Action if neighbouring points are more than 5 m apart: "error", or "interpolate".
 
     Raises
     ------
     ParameterError
-        The file cannot be read, a column is missing, a cell holds no finite number or an impossible one (file, row,
-        column and value are named), or it is not a profile: too few points, x that does not rise, a gap, a cliff.
+        The file cannot be read, a column is missing, a cell is not a finite number or an impossible one (the message
+        names file, row, column and value), or the points are no profile: too few, x that does not rise, a gap, a cliff.
     """
     limits = profile_limits(COLUMNS)
     rows = csv_rows(path, COLUMNS, action=_ACTION)

@@ -28,7 +28,7 @@ _PATCHES_AT_ONCE: Final = 16_384
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SnowMap(Shown):
-    """H_V, S_f and friction over the place, in the scenario's coordinates; beyond its border the last value goes on.
+    """H_V, S_f and friction over the place, in the scenario's coordinates; beyond its border the last value continues.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class SnowMap(Shown):
     Raises
     ------
     ParameterError
-        It holds none of them, or a value that is not above 0, at its places or between them.
+        It contains none of them, or a value that is not above 0, at its places or between them.
 
     See Also
     --------
@@ -203,7 +203,7 @@ def read_snow_map(path: str | Path) -> SnowMap:
 
 
 def _positive(row: CsvRow) -> CsvRow:
-    """The row, if what it says of the snow is above 0."""
+    """The row, if its snow properties are above 0."""
     for name in SIZES:
         if name in row.cells and not number_within(row, name) > 0.0:
             raise row.refused(name, Message("A number above 0 is needed."), code="out_of_range")

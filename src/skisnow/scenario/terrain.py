@@ -175,7 +175,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
     Parameters
     ----------
     path
-        ``.asc`` or ``.agr``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF, whose first band are the heights. Any
+        ``.asc`` or ``.agr``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF, with the heights in the first band. Any
         other: CSV with the columns ``x_m``, ``y_m``, ``z_m``, rows in any order.
     smoothing, origin_x, origin_y
         As of `Terrain` (m).

@@ -1,4 +1,4 @@
-"""The simulated run of a sledge on two skis: what comes out of a scenario, and how exact it is."""
+"""The simulated run of a sledge on two skis: from a scenario to its results and their accuracy."""
 
 from __future__ import annotations
 

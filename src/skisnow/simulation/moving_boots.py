@@ -24,7 +24,7 @@ class BootMoment(Shown):
     Attributes
     ----------
     time, until
-        Now, and when the boots shall be there (s); equal at the start.
+        Pose now, and the time at which the boots reach the target (s); equal at the start.
     distance
         Run so far (m).
     position, rotation, velocity
@@ -77,7 +77,7 @@ SAME_TIME: Final = 1e-9
 
 @dataclass(slots=True)
 class BootDrive:
-    """Boots that move as a control says."""
+    """Boots moved by a control."""
 
     control: BootControl
     held: bool = False

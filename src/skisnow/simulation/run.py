@@ -1,4 +1,4 @@
-"""A run: what came out of a scenario, over time and along the skis, and how it ended."""
+"""A run: results of a scenario over time and along the skis, and the way it ended."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ class Run(Shown):
     scenario
         The simulated scenario.
     outcome, remedy
-        How it ended, and what that means and what to do, in words.
+        Outcome, and its meaning and remedy in words.
     time
         (n,) from the start (s).
     place
@@ -204,14 +204,14 @@ class Run(Shown):
 
     @property
     def balance(self) -> BalanceHistory:
-        """How the body leant over its skis, and what would have been in balance; needs `boots`."""
+        """Lean of the body over its skis, and the lean in balance; needs `boots`."""
         from .run_forces import balance_of
 
         return balance_of(self)
 
     @property
     def track(self) -> Track:
-        """The path of the middle between the boots, as track.csv has it: what `skisnow.compare` takes."""
+        """Path of the middle between the boots, as in track.csv: the input of `skisnow.compare`."""
         slope = self.scenario.slope
         axes = ("x down the fall line", "z out of the snow")
         if not isinstance(slope, Plane):
@@ -250,14 +250,14 @@ class Run(Shown):
         Raises
         ------
         ParameterError
-            There is no such figure, or the run ended before its first step.
+            The figure does not exist, or the run ended before its first step.
         """
         from ..report.run.drawings import run_figure
 
         return run_figure(self, what)
 
     def report(self, folder: str | Path) -> Path:
-        """Write what ``skisnow simulate --out`` writes: summary.json, track.csv, run.nc, figures/ and report.html.
+        """Write the files of ``skisnow simulate --out``: summary.json, track.csv, run.nc, figures/ and report.html.
 
         Returns
         -------
@@ -334,7 +334,7 @@ class Run(Shown):
     def energy_exchanged(self) -> float:
         """Kinetic energy at the start, all losses, and the largest fall in potential energy (J).
 
-        Boots that move may give energy and take it; what they took is a loss here.
+        Moving boots may supply or absorb energy; the absorbed energy is a loss here.
         """
         potential = self.energies["potential"]
         lost = sum(float(self.energies[name][-1]) for name in LOST)
@@ -358,7 +358,7 @@ class Run(Shown):
         return abs(change + lost - sum(float(self._given(name)[-1]) for name in GIVEN))
 
     def has_residual_above(self, share: float) -> bool:
-        """Whether the energy residual is more than a share of the energy exchanged, and more than 0.001 J."""
+        """True if the energy residual exceeds a share of the energy exchanged, and 0.001 J."""
         error = self.energy_balance_error
         return error is not None and error > share and self.energy_residual > LEAST_OPEN
 

@@ -25,12 +25,12 @@ LEAST_LOAD: Final = 50.0
 
 
 def balance_of(run: Run) -> BalanceHistory:
-    """How the body leant.
+    """Lean of the body.
 
     Parameters
     ----------
     run
-        What `skisnow.simulate` gave.
+        Result of `skisnow.simulate`.
 
     Raises
     ------
@@ -120,7 +120,7 @@ class BalanceHistory(Shown):
         Lean of a body in balance with speed v and path radius R of the centre of mass:
         tan Ψ = v²/(R g cos α) - tan α cos χ, χ from the horizontal (rad); NaN at both ends of a run.
     rolling_lean
-        The same with what the body's roll and the rise of its centre of mass take: tan Ψ = (a_l + I φ''/(m z))/(a_n),
+        The same, corrected for the body's roll and the rise of its centre of mass: tan Ψ = (a_l + I φ''/(m z))/(a_n),
         a_l and a_n the accelerations to the left and off the snow without gravity's share, φ the body's roll, z the
         height of the centre of mass (rad); NaN at both ends.
     angulation

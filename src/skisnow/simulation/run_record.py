@@ -26,7 +26,7 @@ _OUTCOMES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small"
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """What is stored of one moment of output, SI.
+    """Values of one output time, SI.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Record:
     def advance(
         self, moment: float, *, replace: bool = False, is_over: Callable[[], bool] = lambda: False
     ) -> Outcome | None:
-        """Let the run go on to a moment (s) and store it, with `replace` instead of the last one.
+        """Continue the run to a time (s) and store it, with `replace` instead of the last one.
 
         The outcome if the steps cannot go on. `is_over`: see `Setup.advance`.
         """
@@ -109,7 +109,7 @@ class Record:
 
     @property
     def gains_energy(self) -> bool:
-        """Whether motion, height and deflection have more energy than at the start: numbers have diverged."""
+        """True if motion, height and deflection have more energy than at the start: numbers have diverged."""
         first, last = self._moments[0].energies, self._moments[-1].energies
         energy_given = sum(last[-len(GIVEN) :])
         gained = sum(last[:_MECHANICAL]) - sum(first[:_MECHANICAL]) - energy_given

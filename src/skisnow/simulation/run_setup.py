@@ -168,7 +168,7 @@ class Setup:
 
     @property
     def sinks(self) -> bool:
-        """Whether the snow does not even bear the sledge with its bases flat and ten centimetres deep."""
+        """True if the snow cannot carry the sledge even with its bases flat and ten centimetres deep."""
         ski = self.scenario.ski
         length = float(ski.station[0] - ski.station[-1])
         area = length * float(np.mean(ski.at(np.linspace(float(ski.station[-1]), float(ski.station[0]), 101)).width))
@@ -176,7 +176,7 @@ class Setup:
 
     @property
     def past_end(self) -> bool:
-        """Whether tips or boots are past the end of the slope, or past a side of it."""
+        """True if tips or boots are beyond the end or a side of the slope."""
         if isinstance(self.scenario.slope, Plane):
             return False
         boots, ahead = self.place[:2], self.attitude[:2, 0]
@@ -246,7 +246,7 @@ def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
 
 
 def _balances(control: BootControl) -> bool:
-    """Whether a control is the balance control of a skier, or passes its moments on to one."""
+    """True for the balance control of a skier, and for a control that passes its moments on to one."""
     return isinstance(control, BalancedSkier) or isinstance(getattr(control, "skier", None), BalancedSkier)
 
 

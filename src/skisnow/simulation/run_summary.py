@@ -54,7 +54,7 @@ def summary_dict(
     warnings
         About the scenario, in words.
     verification
-        What `verification_dict` gives, where the run was repeated.
+        Result of `verification_dict`, if the run was repeated.
     """
     checked = {} if verification is None else {"verification": dict(verification)}
     return {
@@ -82,7 +82,7 @@ def summary_dict(
 
 
 def energies_dict(run: Run) -> dict[str, float | None]:
-    """Energies (J) at the end and at the start, what was lost between, and given by boots that move and by pushes."""
+    """Energies (J) at the end and at the start, the losses between, and the energy from moving boots and pushes."""
     stored = {f"{name}_J": json_number(run.energies[name][-1]) for name in STORED}
     start = {f"{name}_start_J": json_number(run.energies[name][0]) for name in STORED}
     energies_given = {f"given_{name}_J": json_number(run.energies[name][-1]) for name in GIVEN if name in run.energies}
@@ -90,7 +90,7 @@ def energies_dict(run: Run) -> dict[str, float | None]:
 
 
 def end_dict(run: Run) -> dict[str, float | None]:
-    """Where the middle between the boots is at the end, how fast, and where it heads."""
+    """Position, speed and heading of the middle between the boots at the end."""
     x, y, z = run.place[-1]
     return {
         "time_s": json_number(run.simulated_s),
@@ -163,8 +163,8 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
         In the metres of the run or track. A course in degrees is laid on a run's slope by its
         `fall_line_azimuth_deg`; a track in degrees is compared with it from the course's origin.
     moving
-        A run, of which both feet and both ski tips must cross a gate's line; or a track, which is one point: that it
-        straddled a pole it cannot tell.
+        A run, of which both feet and both ski tips must cross a gate's line; or a track, a single point, for which a
+        straddled pole cannot be detected.
 
     Returns
     -------
@@ -174,8 +174,8 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
     Raises
     ------
     ParameterError
-        There are fewer than two places, a track is in degrees and the course in metres or the reverse, or nothing says
-        where x of the run points.
+        There are fewer than two places, only one of track and course is in degrees, or the direction of x of the run is
+        missing.
 
     See Also
     --------
@@ -225,14 +225,14 @@ def run_gates(run: Run) -> CourseResult | None:
 
 
 class GatesAhead:
-    """Which gate of a course comes next, while a run goes on."""
+    """Next gate of a course during a run."""
 
     def __init__(self, course: Course | None) -> None:
         self._lines = () if course is None else course.lines
         self._next = 0
 
     def is_over(self, place: FloatArray, clear: float) -> bool:
-        """Whether a racer at a place (m) has the last gate behind it, by more than `clear` (m)."""
+        """True if a racer at a place (m) is past the last gate by more than `clear` (m)."""
         while self._next < len(self._lines):
             line = self._lines[self._next]
             if float((place[:2] - line.pole) @ line.along) <= clear:

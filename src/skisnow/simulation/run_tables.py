@@ -141,7 +141,7 @@ def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
     Parameters
     ----------
     run
-        What `skisnow.simulate` gave.
+        Result of `skisnow.simulate`.
     ending
         One of `ENDINGS`.
     name

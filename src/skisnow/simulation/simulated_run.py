@@ -1,4 +1,4 @@
-"""A scenario computed: the loop over output times, how a run ends, what is stored of it."""
+"""Computation of a scenario: the loop over output times, the end of a run, the stored values."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def simulate(
     Parameters
     ----------
     scenario
-        What to simulate.
+        Scenario to simulate.
     progress
         Called with the simulated time and the share that is done, after every five outputs at the latest.
     strength_along
@@ -120,8 +120,8 @@ def simulate(
         10 ms, or after its attribute ``period`` (s), it gives the `BootPose` of the left and the right boot at the end
         of that time. Its method ``push``, if it has one, gives a force and its place on the sledge.
     controller
-        Decides for the scenario's skier in place of the built-in control: its method ``command`` takes what the skier
-        sees, its posture and the period (s), and gives a `skisnow.skier.Command`.
+        Replaces the built-in control of the scenario's skier: its method ``command`` takes the skier's observation,
+        posture and the period (s), and returns a `skisnow.skier.Command`.
 
     Returns
     -------
@@ -135,9 +135,8 @@ def simulate(
 
     See Also
     --------
-    skisnow.scenario : what a run is.
-    skisnow.verify : how exact it is.
-    skisnow.compare : the run beside a measured track.
+    skisnow.scenario : the parts of a run. skisnow.verify : accuracy of a run. skisnow.compare : the run next to a
+    measured track.
 
     Notes
     -----
@@ -365,7 +364,7 @@ def _groove(setup: Setup) -> Groove:
 
 
 def why_no_start(setup: Setup) -> str:
-    """Whether its weight passes beside what the skis can carry, or the search failed without that."""
+    """Reason of a missing start: the weight passes beside the skis' support, or the search failed."""
     ahead, left = weight_meets_base(setup)
     right_end, left_end = _carried_across(setup)
     if not -right_end <= left <= left_end:
@@ -391,7 +390,7 @@ def why_no_start(setup: Setup) -> str:
 
 
 def weight_meets_base(setup: Setup) -> tuple[float, float]:
-    """Where the line of gravity through the centre of mass meets the bases' level: ahead and left of the boots (m).
+    """Point where the vertical through the centre of mass meets the bases' level: ahead and left (m).
 
     As the sledge was set down, before it leans.
     """
@@ -406,7 +405,7 @@ def weight_meets_base(setup: Setup) -> tuple[float, float]:
 
 
 def _carried_across(setup: Setup) -> tuple[float, float]:
-    """How far to the right and left skis can be on the snow (m): at most from their edges to the waterline."""
+    """Largest distance (m) right and left at which snow can support the skis: from edges to waterline."""
     ski, angle = setup.scenario.ski, setup.scenario.sledge.edge_angle
     width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
     tangent = max(math.tan(abs(angle)), 1e-9)

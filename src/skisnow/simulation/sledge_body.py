@@ -1,4 +1,4 @@
-"""Frames of a sledge: x forward, y left, z up; its origin lies between the boots, at the level of the bases.
+"""Frames of a sledge: x forward, y left, z up; the origin is between the boots, at the level of the bases.
 
 Each ski is rotated about x by minus the edge angle ϑ, so that its left edge goes down for ϑ > 0:
 l = cos ϑ y - sin ϑ z points across the base to the left, n = sin ϑ y + cos ϑ z away from the snow.
@@ -60,7 +60,7 @@ class SledgeInertia:
     rigid
         (6, 6): velocity of the origin and angular velocity, in the sledge's frame.
     coupling
-        (skis, size, 6): what the unknowns of the left and the right ski add.
+        (skis, size, 6): contributions of the unknowns of the left and the right ski.
     mass
         Of sledge and skis (kg).
     first_moment

@@ -1,4 +1,4 @@
-"""How exact and how steady a run is: repeated finer, and with a little more or less of its inputs, one at a time."""
+"""Accuracy and stability of a run: repeated with finer methods, and with inputs slightly changed, one at a time."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def refined_solvers(run: Run) -> dict[str, Solver]:
 
 
 def nudged_scenarios(run: Run) -> dict[str, tuple[Scenario, ...]]:
-    """Scenarios with half of u_y, and a thousandth more and less of what a run near its limit hangs on, by key.
+    """Scenarios with half of u_y, and with ±0.1 % of the inputs that a run near its limit depends on, by key.
 
     Half of u_y only where a scenario may have it; an input that is 0 is not nudged.
     """
@@ -123,7 +123,7 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     -------
     tuple
         One entry for each choice of the solver, for half of u_y, and for each of start speed, edge angle, H_V and S_f
-        with 0.1 % more and less: what moves the end farther. Where a repetition is interrupted, those before it.
+        changed by ±0.1 %: the one that moves the end farther. If a repetition is interrupted, the entries before it.
 
     See Also
     --------
@@ -186,7 +186,7 @@ def _alike(run: Run) -> Simulate:
 
 
 def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str, Any]]:
-    """The entry ``verification`` of summary.json: under each key what was refined and how far the end moved."""
+    """The entry ``verification`` of summary.json: under each key the refinement and the shift of the end."""
     return {
         refinement.key: {
             "was": refinement.was,

@@ -25,7 +25,7 @@ _SAME_PLACE = 1e-9  # m
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SkiParts:
-    """What is known of a ski along its stations, each as a function of station (m) in SI.
+    """Known properties of a ski along its stations, each as a function of station (m) in SI.
 
     Attributes
     ----------
@@ -40,8 +40,7 @@ class SkiParts:
     mass
         Mass of the ski (kg); used only without ``mass_per_length``.
     stations
-        Stations (m) that the ski shall have, tip to tail; those of layout and boot are added and gaps above 2.5 mm
-        divided evenly.
+        Requested stations (m), tip to tail; those of layout and boot are added and gaps above 2.5 mm divided evenly.
     """
 
     name: str
@@ -66,7 +65,7 @@ class SkiParts:
         ----------
         like
             A ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest points:
-            tables of as many rows, which differ smoothly; None: stations of its own.
+            tables with the same number of rows, which differ smoothly; None: own stations.
 
         Raises
         ------
@@ -186,7 +185,7 @@ def stiffness_table(values: npt.ArrayLike, station: npt.ArrayLike | None, layout
     Raises
     ------
     ParameterError
-        The stations do not fall or are not as many as the values.
+        The stations do not fall, or their number differs from that of the values.
     """
     if station is None:
         return evenly_spread(values, *layout.contact_points)

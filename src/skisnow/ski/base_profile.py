@@ -42,9 +42,9 @@ class BaseShape:
     - The shovel rises quadratically from the front contact point to ``shovel_height`` at the tip, the tail likewise
       behind. The slope is continuous along the whole base.
     - Rocker draws a contact point in from the end of the running length, by ``…_rocker_length``; over that length the
-      base rises quadratically to ``…_rocker_height``, and the shovel or tail goes on from there without a kink.
+      base rises quadratically to ``…_rocker_height``, and the shovel or tail continues from there without a kink.
 
-    A height left out where nothing is beyond the contact point counts as 0.
+    A missing height counts as 0 if the ski ends at the contact point.
     """
 
     camber: Annotated[

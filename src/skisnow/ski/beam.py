@@ -134,7 +134,7 @@ def dense(matrix: FloatArray) -> FloatArray:
 
 
 def lowest_eigenvalue(stiffness: FloatArray, mass: FloatArray, start: FloatArray) -> float:
-    """Smallest λ of K x = λ M x among what the start spans, by subspace iteration.
+    """Smallest λ of K x = λ M x in the span of the start, by subspace iteration.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def lowest_eigenvalue(stiffness: FloatArray, mass: FloatArray, start: FloatArray
 
 
 def _columns(matrix: FloatArray) -> FloatArray:
-    """Lower half as LAPACK has it: row k holds the k-th diagonal below the main one."""
+    """Lower half in LAPACK's storage: row k contains the k-th diagonal below the main one."""
     return np.array([np.roll(matrix[:, HALF_BANDWIDTH - k], -k) for k in range(HALF_BANDWIDTH + 1)])
 
 
@@ -180,9 +180,9 @@ _STATION_POINT, _STATION_WEIGHT = (1.0 - 1.0 / np.sqrt(3.0)) / 2.0, 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stations:
-    """Where along the ski the snow is felt: two Gauss points per element, tip to tail, also under the clamp.
+    """Stations at which the snow acts: two Gauss points per element, tip to tail, also under the clamp.
 
-    All arrays are (n,) but for the shapes (n, 6) and `dof` (n, 6), which holds -1 where the ski is held.
+    All arrays are (n,) except the shapes (n, 6) and `dof` (n, 6), which is -1 where the ski is clamped.
     """
 
     station: FloatArray
@@ -197,7 +197,7 @@ class Stations:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClampedSki:
-    """Finite-element model of a ski whose clamped length is rigid, or bedded on a boot that is, and moves with it.
+    """Finite-element model of a ski whose clamped length is rigid, or on an elastic bed, and moves with the boot.
 
     Attributes
     ----------

@@ -150,7 +150,7 @@ def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: 
 
 
 class EdgeShape(NamedTuple):
-    """How an edge is ground: strip of base (rad, m), angle between base and side (rad), radius of the corner (m)."""
+    """Grinding of an edge: strip of base (rad, m), angle between base and side (rad), radius of the corner (m)."""
 
     base_bevel: float
     edge_width: float
@@ -194,7 +194,7 @@ def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
 
 
 def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
-    """Check that of the widths of tip, waist and tail (m) the middle one is the least.
+    """Check that the waist is the smallest of the widths of tip, waist and tail (m).
 
     Raises
     ------

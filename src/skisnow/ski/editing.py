@@ -45,7 +45,7 @@ _END: Final = 0.005  # m between two stations at least (modelling assumption)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SkiEdit:
-    """What is changed of a ski.
+    """Changes of a ski.
 
     Attributes
     ----------
@@ -164,7 +164,7 @@ def _curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
 
 
 def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
-    """By how much each width is to be multiplied, so that what it has over the waist is ``factor`` times as much."""
+    """Factors of the widths that multiply their excess over the waist by ``factor``."""
     half = ski.sidecut_length / 2.0
     place = np.clip(ski.station, ski.sidecut_middle - half, ski.sidecut_middle + half)
     width = np.interp(place, ski.station[::-1], ski.width[::-1])
@@ -257,7 +257,7 @@ def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[s
 
 
 def is_linear(keys: Mapping[str, Any], key: str) -> bool:
-    """Whether the tables of a ski are linear in a key: not in the widths where the tip's end has its own."""
+    """True if the tables of a ski are linear in a key; false for widths with a separate key for the tip's end."""
     return key in LINEAR and not (key.endswith("width_mm") and "tip_end_width_mm" in keys)
 
 

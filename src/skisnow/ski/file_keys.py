@@ -1,4 +1,4 @@
-"""Keys of a ski file and columns of its table: each key and column with its range, what is usual, and what means it."""
+"""Keys of a ski file and columns of its table: each with range, usual range and synonyms."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ under 500 N."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SkiFile:
-    """A ski file in SI; None where a key is left out that has no default. Lists go from tip to tail."""
+    """A ski file in SI; None for missing keys without a default. Lists go from tip to tail."""
 
     name: Annotated[str | None, Quantity("name", "what it is called", origin="the file's name")] = None
     source: Annotated[str | None, Quantity("source", "where the numbers come from", origin="the file's name")] = None
@@ -160,7 +160,7 @@ class SkiFile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StationRow:
-    """A row of a ski's table in SI; its origin is what the column means."""
+    """A row of a ski's table in SI; its origin is the meaning of the column."""
 
     station: Annotated[
         float,

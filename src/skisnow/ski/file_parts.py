@@ -1,4 +1,4 @@
-"""The parts of a ski from the keys of its file and from its table; what both say is an error."""
+"""The parts of a ski from the keys of its file and from its table; a quantity in both is an error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Values of a ski file, asked for by key: each is checked, and each error names file, key, value and remedy."""
+"""Values of a ski file by key: each is checked, and each error names file, key, value and fix."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class FileValues:
         refuse(self.file, key, value, allowed, action)
 
     def refuse_together(self, keys: Iterable[str], other: str | Message, action: Message) -> None:
-        """Raise an error where one of the keys is next to another that says the same."""
+        """Raise an error if one of the keys occurs together with another for the same quantity."""
         for key in keys:
             if key in self.values:
                 raise ParameterError(
@@ -160,7 +160,7 @@ def _likely_unit(value: float, quantity: Quantity) -> Message | None:
 
 
 def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity) -> None:
-    """Warn once of numbers, in the file's unit and by their places, that are beyond what skis usually have."""
+    """Warn once of numbers, in the file's unit and with their places, outside the usual range of skis."""
     unusual = [(place, value) for place, value in values.items() if value and not _is_usual(value, quantity)]
     if not unusual or quantity.usual is None:
         return
@@ -185,7 +185,7 @@ def file_values(path: Path) -> FileValues:
     Raises
     ------
     ParameterError
-        The file cannot be read, is no TOML, or has a key that no ski file has; the nearest key is named.
+        The file cannot be read, is not TOML, or has an unknown key; the message names the nearest key.
     """
     return values_of_keys(read_toml(path), path)
 

@@ -1,4 +1,4 @@
-"""Where along a ski its tip, tail, widest points and contact points are, and its sections between them."""
+"""Positions of tip, tail, widest points and contact points of a ski, and the sections between them."""
 
 from __future__ import annotations
 
@@ -92,8 +92,7 @@ def layout_of_lengths(
     running_length, sidecut_length
         Between the contact points, between the widest points.
     tail_overhang
-        Length of the tail behind the sidecut length; what is left of the length is the tip. Modelling assumption: 20
-        mm.
+        Length of the tail behind the sidecut length; the rest of the length is the tip. Modelling assumption: 20 mm.
     boot_position
         Distance of the boot in front of the middle of the running length, negative behind it. Modelling assumption: 0.
 

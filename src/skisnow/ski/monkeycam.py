@@ -58,7 +58,7 @@ def read_monkeycam(
     base_bevel: float = 0.0,
     edge_width: float = 0.002,
 ) -> Ski:
-    """Read a ski whose shape is in a design file of MonkeyCAM; what that file does not know has no default.
+    """Read a ski whose shape is in a design file of MonkeyCAM; missing quantities have no default.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ class ArcOutline:
 
     @property
     def narrowing(self) -> float:
-        """How much narrower than the waist the narrowest place is (m): (tip - tail)²/(8 (tip + tail - 2 waist)).
+        """Width of the waist minus that of the narrowest place (m): (tip - tail)²/(8 (tip + tail - 2 waist)).
 
         >>> from .layout import layout_of_lengths
         >>> layout = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
@@ -90,11 +90,10 @@ _SAME_PLACE: Final = 1e-3  # m: a row at the end of the sidecut length, measured
 def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
     """Widths (m) at stations (m).
 
-    A dense table is used as it is. Between the rows of a coarser one a parabola, fitted to those within the sidecut
-    length, carries the sidecut; what the rows differ from it follows the shape-preserving cubic of `StationTable`
-    (modelling assumption). Three rows give the side line of three widths; a cubic through the widths themselves would
-    be flat at the
-    widest and at the narrowest row, and bend between them as no ski does.
+    A dense table is used directly. For a coarser table a parabola, fitted to the rows within the sidecut length, gives
+    the sidecut; the differences of the rows from it follow the shape-preserving cubic of `StationTable` (modelling
+    assumption). Three rows give the side line of three widths; a cubic through the widths themselves would be flat at
+    the widest and at the narrowest row, unlike any ski.
 
     Raises
     ------
@@ -143,7 +142,7 @@ def _parabola(table: StationTable, layout: Layout) -> _Parabola:
 
 
 def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> float:
-    """Radius of the circle with the least sum of squared distances to points of a plane (m).
+    """Radius of the circle with the smallest sum of squared distances to points of a plane (m).
 
     Parameters
     ----------

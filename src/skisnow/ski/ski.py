@@ -66,11 +66,11 @@ class Ski(Shown):
     side_edge
         Angle between base and side at the edge (rad).
     edge_radius
-        Radius of the corner between base and side (m); its round lies within the strip.
+        Radius of the corner between base and side (m); the rounding is within the strip.
     sidecut_middle
         Station of the middle of running length and sidecut length (m): 0 where the boot is there.
     base
-        What ``base_height`` follows from; None where the heights themselves are given.
+        Source of ``base_height``; None if the heights themselves are stated.
     keys
         Keys of the file that the ski was read from, in its units; None where the file has a table, or the ski was
         changed since.
@@ -123,7 +123,7 @@ class Ski(Shown):
 
     @property
     def edge_shape(self) -> EdgeShape:
-        """How the edges are ground."""
+        """Grinding of the edges."""
         return EdgeShape(self.base_bevel, self.edge_width, self.side_edge, self.edge_radius)
 
     @property

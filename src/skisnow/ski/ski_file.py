@@ -42,19 +42,18 @@ def read_ski(name_or_path: str | Path) -> Ski:
     Raises
     ------
     ParameterError
-        There is no such name; the nearest is named. The file cannot be read, a key of it is unknown, missing, said
-        twice or outside its range, or the ski breaks a rule of `Ski`; file, key, value, what is allowed and what to do
-        are named.
+        The name is unknown (the message names the nearest). The file cannot be read, a key of it is unknown, missing,
+        repeated or out of range, or the ski breaks a rule of `Ski`; the message names file, key, value, allowed values
+        and fix.
 
     Warns
     -----
     RangeWarning
-        A value is beyond what skis usually have; a likely mistake of unit is named.
+        A value is outside the usual range; the message names a likely mistake of unit.
 
     See Also
     --------
-    skisnow.ski_names : the skis of the catalogue.
-    skisnow.carve : what the ski does in snow.
+    skisnow.ski_names : the skis of the catalogue. skisnow.carve : the ski in snow.
 
     References
     ----------
@@ -82,7 +81,7 @@ def ski_named(name: str) -> Ski:
     Raises
     ------
     ParameterError
-        There is no such name; the nearest is named.
+        The name is unknown; the message names the nearest.
 
     Examples
     --------
@@ -102,7 +101,7 @@ def ski_names() -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        What `read_ski` takes.
+        Names that `read_ski` accepts.
 
     See Also
     --------
@@ -185,8 +184,8 @@ def write_ski(ski: Ski, path: str | Path) -> None:
     ski
         To write.
     path
-        Path of the TOML file. The table, a row for each station, goes beside it, with the same name and the ending
-        .csv.
+        Path of the TOML file. The table, with a row for each station, is written next to it with the same name and the
+        ending .csv.
 
     Raises
     ------
@@ -262,7 +261,7 @@ class Sources:
     _snows: dict[tuple[str | None, str | None, str | None], SnowProperties] = field(default_factory=dict)
 
     def ski(self, word: str) -> tuple[Ski, tuple[str, ...]]:
-        """The ski of a name or path, and what its reader warned of."""
+        """The ski of a name or path, and the warnings of its reader."""
         if word not in self._skis:
             self._skis[word] = with_range_warnings(lambda: read_ski(self._ski_place(word)))
         return self._skis[word]
@@ -275,7 +274,7 @@ class Sources:
         return self._snows[named]
 
     def take_snow(self, snow: SnowProperties, *, results: str, site: str | None) -> None:
-        """Take a snow that is at hand for that of the words `results` and `site`, whose file is then not read."""
+        """Use an existing snow instead of that of the words `results` and `site`, whose file is then not read."""
         self._snows[None, results, site] = snow
 
     def path(self, word: str) -> Path:

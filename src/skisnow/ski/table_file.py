@@ -155,9 +155,9 @@ def _require_falling(path: Path, station: FloatArray, lines: list[int]) -> None:
 class StationTable:
     """Values at stations (m), listed from tip to tail.
 
-    Between the stations a shape-preserving cubic interpolates (Fritsch and Butland 1984, as SciPy's PCHIP does): it
-    never leaves the range of its neighbours, so a positive table stays positive. Beyond the first and the last
-    station their values are held. One value alone holds everywhere.
+    Between the stations a shape-preserving cubic interpolates (Fritsch and Butland 1984, as SciPy's PCHIP): it stays in
+    the range of its neighbours, so a positive table stays positive. Beyond the first and the last station their values
+    continue. A single value applies everywhere.
 
     Examples
     --------
@@ -196,7 +196,7 @@ class StationTable:
 
 
 def _slopes(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Slopes at the points: weighted harmonic means of those beside them, 0 at a peak; parabolas at both ends.
+    """Slopes at the points: weighted harmonic means of the neighbouring ones, 0 at a peak; parabolas at both ends.
 
     Not SciPy's PCHIP, which makes the same: it takes 0.2 s to load, a fifth of the start of a run.
     """
@@ -213,7 +213,7 @@ def _slopes(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _end_slope(width: float, next_width: float, rise: float, next_rise: float) -> float:
-    """That of the parabola through the outer three points, unless it would overshoot."""
+    """Slope of the parabola through the outer three points, limited so that it does not overshoot."""
     slope = ((2.0 * width + next_width) * rise - width * next_rise) / (width + next_width)
     if slope * rise <= 0.0:
         return 0.0

@@ -1,4 +1,4 @@
-"""A skier on two legs that pivot: what it sees and plans, its control, and its body with limits."""
+"""A skier on two legs that pivot: observation and plan, control, and the body with its limits."""
 
 from .anthropometry import Body, body_of
 from .balance import BalancedSkier, BalanceRecord

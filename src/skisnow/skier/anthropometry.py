@@ -28,7 +28,7 @@ class Body:
     Attributes
     ----------
     mass, height
-        As asked.
+        As requested.
     standing_height
         Height of the centre of mass above the soles, upright.
     inertia

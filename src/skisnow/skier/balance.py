@@ -56,7 +56,7 @@ class BalancedSkier:
     Parameters
     ----------
     scenario
-        With a skier, whose numbers the control has.
+        Scenario with a skier, whose numbers the control uses.
     controller
         Replaces the built-in control.
 
@@ -159,7 +159,7 @@ class BalancedSkier:
         return self.skier.control_period
 
     def __call__(self, moment: Moment) -> Sequence[BootPose]:
-        """Where the boots shall be at the moment's end."""
+        """Target of the boots at the end of the moment."""
         dt = moment.until - moment.time
         if dt > 0.0:
             self.decide(moment, dt)

@@ -1,4 +1,4 @@
-"""Control of carved turns: skis that follow their path, edged like the lean; a skid where the snow holds no more."""
+"""Control of carved turns: skis that follow their path, edged like the lean; a skid where the snow no longer holds."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ SLOWEST: Final = 2.0
 
 @dataclass(slots=True)
 class Underway:
-    """Where a skier is, or will be.
+    """State of a skier, now or predicted.
 
     Attributes
     ----------
@@ -74,20 +74,20 @@ class CarvesOverTime:
     plan: TurnsOverTime
 
     def acceleration(self, at: Underway, carving: float) -> float:
-        """That of a carve in balance, to one side or the other."""
+        """Acceleration of a carve in balance, to one side or the other."""
         return self.plan.sense(at.time) * carving
 
 
 @dataclass(frozen=True, slots=True)
 class Pursuit:
-    """A line that is looked at a time ahead (s), and what leads back to it at a rate (1/s)."""
+    """A line that the control follows with a time ahead (s), and the rate (1/s) of the return to it."""
 
     line: Line
     rate: float
     sight: float = SIGHT
 
     def acceleration(self, at: Underway, carving: float) -> float:
-        """That of the line, a time ahead, and what leads back to it."""
+        """Acceleration of the line, a time ahead, and of the return to it."""
         del carving
         speed = at.speed
         turned = 0.5 * at.acceleration * self.sight / max(speed, 1.0)
@@ -155,7 +155,7 @@ class CarveControl:
 
     @property
     def _steepest(self) -> float:
-        """Acceleration (m/s²) in balance at the greatest lean."""
+        """Acceleration (m/s²) in balance at the largest lean."""
         return self.gravity.normal * math.tan(self.skier.greatest_lean)
 
     def _most(self, speed: float) -> float:
@@ -163,7 +163,7 @@ class CarveControl:
         return min(self.edges.carving_acceleration(speed), self._steepest)
 
     def _limit(self, speed: float) -> float:
-        """Acceleration (m/s²) of a carve with the greatest edge angle, at most that at the greatest lean."""
+        """Acceleration (m/s²) of a carve with the largest edge angle, limited by that at the largest lean."""
         return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
 
     def _planned(self, at: Underway, most: float, limit: float) -> float:
@@ -171,7 +171,7 @@ class CarveControl:
         return max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
 
     def _foreseen(self, now: float, seen: Seen, omega: float) -> tuple[float, float]:
-        """Where the capture point should be, and where the centre of mass would be in balance now (m)."""
+        """Target of the capture point, and the place of the centre of mass in balance now (m)."""
         step, speed = FORESIGHT_STEP, max(seen.feet_speed, SLOWEST)
         lag, fading = self._lag(seen.feet_speed), self.skier.leg_gain * omega
         most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
@@ -196,7 +196,7 @@ class CarveControl:
         return total / weights, first
 
     def _learn(self, seen: Seen, planned: float, edge: float, omega: float, dt: float) -> None:
-        """How far balance is from the plan, by the loads while both skis bear and are edged."""
+        """Update the distance of balance from the plan by the loads, while both skis bear and are edged."""
         if not seen.bears or seen.lifted:
             self._correction *= 1.0 - _share_of(dt, LOAD_RATE)
             return

@@ -71,7 +71,7 @@ class Smoothed:
 
 @dataclass(slots=True)
 class Balance:
-    """Where balance is, at one moment.
+    """Position of balance at one moment.
 
     Attributes
     ----------
@@ -139,7 +139,7 @@ class SkidControl:
         )
 
     def _planned(self, seen: Seen) -> Planned:
-        """The plan, within the greatest lean."""
+        """The plan, limited by the largest lean."""
         found = self.plan.ahead(seen, self.gravity)
         most = self.gravity.normal * math.tan(self.skier.greatest_lean)
         return Planned(np.clip(found.force, -most, most), found.course, found.heading)
@@ -179,7 +179,7 @@ class SkidControl:
         return Balance(self._balanced.value, wanted, error, pressure, rate)
 
     def _edge(self, seen: Seen, posture: Posture, planned: Planned, dt: float) -> float:
-        """Edge angle (rad) that gives the planned force, and what balance asks besides."""
+        """Edge angle (rad) that gives the planned force, with the correction for balance."""
         mass, gravity = self.body.mass, self.gravity.normal
         planned_force = float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / math.cos(self.slip)
         asked = planned_force + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)

@@ -1,4 +1,4 @@
-"""Which edge angle turns how much: a little edge skids, more of it carves."""
+"""Relation of edge angle and turning: a small edge angle skids, a larger one carves."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ class Edges:
     gravity
         Along the snow's normal (m/s²).
     softness
-        2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds √(2 S_f² L tan ϑ/(H_V N)) times that load aside.
+        2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds a side force of √(2 S_f² L tan ϑ/(H_V N)) times that
+        load.
     greatest
         Edge angle (rad).
     """
@@ -39,7 +40,7 @@ class Edges:
 
     @classmethod
     def of(cls, scenario: Scenario, gravity: float, skier: Skier) -> Edges:
-        """Those of a scenario's ski on the snow that its skier assumes."""
+        """Edges of a scenario's ski on the snow that its skier assumes."""
         snow, radius = ForceMap.of(scenario), scenario.ski.sidecut_radius_of_edge_line
         return cls(radius, gravity, 2.0 * snow.strength**2 * snow.length / snow.hardness, skier.greatest_edge)
 
@@ -49,22 +50,22 @@ class Edges:
         return speed**2 / (self.radius * math.cos(lean))
 
     def skidding(self, grip: float, load: float) -> float:
-        """Edge angle (rad) that holds so many times the load (N) of both skis aside, and no more."""
+        """Edge angle (rad) that just holds this multiple of the load (N) of both skis sideways."""
         return math.atan(grip**2 * load / (2.0 * self.softness))
 
     def holding(self, load: float) -> float:
-        """How many times the load (N) of both skis they hold aside, edged as a carve in balance is then."""
+        """Side force of both skis as a multiple of the load (N), edged as for a carve in balance."""
         grip = 1.0
         for _ in range(60):  # the error halves at least
             grip = self._hold(grip, load)
         return grip
 
     def slips(self, grip: float, load: float) -> bool:
-        """Whether so many times the load (N) aside are more than one ski alone would hold, edged for balance."""
+        """True if this multiple of the load (N) is more than a single ski would hold, edged for balance."""
         return abs(grip) > self._hold(abs(grip), load) / math.sqrt(2.0)
 
     def _hold(self, grip: float, load: float) -> float:
-        """How many times the load (N) a wedge holds that is edged for balance at so many times the load aside."""
+        """Multiple of the load (N) that a wedge holds, edged for balance at a given multiple."""
         edge = min(math.atan(grip) + BEYOND_LEAN, self.greatest)
         return math.sqrt(2.0 * self.softness * math.tan(edge) / load)
 
@@ -76,16 +77,16 @@ class Edges:
         acceleration
             Wanted, to the left (m/s²).
         slope
-            Share of gravity along the slope that the skis hold besides, to the left (m/s²).
+            Share of gravity along the slope that the skis hold in addition, to the left (m/s²).
         load
-            Of both skis (N).
+            Load of both skis (N).
         """
         wanted = (acceleration + slope) / self.gravity
         most = self._hold(abs(wanted), load)
         return acceleration if abs(wanted) <= most else math.copysign(most, wanted) * self.gravity - slope
 
     def angle(self, acceleration: float, grip: float, speed: float, load: float) -> float:
-        """Edge angle (rad) for an acceleration to the left (m/s²), which takes so many times the load (N) aside."""
+        """Edge angle (rad) for an acceleration to the left (m/s²) that needs this multiple of the load (N) sideways."""
         carving = min(math.atan(abs(grip)) + BEYOND_LEAN, self.greatest)
         skidding = min(self.skidding(grip, load), carving)
         share = abs(acceleration) * self.radius / speed**2
@@ -94,5 +95,5 @@ class Edges:
         return math.copysign(skidding + (carved - skidding) * x * x * (3.0 - 2.0 * x), grip)
 
     def _carved(self, share: float, in_balance: float) -> float:
-        """Edge angle (rad) of a carve that is so many times as curved as the sidecut; at least that of balance."""
+        """Edge angle (rad) of a carve whose curvature is this multiple of the sidecut's; at least that of balance."""
         return min(self.greatest, max(in_balance, math.acos(1.0 / share) if share > 1.0 else 0.0))

@@ -31,7 +31,7 @@ class ForceMap:
 
     @classmethod
     def of(cls, scenario: Scenario) -> ForceMap:
-        """That of a scenario: the skier's assumed values, where they are 0 those of the snow."""
+        """Values of a scenario: the skier's assumed ones, or those of the snow where they are 0."""
         snow, skier = scenario.contact.snow, scenario.skier
         assert skier is not None
         return cls(
@@ -46,6 +46,6 @@ class ForceMap:
         return self.strength * math.sqrt(2.0 * self.length * max(load, 0.0) * steep / self.hardness)
 
     def edge(self, force: float, loads: tuple[float, ...], grip: float) -> float:
-        """Edge angle (rad) with which skis under these loads (N) hold a force (N) together, their grip c."""
+        """Edge angle (rad) at which skis under these loads (N) hold a force (N) together, with the grip c."""
         held = grip * max(self.strength, 1.0) * sum(math.sqrt(max(load, LEAST_LOAD)) for load in loads)
         return math.atan((force / held) ** 2 * self.hardness / (2.0 * self.length))

@@ -43,7 +43,7 @@ class Gravity:
 class Planned:
     """Force to the left over mass (m/s²) and course (rad) at the moments `AHEAD`.
 
-    `heading` is that of the skis (rad) where the plan says it; otherwise it follows from the slip.
+    `heading` of the skis (rad), if the plan states it; otherwise it follows from the slip.
     """
 
     force: FloatArray
@@ -55,7 +55,7 @@ class Plan(Protocol):
     """Says how to turn."""
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
-        """What is planned from a state on."""
+        """Plan from a state onwards."""
 
 
 class Line(Protocol):
@@ -100,7 +100,7 @@ class TurnsOverTime:
         return most * math.cos(phase), -most * rate * math.sin(phase)
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
-        """The turns, and what leads back to their course."""
+        """The turns, and the return to their course."""
         course, rate = np.array([self.course(seen.time + later) for later in AHEAD]).T
         back = (seen.course - self.course(seen.time)[0]) * np.exp(-BACK * AHEAD)
         speed = max(seen.speed, SLOWEST)

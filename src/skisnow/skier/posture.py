@@ -72,7 +72,7 @@ class Command:
 
 @dataclass(slots=True)
 class Posture:
-    """Where the boots are against the body.
+    """Pose of the boots against the body.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class Posture:
 
     @property
     def aside_rate(self) -> float:
-        """Planned rate of the centre of mass to the left, without what the legs give way (m/s)."""
+        """Planned rate of the centre of mass to the left, without the yielding of the legs (m/s)."""
         return float(self.rates[ASIDE]) - self._gives
 
     @property
@@ -152,7 +152,7 @@ class Posture:
         self.rates[place] = later
 
     def _step_aside(self, command: Command, seen: Seen, dt: float) -> None:
-        """As balance asks, and as far as legs give way to the load that is off; a lifted ski is put down."""
+        """Step of the legs sideways, by balance and by the deviation of the load; a lifted ski is put down."""
         place, rate = float(self.numbers[ASIDE]), float(self.rates[ASIDE])
         free = seen.lifted or not seen.bears
         back = min(1.0, TOUCH * dt) if free else 0.0

@@ -20,7 +20,7 @@ FARTHEST: Final = 0.4
 
 
 class Moment(Protocol):
-    """What is asked of a `skisnow.BootMoment`."""
+    """The used attributes of a `skisnow.BootMoment`."""
 
     @property
     def time(self) -> float: ...  # noqa: D102
@@ -40,7 +40,7 @@ class Moment(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What is measured, in axes along the mean ski, to its left and out of the snow; angles are positive to the left.
+    """Observation, in axes along the mean ski, to its left and out of the snow; angles are positive to the left.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Seen:
     edge
         Edge angles of the left and the right ski against the snow (rad).
     bears, lifted
-        Whether the loads tell anything, and whether one ski is off the snow.
+        True if the loads contain information, and True if one ski is off the snow.
     """
 
     time: float
@@ -100,7 +100,7 @@ class Seen:
 
     @property
     def load(self) -> float:
-        """Of both skis (N)."""
+        """Load of both skis (N)."""
         return self.left + self.right
 
 

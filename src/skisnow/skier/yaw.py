@@ -88,7 +88,7 @@ def yaw_state(seen: Seen, ahead: float, ahead_rate: float) -> FloatArray:
 
 
 def _dynamics(force: float, turns: float, damping: float, inertia: float) -> tuple[FloatArray, FloatArray]:
-    """Over one step: what the state becomes, and what the inputs add."""
+    """Matrices of one step: transition of the state, and effect of the inputs."""
     a, b = np.eye(7), np.zeros((7, 2))
     a[0, 1] = a[2, 3] = a[4, 5] = STEP
     a[1, 4] = STEP * SHEAR_SHIFT * force / SKI_INERTIA

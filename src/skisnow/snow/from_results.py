@@ -43,14 +43,14 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
     Returns
     -------
     SnowProperties
-        With intervals where there are two experiments or more, and with k_u/H_V where the unloading readings say both
+        With intervals if there are two experiments or more, and with k_u/H_V if the unloading readings determine both
         ends of its interval.
 
     Raises
     ------
     ParameterError
-        The file cannot be read or is not a results file; or it holds no used penetration experiment of that site: the
-        message names the sites it has.
+        The file cannot be read or is not a results file, or it contains no used penetration experiment of that site;
+        the message lists its sites.
 
     See Also
     --------
@@ -150,7 +150,7 @@ def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: 
 
 
 def snow_dict(snow: SnowProperties) -> dict[str, Any]:
-    """Where a snow comes from, and its intervals in the units of the contract; of k_u/H_V where it was measured."""
+    """Origin of a snow, and its intervals in the units of the contract; that of k_u/H_V if it was measured."""
 
     def interval(ends: tuple[float, float] | None, unit: float) -> list[float] | None:
         return None if ends is None else [end / unit for end in ends]
@@ -168,12 +168,12 @@ def snow_dict(snow: SnowProperties) -> dict[str, Any]:
 
 
 def published_names() -> tuple[str, ...]:
-    """Names that `published_snow` knows, publication by publication.
+    """Names of the published snows, by publication.
 
     Returns
     -------
     tuple of str
-        What `published_snow` takes.
+        Names that `published_snow` accepts.
 
     See Also
     --------

@@ -142,14 +142,14 @@ def _mean(values: FloatArray) -> tuple[float, Interval | None]:
 
 
 def drawn_snows(snow: SnowProperties, shares: FloatArray) -> list[SnowProperties]:
-    """Snows whose H_V and S_f are log-normal, each with the 95 % interval of a measured snow.
+    """Snows with log-normal H_V and S_f, each with the 95 % interval of a measured snow.
 
     Parameters
     ----------
     snow
         With both values and both intervals, as `snow_from_results` gives it for two experiments or more of each kind.
     shares
-        Shape (count, 2), between 0 and 1 and independent: where in the distributions of H_V and S_f each snow lies.
+        Shape (count, 2), between 0 and 1 and independent: quantiles of H_V and S_f of each snow.
 
     Raises
     ------

@@ -61,12 +61,12 @@ class MeasuredRange:
     source: str
 
     def warn_outside(self, value: npt.ArrayLike, relation: str, *, stacklevel: int = 2) -> None:
-        """Issue one `RangeWarning` if any of the values (SI) lies outside; NaN does not count as outside.
+        """Issue one `RangeWarning` if any of the values (SI) is outside; NaN does not count as outside.
 
         Parameters
         ----------
         value
-            What is asked of the relation, scalar or array.
+            Input of the relation, scalar or array.
         relation
             The relation's name, for the message.
         stacklevel

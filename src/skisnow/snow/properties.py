@@ -38,8 +38,8 @@ class SnowProperties(Shown):
     unloading_ratio_interval
         95 % interval of it where it was measured.
     shear_displacement, shear_displacement_interval
-        u_y (m), the way of an edge across until the snow holds it with all of S_f, and its 95 % interval, where they
-        were measured; `Scenario.with_` then takes u_y over.
+        u_y (m), the sideways displacement of an edge at which the snow reaches S_f, and its 95 % interval, if measured;
+        `Scenario.with_` then uses u_y.
 
     See Also
     --------

@@ -39,7 +39,7 @@ class NonNegativeFit:
     coefficients
         Shape (p,); exactly 0.0 on the bound.
     at_bound
-        Shape (p,): whether the bound holds the coefficient.
+        Shape (p,): True if the bound holds the coefficient.
     sse
         Σ w r², with the weights of the fit (1 where none were given).
     residuals
@@ -72,8 +72,8 @@ def non_negative_fit(
     Returns
     -------
     NonNegativeFit
-        Where columns depend on each other many β are equally good; of these, one with the fewest coefficients above
-        zero is returned, and ``rank`` tells that it was so.
+        If columns depend on each other, many β are equally good; one of those with the fewest coefficients above zero
+        is returned, and ``rank`` is below p.
 
     Raises
     ------
@@ -125,7 +125,7 @@ class Condensed:
     response
         Shape (m,).
     scale
-        Shape (p,): what the columns were divided by.
+        Shape (p,): divisors of the columns.
     n
         Rows that were condensed.
     """
@@ -264,7 +264,7 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
 
     Notes
     -----
-    For bootstrap samples, where the cross products are all there is. They hold half the digits of the design: for a
+    For bootstrap samples, of which only the cross products are known. These hold half the digits of the design; for a
     point estimate use `non_negative_fit`.
 
     Examples
@@ -314,7 +314,7 @@ def _batch(G: FloatArray, m: FloatArray) -> FloatArray:
 
 
 def _violation(G: FloatArray, m: FloatArray, x: FloatArray, support: tuple[int, ...]) -> FloatArray:
-    """How much the objective would still fall per step of a coefficient that the support leaves at zero."""
+    """Decrease of the objective per step of a coefficient that is zero in the support."""
     worst = np.zeros(m.shape[1])
     for j in set(range(len(m))) - set(support):
         gain = m[j].copy()
@@ -325,7 +325,7 @@ def _violation(G: FloatArray, m: FloatArray, x: FloatArray, support: tuple[int, 
 
 
 def _solved_batch(G: FloatArray, m: FloatArray, support: tuple[int, ...]) -> tuple[FloatArray, BoolArray]:
-    """Solve G x = m on the support by L D Lᵀ; the second result tells where it is regular with all x > 0."""
+    """Solve G x = m on the support by L D Lᵀ; the second result is True where G is regular and all x > 0."""
     x, feasible = np.zeros_like(m), np.ones(m.shape[1], dtype=bool)
     lower: dict[tuple[int, int], FloatArray] = {}
     pivot: dict[int, FloatArray] = {}

@@ -35,7 +35,7 @@ _WHOLLY = 1e-9
 
 @dataclass(frozen=True)
 class ClusterIntervals:
-    """What `cluster_intervals` found; p coefficients, the intercept first.
+    """Result of `cluster_intervals`; p coefficients, the intercept first.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class ClusterIntervals:
     n_clusters
         Number of different clusters.
     coefficients
-        The least-squares estimates, shape (p,).
+        Least-squares estimates, shape (p,).
     """
 
     intervals: FloatArray
@@ -62,7 +62,7 @@ def cluster_intervals(
     intercept: bool = True,
     confidence: float = 0.95,
 ) -> ClusterIntervals:
-    """Fit by least squares, with intervals that know the clusters.
+    """Least-squares fit with intervals that account for the clusters.
 
     Errors may depend on each other in any way within a cluster; the clusters are independent.
 
@@ -85,8 +85,8 @@ def cluster_intervals(
 
     Notes
     -----
-    Intervals are NaN with fewer than two clusters, for n ≤ p, and for a coefficient that is lost when one of the
-    clusters is left out: nothing then tells its scatter between clusters.
+    Intervals are NaN with fewer than two clusters, for n ≤ p, and for a coefficient that is lost without one of the
+    clusters: its scatter between clusters is then unknown.
 
     A_g = (I - H_gg)^-½ of each cluster is needed only between its rows Q_g of Q, where it is the p × p matrix
     (I - Q_gᵀQ_g)^-½: the cost is n p², however large a cluster is. The degrees of freedom are those for independent
@@ -148,7 +148,7 @@ def _bias_reduced(
 
 
 def _held_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> BoolArray:
-    """Which coefficients have a part that a single cluster determines."""
+    """True for coefficients of which a part is determined by a single cluster."""
     part = np.abs(np.einsum("jk,gkv->jgv", L, vector)) / np.linalg.norm(L, axis=1)[:, None, None]
     held: BoolArray = np.any(alone[None] & (part > np.sqrt(_WHOLLY)), axis=(1, 2))
     return held
@@ -157,7 +157,7 @@ def _held_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> BoolArr
 def _degrees(share: FloatArray, adjust: FloatArray, row: FloatArray) -> float:
     """Satterthwaite: (tr M)²/tr(M²), M_gh = a_gᵀ(I - H)_gh a_h with a_g = A_g Q_g l for β = lᵀ Qᵀy.
 
-    The diagonal of M is lᵀ S_g l, S_g = Q_gᵀQ_g; beside it stands -P_gᵀP_h with P_g = S_g (I - S_g)^-½ l.
+    The diagonal of M is lᵀ S_g l, S_g = Q_gᵀQ_g; the other elements are -P_gᵀP_h with P_g = S_g (I - S_g)^-½ l.
     """
     diagonal = np.einsum("i,gij,j->g", row, share, row)
     P = np.einsum("gij,gj->gi", share, adjust @ row)

@@ -37,7 +37,7 @@ def welch_satterthwaite(variances: npt.ArrayLike, degrees_of_freedom: npt.ArrayL
     variances
         Contributions uᵢ² ≥ 0 to the variance of the result, shape (..., k).
     degrees_of_freedom
-        νᵢ of each contribution, shape (..., k) or what broadcasts to it; ``inf`` for one that is taken as known.
+        νᵢ of each contribution, shape (..., k) or broadcast to it; ``inf`` for a contribution that counts as known.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
     degrees_of_freedom
         ν, any shape; need not be whole numbers.
     confidence
-        Between 0 and 1, both left out.
+        Between 0 and 1, exclusive.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
 
 
 def require_confidence(confidence: float) -> None:
-    """Raise `ParameterError` unless the confidence lies between 0 and 1."""
+    """Raise `ParameterError` unless the confidence is between 0 and 1."""
     if not 0.0 < confidence < 1.0:
         raise ParameterError(
             "confidence is {confidence!r}; it must lie between 0 and 1, 0.95 for a 95 % interval",

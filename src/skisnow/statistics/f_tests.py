@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class NestedTest(NamedTuple):
-    """What `nested_f_test` found: F with df1 and df2 degrees of freedom, and p, the chance of an F as large."""
+    """Result of `nested_f_test`: F with df1 and df2 degrees of freedom, and p, the probability of a larger F."""
 
     F: float
     df1: int
@@ -112,7 +112,7 @@ class Anova:
     ss_between, ss_within
         Sums of squares.
     r2
-        Share of the sum of squares that lies between the groups.
+        Share of the sum of squares between the groups.
     residual_sd
         Root of the mean square within.
     """

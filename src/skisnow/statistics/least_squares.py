@@ -35,8 +35,8 @@ _ROUNDING = 4.0 * _EPS
 class Columns:
     """A design in well-conditioned coordinates.
 
-    ``scaled`` (n, p) spans what the original columns X span; ``back`` (p, p) carries coefficients γ of the scaled
-    columns back to those of X: β = back γ.
+    The scaled columns (n, p) span the same space as the original columns X; ``back`` (p, p) converts coefficients γ of
+    the scaled columns to those of X: β = back γ.
     """
 
     scaled: FloatArray
@@ -124,7 +124,7 @@ def centre(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def standardised(predictors: FloatArray, *, intercept: bool) -> Columns:
-    """Centre (only beside an intercept) and scale predictors (n, k); with an intercept a column of ones goes first."""
+    """Centre (only with an intercept) and scale predictors (n, k); with an intercept the first column is one."""
     n, k = predictors.shape
     shifted, middle = centre(predictors) if intercept and k else (predictors, np.zeros(k))
     length = np.sqrt(np.mean(shifted**2, axis=0)) if k else np.zeros(0)

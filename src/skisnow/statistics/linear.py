@@ -242,11 +242,11 @@ class VarianceShares(ShownFields):
     Attributes
     ----------
     share
-        Shape (k,), 0 to 1: what an input takes along in proportion.
+        Shape (k,), 0 to 1: share of an input, as its linear effect.
     interval
         Shape (k, 2).
     left
-        What no input takes along: curvature and interplay of inputs.
+        Share of no single input: curvature and interaction of inputs.
     """
 
     share: FloatArray
@@ -269,8 +269,9 @@ def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike, *, confidence:
     Returns
     -------
     VarianceShares
-        b² Var(x)/Var(y) of the linear regression, less what noise alone would give (the squared standard error in place
-        of 0), and not below 0; intervals from those of b by Student's t. All 0 where the output does not vary.
+        b² Var(x)/Var(y) of the linear regression, minus the value that noise alone would give (the squared standard
+        error in place of 0), and not below 0; intervals from those of b by Student's t. All 0 if the output does not
+        vary.
 
     Raises
     ------

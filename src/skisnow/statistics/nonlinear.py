@@ -125,9 +125,9 @@ def nonlinear_fit(
 
     Notes
     -----
-    A trust-region search (scipy) goes first; Gauss-Newton steps with extrapolated derivatives finish. At the end of
-    the steps the residuals are orthogonal to the derivatives but for rounding. What rounding and the derivatives leave
-    open is carried through to the parameters and the standard errors.
+    A trust-region search (scipy) comes first; Gauss-Newton steps with extrapolated derivatives follow. At the end the
+    residuals are orthogonal to the derivatives within rounding. The errors of rounding and of the derivatives are
+    propagated to the parameters and the standard errors.
 
     Examples
     --------

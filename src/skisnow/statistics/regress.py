@@ -36,7 +36,7 @@ class RegressStatistics(NamedTuple):
 
 
 class Regress(NamedTuple):
-    """What `regress` returns.
+    """Result of `regress`.
 
     ``b`` (p,) coefficients, ``bint`` (p, 2) their intervals, ``r`` (n,) residuals, ``rint`` (n, 2) intervals of the
     residuals, ``stats``.
@@ -77,8 +77,8 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     Warns
     -----
     UserWarning
-        If no combination of the columns of X is constant: R², F and p are wrong then (R² can be negative).
-        If the columns of X depend on each other: b is 0 for those left out.
+        If no combination of the columns of X is constant: R², F and p are wrong then (R² can be negative). If the
+        columns of X depend on each other: b is 0 for the omitted ones.
     FitWarning
         If the condition number of the columns is above 1,000: b loses digits.
 
@@ -141,7 +141,7 @@ def _checked(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray
 
 
 def _factorised(design: FloatArray) -> Factorisation:
-    """Factorise what is independent in the design; beside a column of ones the others are centred."""
+    """Factorise the independent columns of the design; with a column of ones the others are centred."""
     ones = np.flatnonzero(np.all(design == 1.0, axis=0))
     if ones.size:
         others = np.delete(np.arange(design.shape[1]), ones[0])

@@ -1,6 +1,6 @@
 """Bootstrap: how often each unit is drawn, and intervals from the resampled results.
 
-A unit is what was drawn independently, a whole experiment and not one of its readings.
+A unit is a whole experiment, drawn independently, and not one of its readings.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ def resampling_counts(
     rng
         Source of random numbers; the counts depend only on its state, not on ``chunk``.
     chunk
-        Resamples in each array; left out, as many as make some MB.
+        Resamples in each array (default: some MB).
 
     Yields
     ------
     array
-        Shape (b, n_units), b ≤ chunk: how often each unit was drawn; every row sums to n_units. Floats, because what
-        follows is a product with the units' contributions: ``counts @ contributions``.
+        Shape (b, n_units), b ≤ chunk: number of draws of each unit; every row sums to n_units. Floats, for the product
+        with the units' contributions: ``counts @ contributions``.
 
     Examples
     --------
@@ -89,9 +89,9 @@ def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> 
     Returns
     -------
     array
-        Low and high, shape (..., 2). A NaN is a resample without an answer: it could have been anything, so it counts
-        as below everything for the low end and above everything for the high end. An interval whose end would then be
-        such a sample is NaN at both ends. NaN for B = 0.
+        Low and high, shape (..., 2). A NaN is a resample without a result. Its value is unknown, so it counts as below
+        everything for the low end and above everything for the high end. If an end would be such a sample, both ends
+        are NaN. NaN for B = 0.
 
     Notes
     -----

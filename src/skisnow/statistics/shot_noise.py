@@ -1,4 +1,4 @@
-"""Poisson shot noise: a force as a sum of saw teeth at random places, and what the teeth are like.
+"""Poisson shot noise: a force as a sum of saw teeth at random places, and the properties of the teeth.
 
 Notes
 -----
@@ -75,7 +75,7 @@ def shot_noise(force: FloatArray, sample_distance: float) -> ShotNoise:
 
 
 def _without_line(force: FloatArray) -> FloatArray:
-    """What is left of each window beside its least-squares line."""
+    """Residuals of each window from its least-squares line."""
     place = np.arange(force.shape[-1]) - 0.5 * (force.shape[-1] - 1)
     level = force - force.mean(axis=-1, keepdims=True)
     slope = level @ place / np.sum(place**2)

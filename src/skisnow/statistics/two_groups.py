@@ -79,7 +79,7 @@ def _letter(index: int) -> str:
 
 
 def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, alpha: float = 0.05) -> int:
-    """Fewest tests in each of two groups that tell a ratio of their means, by the two-sided t test on logarithms.
+    """Smallest number of tests per group that detects a ratio of their means, by the two-sided t test on logarithms.
 
     Parameters
     ----------

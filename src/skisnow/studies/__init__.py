@@ -1,4 +1,4 @@
-"""Studies: one question asked over a grid or a sample of its inputs, in parallel and resumable, as one table."""
+"""Studies: one question over a grid or a sample of its inputs, in parallel and resumable, as one table."""
 
 from .run import StudyState, run_study, study_state
 from .shards import Shard, merge_shards, run_shard

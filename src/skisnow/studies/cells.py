@@ -85,12 +85,12 @@ def _fails(read: Reader, text: str) -> bool:
 
 
 def is_text(name: str, keys: Mapping[str, Quantity]) -> bool:
-    """True for a column of texts; all others hold numbers, switches, or lists of numbers."""
+    """True for a column of texts; all others contain numbers, switches, or lists of numbers."""
     return name in TEXTS or (name in keys and keys[name].kind == "text")
 
 
 def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
-    """Check the values of a row that a database gave; `texts` tells the columns of texts.
+    """Check the values of a row from a database; `texts` marks the columns of texts.
 
     Raises
     ------

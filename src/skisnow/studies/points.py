@@ -26,7 +26,7 @@ MOST_POINTS: Final = 1_000_000
 
 
 class LazySequence(Sequence[Point], ABC):
-    """Values by name for each number, 0 or more, made as they are asked for; equal to any sequence of equal values."""
+    """Values by name for each number, 0 or more, computed on access; equal to any sequence of equal values."""
 
     __slots__ = ()
 
@@ -49,7 +49,7 @@ class LazySequence(Sequence[Point], ABC):
         return (self.point(number) for number in range(len(self)))
 
     def __eq__(self, other: object) -> bool:
-        """Whether a sequence has the same values in the same order."""
+        """True if a sequence has the same values in the same order."""
         if not isinstance(other, Sequence):
             return NotImplemented
         return len(self) == len(other) and all(a == b for a, b in zip(self, other, strict=True))
@@ -68,7 +68,7 @@ class Points(LazySequence):
 
     @abstractmethod
     def json_texts(self) -> Iterator[str]:
-        """What `json.dumps` writes for the list of all points between its brackets, in pieces parted by ``", "``."""
+        """Text of `json.dumps` for the list of all points, without its brackets, in pieces separated by ``", "``."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,7 +146,7 @@ class Column:
     Attributes
     ----------
     numbers
-        The values, or places in `listed` where it holds some (n,).
+        The values, or indices into `listed` if it is not empty (n,).
     listed
         The values that the places name.
     """
@@ -255,7 +255,7 @@ class Axis:
 
     @classmethod
     def of(cls, key: Quantity, value: object) -> Self:
-        """Read what stands behind a key: one value, a list of values, or {from, to, n, log}.
+        """Parse the value of a key: one value, a list of values, or {from, to, n, log}.
 
         Raises
         ------
@@ -353,7 +353,7 @@ def grid_points(axes: list[Axis], fixed: Point) -> GridPoints:
 
 
 def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> SampledPoints:
-    """A Latin hypercube: each of n equal slices of every axis holds one point, at a random place in its slice."""
+    """A Latin hypercube: each of n equal slices of every axis contains one point, at a random place in its slice."""
     require_count(n)
     generator = np.random.default_rng(seed)
     columns = {axis.key.name: axis.sampled((generator.permutation(n) + generator.uniform(size=n)) / n) for axis in axes}
@@ -372,5 +372,5 @@ def require_count(n: int) -> None:
 
 
 def _is_one(key: Quantity, value: list[Any]) -> bool:
-    """Whether a list is one value: three numbers."""
+    """True if a list is one value: three numbers."""
     return key.kind == "three numbers" and not any(isinstance(number, list) for number in value)

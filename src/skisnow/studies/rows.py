@@ -40,7 +40,7 @@ class StoredRows(LazySequence):
         """Rows from `number` times `ROWS_OF_A_BLOCK` on."""
 
     def __len__(self) -> int:
-        """How many there are."""
+        """Number of rows."""
         return self._count
 
     def point(self, number: int) -> Row:
@@ -66,7 +66,7 @@ class CsvRows(StoredRows):
     file
         It stays open.
     columns, readers
-        Names, and what makes values of cells.
+        Names of the columns, and the function from cells to values.
     begins
         Where each block of rows begins (bytes), and where the last one ends.
     count

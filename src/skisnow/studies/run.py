@@ -34,7 +34,7 @@ class StudyState(Enum):
 
 
 def study_state(study: Study) -> StudyState:
-    """Whether the table of this study, or of another one, is there.
+    """State of the table of this study: complete, absent, or of another study.
 
     Raises
     ------
@@ -83,8 +83,8 @@ def run_study(
     Parameters
     ----------
     study
-        What to do, or the path of its STUDY.toml. A table of the same study is read and not computed again; one of
-        another study is moved to `Study.place_for_previous`. A table in which no point could be asked is not written.
+        The study, or the path of its STUDY.toml. A table of the same study is read and not computed again; one of
+        another study is moved to `Study.place_for_previous`. A table is not written if no point could be computed.
     workers
         Number of processes; None: one for each core. The table does not depend on it.
     executor
@@ -156,7 +156,7 @@ class FinishedRows(Protocol):
     columns: tuple[str, ...] | None
 
     def __len__(self) -> int:
-        """How many there are."""
+        """Number of rows."""
         ...
 
     def values(self) -> Iterator[list[Any]]:
@@ -172,7 +172,7 @@ def written(
     *,
     previous: Path | None = None,
 ) -> StudyTable:
-    """The table of all rows; it is not written if no point could be asked.
+    """The table of all rows; it is not written if no point could be computed.
 
     Parameters
     ----------

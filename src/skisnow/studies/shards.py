@@ -69,7 +69,7 @@ class Shard:
         return range(self.number - 1, count, self.count)
 
     def place(self, study: Study) -> Path:
-        """Where its finished points are kept, beside the table."""
+        """Path of its finished points, next to the table."""
         return study.out.with_name(f"{study.out.name}.shard-{self.number}-of-{self.count}")
 
 
@@ -86,7 +86,7 @@ def run_shard(
     Parameters
     ----------
     study
-        What to do, or the path of its STUDY.toml.
+        The study, or the path of its STUDY.toml.
     shard
         The part, such as "2/8".
     workers, executor, progress
@@ -138,7 +138,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
     Returns
     -------
     StudyTable
-        A row for each point; not written if no point could be asked.
+        A row for each point; not written if no point could be computed.
 
     Raises
     ------
@@ -209,7 +209,7 @@ class _Parts:
         return {name: Quantity(name, "", kind=kind) for name, kind in self._kinds.items()}
 
     def __len__(self) -> int:
-        """How many points the study has."""
+        """Number of points of the study."""
         return self.count
 
     def texts(self) -> Iterator[NumberedText]:

@@ -44,7 +44,7 @@ class StudyModel(Protocol):
         ...
 
     def require_sound(self, points: Points, fixed: Point) -> None:
-        """Refuse points that cannot be a study: an input is missing, two say the same, what is fixed cannot be read."""
+        """Raise an error for an invalid study: an input is missing, stated twice, or cannot be read."""
         ...
 
     def files(self, points: Points) -> list[Path]:
@@ -71,11 +71,11 @@ class Study(Shown):
     out
         Where the table goes.
     subject
-        What is studied.
+        Subject of the study.
     varied
         Names of the inputs that vary, in the order of the file: the last varies fastest.
     points
-        The inputs of every point: a list of them, or what makes each from its number.
+        Inputs of every point: a list of them, or a function from the number of a point.
 
     See Also
     --------
@@ -105,11 +105,11 @@ class Study(Shown):
 
     @property
     def partial(self) -> Path:
-        """Where finished points are kept until the table is complete."""
+        """Path of the finished points until the table is complete."""
         return self.out.with_name(f"{self.out.name}.partial")
 
     def place_for_previous(self) -> Path:
-        """Where another study's table goes that is in this one's place: a name that is free."""
+        """Free path for another study's table that is in this one's place."""
         return place_for_previous(self.out)
 
     def fingerprint(self) -> str:
@@ -127,7 +127,7 @@ class Study(Shown):
 
 
 def place_for_previous(out: Path) -> Path:
-    """Where a table of another study goes: a name beside its own that is free."""
+    """Path for a table of another study: a free name next to its own."""
     place, count = out.with_name(f"{out.stem}.previous{out.suffix}"), 1
     while place.exists():
         count += 1
@@ -151,7 +151,7 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
     path
         STUDY.toml. Paths in it are relative to its folder.
     subject
-        What is studied where the file names no scenario.
+        Scenario of the study if the file names none.
 
     Returns
     -------
@@ -161,9 +161,9 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
     Raises
     ------
     ParameterError
-        The file cannot be read, a key is unknown (the nearest is named), missing, said twice or of the wrong kind, or
-        the inputs are not complete; or a value under [fixed] is outside its range, or names a ski or a snow that
-        cannot be read. Such a value of what varies is not an error of the study but of its points.
+        The file cannot be read, a key is unknown (the message names the nearest), missing, repeated or of the wrong
+        kind, or the inputs are incomplete; or a value under [fixed] is out of range, or names a ski or a snow that
+        cannot be read. Such a value of a varied input is an error of its points, not of the study.
 
     See Also
     --------

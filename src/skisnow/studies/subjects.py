@@ -111,7 +111,7 @@ class CarveModel(ShownFields):
         return dict(table)
 
     def require_sound(self, points: Points, fixed: Point) -> None:
-        """Refuse a study that lacks an input, names the snow in two ways, or whose fixed ski or snow cannot be had."""
+        """Raise an error if an input is missing, the snow is named twice, or a fixed ski or snow cannot be read."""
         carves = points.distinct("at_rest") != [True]
         point = next(point for point in points if not (carves and point.get("at_rest") is True))
         require_complete(point)

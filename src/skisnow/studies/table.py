@@ -71,7 +71,7 @@ class StudyTable(Shown):
         return Facts(f"of {len(self.rows)} points", rows)
 
     def answers(self) -> list[Row]:
-        """The rows whose point could be asked."""
+        """Rows whose point could be computed."""
         return [row for row in self.rows if row["outcome"] != FAILED]
 
     def csv(self) -> str:
@@ -81,7 +81,7 @@ class StudyTable(Shown):
         return stream.getvalue().decode("utf-8")
 
     def counts(self) -> dict[str, int]:
-        """How many rows have each outcome, the most frequent first."""
+        """Number of rows with each outcome, the most frequent first."""
         return self.tally().counts()
 
     def tally(self) -> Tally:
@@ -148,7 +148,7 @@ def large_csv(
     keys
         The study's inputs.
     begins
-        As `write_csv` gave it; None: looked for.
+        As `write_csv` returned it; None: searched for.
     """
     try:
         rows = _large_csv(path, file, keys, begins)
@@ -180,7 +180,7 @@ def _large_csv(
 
 
 def _begins(file: IO[bytes]) -> array[int]:
-    """Where blocks of rows begin, from the file's place on, and where the last one ends. A text may have line ends."""
+    """Start of each block of rows from the current position, and end of the last one. A text may contain line ends."""
     begins, place, rows, quotes = array("q", [file.tell()]), file.tell(), 0, 0
     for line in file:
         place += len(line)
@@ -242,7 +242,7 @@ class Tally:
     warned
         How many carry warnings.
     first_failed, first_warned
-        Place, 1 or more, and text of the first row that could not be asked, and of the first with warnings.
+        Number, 1 or more, and text of the first row that could not be computed, and of the first with warnings.
     studies
         Fingerprints of the studies of the rows.
     """
@@ -255,7 +255,7 @@ class Tally:
 
     @classmethod
     def of(cls, rows: Iterable[Mapping[str, Any]]) -> Tally:
-        """Of rows by names."""
+        """Tally of rows by names."""
         tally = cls()
         for row in rows:
             tally.take(row["outcome"], row.get("warnings"), row.get("reason"), row.get("study"))
@@ -263,16 +263,16 @@ class Tally:
 
     @property
     def rows(self) -> int:
-        """How many were counted."""
+        """Number of counted rows."""
         return self.outcomes.total()
 
     @property
     def failed(self) -> int:
-        """How many could not be asked."""
+        """Number of rows that could not be computed."""
         return self.outcomes[FAILED]
 
     def counts(self) -> dict[str, int]:
-        """How many rows have each outcome, the most frequent first."""
+        """Number of rows with each outcome, the most frequent first."""
         return dict(sorted(self.outcomes.items(), key=lambda pair: (-pair[1], pair)))
 
     def take(self, outcome: Any, warnings: Any, reason: Any, study: Any) -> None:

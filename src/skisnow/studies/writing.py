@@ -43,7 +43,7 @@ def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[in
     columns
         Names.
     rows
-        Values in the order of the columns; gone through twice for SQLite and Parquet, whose columns have types.
+        Values in the order of the columns; read twice for SQLite and Parquet, whose columns have types.
 
     Returns
     -------

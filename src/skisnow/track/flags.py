@@ -1,6 +1,6 @@
 """Quality of the points of a track: flags with their sentences, and kinds of satellite solutions.
 
-Flagged points stay in the track. `Track.usable` excludes those whose flag excludes.
+Flagged points stay in the track. `Track.usable` excludes points with an excluding flag.
 """
 
 from __future__ import annotations

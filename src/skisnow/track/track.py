@@ -124,7 +124,7 @@ class Track(Shown):
         Raises
         ------
         ParameterError
-            The track is in local metres, whose place on the ellipsoid is unknown.
+            The track is in local metres, and its position on the ellipsoid is unknown.
         """
         if self.axes != "east_north_up" or self.origin is None:
             raise ParameterError(

@@ -36,13 +36,13 @@ def run_batch(
     points
         Inputs of the function; with several workers they are pickled.
     function
-        From a point to a row of JSON values. With several workers it is pickled once for each of them: a function of a
-        module, or an instance of a class of a module. An error that it raises ends the batch; a function whose points
-        may fail one by one turns its errors into rows.
+        Function from a point to a row of JSON values. With several workers it is pickled once for each of them: a
+        function of a module, or an instance of a class of a module. An error that it raises ends the batch; a function
+        for which single points may fail returns its errors as rows.
     kept
         Rows that are finished already, and where to keep new ones; None: nowhere.
     workers
-        Number of processes; None: as many as this process has cores; 1: this process itself.
+        Number of processes; None: the number of cores available to this process; 1: this process.
     executor
         Executor instead of processes of this computer: "threads"; any `concurrent.futures.Executor`, which is not
         shut down; a Dask client, the address of a Dask scheduler, or a TOML file of one. The rows do not depend on it.
@@ -59,7 +59,7 @@ def run_batch(
     ParameterError
         The number of workers is below 1, or the executor is not valid.
     SkisnowError
-        A worker ended unexpectedly, or has another skisnow; what was finished is kept.
+        A worker ended unexpectedly, or has another version of skisnow; finished rows are kept.
 
     See Also
     --------
@@ -138,7 +138,7 @@ class Pool:
     workers
         Number of processes or threads, as `workers_in_force` gives it; 1 with no executor: this process itself.
     advice
-        What is kept and what to do, in words, should a process end unexpectedly.
+        Text for the error of a process that ends unexpectedly: which rows are kept, and what to do.
     executor
         As `crew_of` takes it; None: processes of this computer.
     """
@@ -158,12 +158,12 @@ class Pool:
         points
             They may be made as they are needed.
         count
-            How many they are; may be left out of a list.
+            Number of points; may be omitted for a list.
 
         Raises
         ------
         SkisnowError
-            A process ended unexpectedly. What the function raises is passed on.
+            A process ended unexpectedly. Errors of the function are passed on.
         """
         if self._executor is None and self._workers == 1:
             return ([(number, row_text(self._function(point)))] for number, point in points)
@@ -226,7 +226,7 @@ class Pool:
 
 
 def workers_in_force(workers: int | None) -> int:
-    """A number of workers; None: as many as this process has cores.
+    """A number of workers; None: the number of cores available to this process.
 
     Raises
     ------

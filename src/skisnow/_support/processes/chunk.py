@@ -39,7 +39,7 @@ class Done:
 
 
 class Identity(NamedTuple):
-    """Which skisnow computes: two that are the same give the same bits on one kind of machine."""
+    """Version of skisnow and machine of a worker: two equal identities give the same bits on one kind of machine."""
 
     version: str
     core: str
@@ -54,13 +54,13 @@ class NeedsFiles(Protocol):
     """A function that reads files, which a worker on another machine may not have."""
 
     def require_files(self) -> None:
-        """Refuse a worker whose files are others."""
+        """Raise an error if the files of a worker differ."""
         ...
 
 
 @lru_cache(maxsize=1)
 def own_identity() -> Identity:
-    """Of this process; looking up the version takes milliseconds, which every chunk would."""
+    """Identity of this process, cached: reading the version takes milliseconds, too long for each chunk."""
     return Identity(version("skisnow"), core.SOURCE_HASH)
 
 

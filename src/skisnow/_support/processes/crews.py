@@ -1,4 +1,4 @@
-"""Who computes chunks: processes or threads of this computer, or an executor that somebody else made."""
+"""Executors of chunks: processes or threads of this computer, or an executor of the caller."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Crew(ABC):
 
     @abstractmethod
     def size(self) -> int:
-        """How many chunks are computed at once; may change while work goes on."""
+        """Number of chunks that are computed at once; it may change while the work runs."""
 
     @abstractmethod
     def submit(self, points: list[Numbered]) -> Future[Done]:
@@ -136,7 +136,7 @@ class ThreadCrew(Crew):
 
 
 class GivenCrew(Crew):
-    """An executor of somebody else, on this computer or others: the function goes with every chunk.
+    """An executor of the caller, on this computer or others: each chunk carries the function.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class GivenCrew(Crew):
         self._identity, self._folder = own_identity(), str(Path.cwd())
 
     def size(self) -> int:
-        """As it says."""
+        """Number of workers that the executor reports."""
         return max(1, self._size())
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
@@ -169,7 +169,7 @@ class GivenCrew(Crew):
         return self._executor.submit(computed_elsewhere, self._packed, self._identity, self._folder, points)
 
     def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - its owner knows how to end it
-        """Close what was opened for it."""
+        """Close the pool that was opened for the work."""
         if self._close is not None:
             self._close()
 

@@ -56,7 +56,7 @@ class SchedulerFile:
     tls
         Files of certificates.
     system, options
-        The batch system, and what its class of dask-jobqueue takes.
+        The batch system, and the arguments of its class of dask-jobqueue.
     jobs
         Number of jobs.
     """
@@ -70,7 +70,7 @@ class SchedulerFile:
 
 
 def require_scheduler(scheduler: str | Path) -> None:
-    """Refuse what cannot be a scheduler, before the work begins.
+    """Raise an error for an invalid scheduler before the work begins.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def _require_options(system: str, options: Mapping[str, Any]) -> None:
 
 
 def is_plain(scheduler: str | Path) -> bool:
-    """Whether what is sent there travels unencrypted, and anybody who reaches it may run programs."""
+    """True if data travel unencrypted, and any client that reaches the scheduler can run programs."""
     return not _is_encrypted(scheduler_of(scheduler))
 
 
@@ -227,7 +227,7 @@ _MEANINGS: Final = {"ciphers": template("tls.{key} is {value!r}. It must be a te
 
 
 def crew_of_scheduler(scheduler: str | Path, function: PointFunction) -> Crew:
-    """Workers of a scheduler, whose connection is closed at the end; jobs that were asked for are ended then.
+    """Workers of a scheduler. At the end the connection is closed and requested jobs are cancelled.
 
     Raises
     ------
@@ -356,7 +356,7 @@ def _closed(client: Any, cluster: Any = None) -> None:
 
 
 def _security(tls: Mapping[str, str] | None) -> Any:
-    """Certificates for all three parts; None: what Dask's own configuration says."""
+    """Certificates for all three parts; None: Dask's own configuration."""
     if not tls:
         return None
     named = {"tls_ca_file": tls.get("ca_file"), "tls_ciphers": tls.get("ciphers")}

@@ -18,7 +18,7 @@ LOCAL: Final = ("processes", "threads")
 
 
 def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Crew:
-    """Who computes.
+    """Executor of the chunks.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     function
         From a point to a row.
     workers
-        Of this computer; of an executor that does not tell its own.
+        Number of workers of this computer, or of an executor that does not report its number.
 
     Raises
     ------

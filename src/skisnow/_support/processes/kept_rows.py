@@ -1,4 +1,4 @@
-"""Rows of a batch on disk: kept as they come, so that an interruption at any moment keeps what was finished."""
+"""Rows of a batch on disk, each written when it is finished, so that an interruption loses none of them."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ _BUSY: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 class KeptRows:
     """The finished rows of one batch, in an SQLite file. Without a path they are only remembered.
 
-    A row is written as soon as it is finished, and a kill at any moment loses none that `add` has taken. One process at
-    a time has the file. What a computer that lost its power had not yet on its disk is computed again.
+    Each row is written as soon as it is finished. A kill at any moment loses no row that `add` has accepted. Only one
+    process at a time has the file open. After a power failure, rows that had not reached the disk are computed again.
 
     Every row has a checksum. The schema and the pages are checked at each opening, a checksum when its row is read: a
     damaged file is an error that names it, whatever is damaged in it.
@@ -45,7 +45,8 @@ class KeptRows:
     path
         The file, None: in memory.
     columns
-        Where they are given a row is kept as the list of their values, half as long; what it has besides is left out.
+        If columns are stated, a row is stored as the list of their values, which is half as long; other values are not
+        stored.
     """
 
     def __init__(self, path: Path | None = None, *, columns: Sequence[str] | None = None) -> None:
@@ -184,12 +185,12 @@ class KeptRows:
         return text if self.columns is None else json_text([own_json(text).get(name) for name in self.columns])
 
     def __len__(self) -> int:
-        """How many rows are finished."""
+        """Number of finished rows."""
         ((count,),) = self._selected("select count(*) from rows")
         return int(count)
 
     def __contains__(self, number: object) -> bool:
-        """Whether the row of a point is finished."""
+        """True if the row of a point is finished."""
         return bool(list(self._selected("select 1 from rows where number = ?", number)))
 
     def numbers(self) -> Iterator[int]:
@@ -243,7 +244,7 @@ class KeptRows:
         self._database.close()
 
     def remove(self) -> None:
-        """The batch is done and its rows stand elsewhere."""
+        """Remove the file of a completed batch whose rows were written elsewhere."""
         if self.path is not None:
             self.path.unlink(missing_ok=True)  # while no one else has it
         self.close()
@@ -252,7 +253,7 @@ class KeptRows:
 
 
 def forget(path: Path) -> None:
-    """Remove the file of a batch, and the log of what a killed run had not yet brought into it."""
+    """Remove the file of a batch, and the journal that a killed run left."""
     for name in (path.name, f"{path.name}-wal", f"{path.name}-shm"):
         path.with_name(name).unlink(missing_ok=True)
 

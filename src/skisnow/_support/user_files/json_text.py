@@ -39,8 +39,8 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
     Raises
     ------
     GivenError
-        It is not JSON, NaN and infinite numbers included, or beyond a limit: nesting, digits of a number, length of a
-        text; or a key stands twice in an object, or a text has a character that none can have.
+        The text is not JSON (NaN and infinite numbers included), exceeds a limit (nesting, digits of a number, length
+        of a text), repeats a key of an object, or contains an invalid character.
     """
     try:
         value = json.loads(text, object_pairs_hook=_object, parse_int=_whole, parse_constant=_refuse_constant)
@@ -60,7 +60,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
 
 
 def own_json(text: str | bytes) -> Any:
-    """The value of a JSON text that this program wrote: limits are not looked for, and a number may be infinite.
+    """Value of a JSON text that skisnow wrote: without limits, and numbers may be infinite.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def _fits(value: object, hint: Any) -> bool:
 
 
 def json_number(value: float | None) -> float | None:
-    """The number, or None instead of what JSON has no number for.
+    """The number, or None for numbers that JSON cannot represent.
 
     >>> json_number(2), json_number(math.inf), json_number(math.nan), json_number(None)
     (2.0, None, None, None)

@@ -27,12 +27,12 @@ def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
 
 
 def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
-    """Whether the head says that angles are in degrees; None if it says nothing.
+    """True or False as the header states degrees or not; None without a statement.
 
     Raises
     ------
     ParameterError
-        It says neither yes nor no.
+        The statement is neither yes nor no.
     """
     word = _said(head).get("indegrees")
     if word is None:
@@ -48,12 +48,12 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
 
 
 def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
-    """Whether OpenSim reads the angles of a file in degrees: radians if a head with a version says nothing.
+    """True if OpenSim reads the angles of a file in degrees; a version without a statement means radians.
 
     Raises
     ------
     ParameterError
-        The head says nothing and has no version: OpenSim then reads degrees in .mot and radians in .sto.
+        The header has neither a statement nor a version: OpenSim then reads degrees in .mot and radians in .sto.
     """
     stated = degrees_stated(path, head)
     if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
@@ -67,7 +67,7 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
 
 
 def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, columns: int) -> None:
-    """ParameterError where the head says another number of rows or columns than there are."""
+    """ParameterError if the header states another number of rows or columns than the file has."""
     said = _said(head)
     for key, there in zip(_COUNTS, (rows, columns), strict=True):
         word = said.get(key.lower(), "")

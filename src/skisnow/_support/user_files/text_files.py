@@ -66,7 +66,7 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
 
 
 def is_file(path: str | Path) -> bool:
-    """Whether there is a file of such a name; no error where none can have it."""
+    """True if a file with this name exists; False without an error for impossible names."""
     try:
         return Path(path).is_file()
     except (OSError, ValueError):
@@ -158,7 +158,7 @@ Place: TypeAlias = tuple[str | int, ...]
 
 
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
-    """Refuse what no reader can work with.
+    """Reject values that no reader can handle.
 
     Parameters
     ----------
@@ -331,7 +331,7 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
 
 
 def _require_short(text: str) -> None:
-    """Look at brackets, words and dots before the parser, whose memory grows with the square of a key's dots."""
+    """Check brackets, words and dots before parsing: the parser's memory grows as the dots of a key squared."""
     depth = dots = 0
     for token in _TOKENS.finditer(text):
         word = token[0]

@@ -64,7 +64,8 @@ def workbook_sheets(
     Raises
     ------
     GivenError
-        It is not a workbook, is protected by a password, is beyond a limit, or holds what a table has no need of.
+        The file is not a workbook, is protected by a password, exceeds a limit, or contains objects that a table does
+        not need.
     """
     _require_sound(data)
     from openpyxl import load_workbook

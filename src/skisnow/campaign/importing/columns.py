@@ -40,7 +40,7 @@ class ColumnChoice:
     heading
         As written.
     column
-        Column of the campaign's table, or the heading for a column that is kept as text; "" if it is left out.
+        Column of the campaign's table, or the heading for a column that is kept as text; "" if it is ignored.
     unit
         Conversion of its numbers; None for a text, or if the unit is open.
     """

@@ -32,7 +32,7 @@ class Proposal:
     file
         Name of the file.
     tables
-        Tables whose kind is known.
+        Tables of a known kind.
     questions
         Open questions.
     problems

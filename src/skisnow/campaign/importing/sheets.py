@@ -107,7 +107,7 @@ def _sheet(
 
 
 def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> tuple[Rows, str]:
-    """Rows of a CSV file by line, and the separator that gives the most headings."""
+    """Rows of a CSV file by line, and the separator that yields the most headings."""
     try:
         text = decode(data)
         named = named_separator(text.text[:1000])
@@ -253,20 +253,20 @@ def is_plain_number(text: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Ignored:
-    """Rows, columns and cells that the user left out."""
+    """Rows, columns and cells that the user excluded."""
 
     places: frozenset[str]
 
     def row(self, sheet: str, row: int) -> bool:
-        """True if a row is left out."""
+        """True if a row is excluded."""
         return f"{sheet}!{row + 1}" in self.places
 
     def column(self, sheet: str, column: int) -> bool:
-        """True if a column is left out."""
+        """True if a column is excluded."""
         return f"{sheet}!{column_letters(column)}" in self.places
 
     def cell(self, sheet: str, row: int, column: int) -> bool:
-        """True if a cell is left out, by itself or with its row or column."""
+        """True if a cell is excluded, directly or with its row or column."""
         name = f"{sheet}!{column_letters(column)}{row + 1}"
         return self.row(sheet, row) or self.column(sheet, column) or name in self.places
 

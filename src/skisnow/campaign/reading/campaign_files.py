@@ -44,7 +44,7 @@ class CampaignFiles(Protocol):
         Raises
         ------
         FileNotFoundError
-            There is no such file.
+            The file does not exist.
         OSError
             It cannot be read.
         """

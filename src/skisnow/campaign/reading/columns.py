@@ -50,7 +50,7 @@ class Collector(Protocol):
     """Collects the cells of one column, several rows at a time."""
 
     def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
-        """Take cells; put what is wrong with them into ``problems``."""
+        """Convert cells; add their errors to ``problems``."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -156,8 +156,8 @@ def reference_campaign(
     error, with u_y log-normal about 0.25 mm, written to 0.0001°. Depths after waiting, where asked for, are those of
     site B times 1 and an exponential growth of 3 % in the mean.
 
-    Densities and drop-cone depths vary about their site's and know nothing of H_V. Lengths in the files are written to
-    0.01 mm (drop cone 0.1 mm), densities to 1 kg/m³.
+    Densities and drop-cone depths vary about the mean of their site, independently of H_V. Lengths in the files are
+    written to 0.01 mm (drop cone 0.1 mm), densities to 1 kg/m³.
 
     Examples
     --------

@@ -137,7 +137,7 @@ def planned_angles() -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReferenceNoise:
-    """How far the readings of the reference campaign are from the law F = H_V V, and its spots from one another.
+    """Scatter of the readings of the reference campaign about the law F = H_V V, and of its spots about their site.
 
     Most are standard deviations of independent normal draws; each is 0 to switch it off, which leaves the draws of all
     others as they are.
@@ -147,13 +147,13 @@ class ReferenceNoise:
     gauge_resolution
         Step to which depths are rounded (m).
     load_sd
-        True load less the nominal one that the file states (N), each reading by itself.
+        Error of each true load against the nominal one in the file (N).
     seating_sd
         Offset of the depth zero (m), one per series, positive if the gauge reads too much.
     depth_scatter
         Relative scatter of depth from reading to reading.
     depths_grow
-        Whether the scatter of a series whose depth would shrink under a larger load is drawn again.
+        True if the scatter of a series is drawn again when its depth would shrink under a larger load.
     hardness_log_sd
         Spread of ln H_V between the spots of one site.
     layering_mean
@@ -173,7 +173,7 @@ class ReferenceNoise:
     displacement_log_sd
         Spread of ln u_y between shear tests with turning angles.
     turning_sd
-        Error of a turning angle (rad), each reading by itself: of 0.01 mm on a dial gauge at the plate.
+        Error of each turning angle (rad): 0.01 mm on a dial gauge at the plate.
     creep_mean
         Mean of the exponential distribution of the relative growth of a depth under a constant load where snow creeps.
     """

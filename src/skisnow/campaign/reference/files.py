@@ -55,7 +55,7 @@ def write_reference(
     Raises
     ------
     OutputError
-        Where the folder already holds a file of a campaign, or cannot be written; nothing is left half-written.
+        The folder already contains a file of a campaign, or cannot be written; no partial file remains.
     ParameterError
         The seed is not an integer of at least 0.
 
@@ -95,7 +95,7 @@ def write_reference(
 
 
 def _move_into_place(folder: Path, files: Mapping[str, str]) -> None:
-    """Write all files into a temporary folder, then move them; take back what an error interrupts."""
+    """Write all files into a temporary folder, then move them; undo the moves after an error."""
     moved: list[Path] = []
     with tempfile.TemporaryDirectory(prefix=".reference-", dir=folder) as temporary:
         for name, text in files.items():

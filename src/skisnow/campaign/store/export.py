@@ -195,7 +195,7 @@ def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
     Raises
     ------
     StoreError
-        There is no such campaign, an entry is damaged, or the folder exists and is not empty.
+        The campaign is unknown, an entry is damaged, or the folder exists and is not empty.
     """
     campaign = replay_journal(Journals(store).entries(id))
     with file_errors(folder, "could not be written"), new_folder(folder) as filling:

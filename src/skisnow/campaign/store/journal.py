@@ -109,7 +109,7 @@ class Journals:
         Raises
         ------
         StoreError
-            There is no such journal.
+            The journal is unknown.
         """
         return self._read(id, after, _require)
 
@@ -119,7 +119,7 @@ class Journals:
         Raises
         ------
         StoreError
-            There is no such campaign.
+            The campaign is unknown.
         """
         return self._read(id, after, _require_stored)
 
@@ -147,7 +147,7 @@ class Journals:
         OvertakenError
             There is a later entry about the same test.
         StoreError
-            There is no such journal, or no such entry to correct or undo.
+            The journal is unknown, or the entry to correct or undo is.
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             _require(connection, id)
@@ -176,7 +176,7 @@ class Journals:
         OvertakenError
             There is a later entry about the same test.
         StoreError
-            There is no such campaign, or no such entry to undo.
+            The campaign is unknown, or the entry to undo is.
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
             _require_stored(connection, id)

@@ -328,7 +328,7 @@ def store_campaign(
     *,
     added_at: datetime | None = None,
 ) -> bool:
-    """Write the row of a campaign whose contents are stored; False if it exists already.
+    """Write the row of a campaign whose contents are stored; False if the campaign exists already.
 
     `counts` are the numbers of errors and warnings; the default of ``added_at`` is the current time.
     """

@@ -102,7 +102,7 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
     Raises
     ------
     StoreError
-        psycopg is not installed; the database holds no store, or one of a newer program, or something else.
+        psycopg is not installed; the database contains no store, a store of a newer program, or other tables.
     """
     engine = _engine(address, busy_timeout_s)
     try:

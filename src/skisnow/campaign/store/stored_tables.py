@@ -175,7 +175,7 @@ BETWEEN: Final = {
 
 
 class CellError(ParameterError):
-    """A typed cell is rejected: a sentence with the problem, and one with what is allowed.
+    """Rejection of a typed cell: a sentence with the problem, and one with the allowed values.
 
     Attributes
     ----------
@@ -184,7 +184,7 @@ class CellError(ParameterError):
     column, value
         Name of the column, and the typed text.
     fix
-        Sentence with what is allowed, with numbers in the unit of the text.
+        Sentence with the allowed values, in the unit of the text.
     """
 
     def __init__(self, code: str, column: str, value: str, fix: Message) -> None:
@@ -197,7 +197,7 @@ class CellError(ParameterError):
 
 
 def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitConversion | None = None) -> str:
-    """The text of a cell as a table holds it: without blanks around it, a number with a decimal point.
+    """The text of a cell as the table stores it: without surrounding blanks, a number with a decimal point.
 
     Parameters
     ----------

@@ -183,7 +183,7 @@ def _cell_damage(row: _Row, column: str) -> str:
 
 
 def _place(row: _Row, column: str | None) -> str:
-    """Test, row and column in words. The cells of a stored campaign say their line themselves."""
+    """Test, row and column in words. The cells of a stored campaign already contain their line."""
     test, position, line = _text(row["test"]), row["position"], ""
     if position is not None:
         before = natural_number(_text(position))

@@ -65,7 +65,7 @@ class FrictionLaw(abc.ABC):
         Parameters
         ----------
         normal_force
-            F_n (N), shape (...). Below 0 there is no contact and no friction.
+            F_n (N), shape (...). Below 0 the ski is off the snow and the friction is 0.
         sliding_velocity
             Velocity (m/s) of the ski over the snow, shape (..., d) with d components.
 

@@ -19,9 +19,9 @@ class WaterFilmFriction(FrictionLaw):
     Attributes
     ----------
     lubricated_friction
-        μ_∞, ≥ 0: what is left between the two.
+        μ_∞, ≥ 0: the friction coefficient at high speed.
     dry_friction
-        a, ≥ 0: what the film takes away; μ as v → 0 is μ_∞ + a.
+        a, ≥ 0: the reduction by the film; μ as v → 0 is μ_∞ + a.
     film_speed
         v_0 (m/s), > 0: speed at which half of a is left.
     viscous_slope

@@ -18,7 +18,7 @@ from .law import PenetrationLaw
 class BilinearLaw(PenetrationLaw):
     """F_n = H (a(ϑ) A + b(ϑ) V), from the stress p = H (a(ϑ) + b(ϑ) ε) (Eqns 4 and 5).
 
-    a(ϑ) = a₀ + a₁ ϑ and b(ϑ) = b₀ + b₁ ϑ, ϑ in rad. Both must be ≥ 0 wherever the law is asked.
+    a(ϑ) = a₀ + a₁ ϑ and b(ϑ) = b₀ + b₁ ϑ, ϑ in rad. Both must be ≥ 0 at every edge angle of the evaluation.
 
     Attributes
     ----------

@@ -17,7 +17,7 @@ class DepthLaw(PenetrationLaw):
     Attributes
     ----------
     hardness_by_depth
-        H_e (N/m). It belongs to one tool at one edge angle: a spring knows no area.
+        H_e (N/m), for one tool at one edge angle: a spring does not depend on the area.
 
     See Also
     --------

@@ -19,8 +19,8 @@ from ..parameter_checks import edge_angles
 class PenetrationLaw(abc.ABC):
     """Force of snow against a tool pressed into it, normal to the snow surface.
 
-    A rival law is one frozen dataclass in a separate file, entered in ``LAWS``; it gives ``_force_in_contact`` and,
-    where it fails one of the shared checks of physics, says so in ``exceptions``.
+    A rival law is one frozen dataclass in a separate file, listed in ``LAWS``; it defines ``_force_in_contact``. If it
+    fails one of the shared checks of physics, ``exceptions`` states the reason.
     """
 
     __slots__ = ()

@@ -113,6 +113,6 @@ class LayeredPoint(PointLaw):
         return self.stress(depth, deepest) ** 2 / (2.0 * unloading)
 
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: the work of loading less what comes back."""
+        """See `PointLaw.lost_energy`: the work of loading minus the recovered work."""
         loaded, work, unloading = self._loading(deepest)
         return np.maximum(work - loaded**2 / (2.0 * unloading), 0.0)  # elastic: rounding could be below 0

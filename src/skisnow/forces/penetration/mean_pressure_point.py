@@ -1,4 +1,4 @@
-"""Snow at one place whose mean over a wedge is p = A e + B: the point form of the law of Federolf and others (2006)."""
+"""Stress at a point of snow with the mean pressure p = A e + B over a wedge, after Federolf and others (2006)."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class MeanPressurePoint(PointLaw):
     * Below, ε < ε_max: p = max(0, q(ε_max) - k_u (ε_max - ε)), k_u = unloading_ratio · (2 A + B/ε_B).
 
     The force on a wedge of depth e is the sum of q over its width: the mean pressure times area, (A e + B) e L/tan ϑ
-    along the snow normal, is the integral of 2 A ε + B. Its part along the surface, tan ϑ times as much, is the most
-    that acts across an edge: there is no shear strength beside it (S_f = 0).
+    along the snow normal, is the integral of 2 A ε + B. Its part along the surface, tan ϑ times as much, is the maximum
+    side force of an edge: the law needs no shear strength (S_f = 0).
 
     Attributes
     ----------

@@ -15,9 +15,9 @@ from ..._support.arrays import FloatArray
 class PointLaw(abc.ABC):
     """Stress along the snow normal at one place on the snow, from its depth now and its maximum depth so far.
 
-    The place keeps one number, the deepest depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow and not
-    to the ski: what comes behind meets the groove that came before. Along any path the work done on the place is
-    ``stored_energy`` plus ``lost_energy``, exactly.
+    The state of a place is one number, the maximum depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow
+    and not to the ski: later parts of a ski meet the groove of earlier ones. Along any path the work done on the place
+    is exactly ``stored_energy`` plus ``lost_energy``.
 
     A rival law is one frozen dataclass in a separate file, entered in ``POINT_LAWS``. It runs in a contact and in a
     turn as it is: `skisnow.contact.SnowField` takes it.
@@ -49,7 +49,7 @@ class PointLaw(abc.ABC):
     def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:  # noqa: ARG002
         """Stress (N/m²) and energy per area (J/m²), (2, n), under a base at an edge angle (rad). For loops.
 
-        The angle does not matter, unless a law says so.
+        The angle has no effect except in laws that state it.
         """
         return np.stack([self.stress(depth, deepest), self.stored_energy(depth, deepest)])
 

@@ -1,4 +1,4 @@
-"""Rate-dependent snow: a dashpot beside the spring, and a Kelvin element in series with it."""
+"""Rate-dependent snow: a dashpot parallel to the spring, and a Kelvin element in series with it."""
 
 from __future__ import annotations
 

@@ -32,8 +32,8 @@ class VolumeWithAnglePoint(PointLaw):
 
     Notes
     -----
-    Range, source: as `VolumeWithAngleLaw`; the unloading is ours, as `HypoplasticPoint`'s. Only ``stress_and_energy``
-    knows an angle: the other methods are those of a flat base, with a factor of 0.99. Energy of grooves that were cut
+    Range, source: as `VolumeWithAngleLaw`; the unloading is ours, as in `HypoplasticPoint`. Only ``stress_and_energy``
+    depends on the angle: the other methods are those of a flat base, with a factor of 0.99. The energy of grooves cut
     at 60° is 15 % above `lost_energy`.
 
     References

@@ -29,8 +29,8 @@ class ConstantShear(ShearLaw):
     Notes
     -----
     Range: 0.04-0.52 N/mm² on groomed ski slopes. Source: Mössner and others (2013), 108 experiments; the upper end is
-    the race piste of Federolf and others (2006) as converted there.
-    S_f is where shearing starts. Sliding that goes on may meet less: that was not measured.
+    the race piste of Federolf and others (2006) as converted there. S_f is the stress at the start of shearing. The
+    resistance during further sliding may be lower and was not measured.
 
     References
     ----------

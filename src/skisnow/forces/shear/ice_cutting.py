@@ -27,7 +27,7 @@ class IceCuttingShear(ShearLaw):
         k_ij in SI and rad: rows by the power of the depth from 1, columns by that of the rake angle from 0, so that
         Σ k_ij e^i γ^j is the tangential force per length of edge (N/m) on ice. They are the user's.
     snow_over_ice
-        c, force on snow over force on ice; 0.02 is what Lieu and Mote proposed.
+        c, force on snow over force on ice; Lieu and Mote proposed 0.02.
 
     See Also
     --------

@@ -17,9 +17,9 @@ from ..parameter_checks import edge_angles
 class ShearLaw(abc.ABC):
     """Force along the snow surface, across the edge, at which snow fails.
 
-    A rival law is one frozen dataclass in a separate file, entered in ``LAWS``; it gives ``_stress`` and, where it
-    fails one of the shared checks of physics, says so in ``exceptions``. The force acts against the side on which the
-    edge presses; it is the same to both sides (modelling assumption).
+    A rival law is one frozen dataclass in a separate file, listed in ``LAWS``; it defines ``_stress``. If it fails one
+    of the shared checks of physics, ``exceptions`` states the reason. The force acts against the side on which the edge
+    presses; it is equal on both sides (modelling assumption).
     """
 
     __slots__ = ()

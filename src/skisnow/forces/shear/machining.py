@@ -27,8 +27,8 @@ class MachiningShear(ShearLaw):
     transverse_friction
         μ_t ≥ 0, the friction across the ski.
     least_shear_plane
-        Angle (rad), 0 to π/4, that (ϑ - β)/2 does not fall below (modelling assumption, for a contact whose edges may
-        come to lie flat); 0: the theory as it is.
+        Lower limit (rad), 0 to π/4, of (ϑ - β)/2 (modelling assumption, for a contact in which edges may become flat);
+        0: the theory without a limit.
 
     See Also
     --------

@@ -34,9 +34,9 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     Parameters
     ----------
     scenario
-        Its ski, snow, laws and slope; its sledge tells where the skis are at first.
+        Its ski, snow, laws and slope; its sledge defines the start of the skis.
     path
-        The file, whose name ends in .fmu.
+        Path that ends in .fmu.
     fmi
         Version of the standard, 2 (2.0) or 3 (3.0).
     skis
@@ -50,7 +50,7 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     Raises
     ------
     ParameterError
-        The file's name has another ending, there is no library for this machine, or the number is not allowed.
+        The path does not end in .fmu, this machine has no library, or the number is not allowed.
     OutputError
         The file cannot be written.
 
@@ -72,7 +72,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     scenario
         Scenario without moving boots.
     path
-        The file, whose name ends in .fmu.
+        Path that ends in .fmu.
     fmi
         Version of the standard, 2 (2.0) or 3 (3.0).
 
@@ -84,7 +84,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     Raises
     ------
     ParameterError
-        The file's name has another ending, there is no library for this machine, or the boots move.
+        The path does not end in .fmu, this machine has no library, or the boots move.
     OutputError
         The file cannot be written.
 
@@ -97,7 +97,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
 
 
 def _require(path: str | Path, fmi: int) -> None:
-    """Refuse before the work what cannot be."""
+    """Raise errors of the inputs before the work."""
     if Path(path).suffix.lower() != ENDING:
         raise ParameterError(
             "{path} does not end in {ending}, by which programs know an FMU; name it so",
@@ -134,7 +134,7 @@ def _write(model: Model, path: Path, fmi: Version) -> Path:
 
 
 def _licence() -> str:
-    """Of skisnow, whose library the FMU holds."""
+    """Licence of skisnow, whose library the FMU contains."""
     try:
         text = distribution("skisnow").read_text("licenses/LICENSE")
     except PackageNotFoundError:
@@ -215,7 +215,7 @@ def _variable_3(variables: ET.Element, number: int, variable: Variable) -> None:
 
 
 def _structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Version) -> None:
-    """Which variables are outputs, by place in the list (2.0, from 1) or by reference (3.0)."""
+    """List of the outputs by position (2.0, from 1) or by reference (3.0)."""
     structure = ET.SubElement(root, "ModelStructure")
     outputs = [
         str(place if fmi == 2 else number)

@@ -120,22 +120,22 @@ def _words(about: Mapping[str, Values], key: str) -> list[str]:
 
 
 def _is_quantity(name: str, quantities: set[str]) -> bool:
-    """Whether a point is an angle, a force or the like, by the lists of the file or by its name."""
+    """True for angles, forces and other quantities, by the lists of the file or by the name."""
     return name in quantities or _QUANTITY.search(name) is not None
 
 
 def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None = None) -> None:
     """Write markers, and forces as analogue channels, as a .c3d file; needs ezc3d (``skisnow[c3d]``).
 
-    Places are in millimetres; all numbers have the format's single precision. A marker that was not seen has a negative
-    residual, as the format wants it.
+    Places are in millimetres; all numbers have the format's single precision. A marker without a position has a
+    negative residual, as the format requires.
 
     Parameters
     ----------
     markers
         At a steady rate; the format counts frames from the time 0, up to 65,535.
     path
-        The file, whose name ends in .c3d.
+        Path that ends in .c3d.
     forces
         Forces over the same time, at the markers' rate or a whole multiple: a channel for each column.
 

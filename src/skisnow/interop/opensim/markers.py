@@ -96,8 +96,8 @@ def read_trc(path: str | Path) -> Markers:
     Raises
     ------
     ParameterError
-        The file cannot be read, its head is invalid, its unit is not m, cm or mm, or a cell holds no number; file,
-        line, marker and value are named.
+        The file cannot be read, its header is invalid, its unit is not m, cm or mm, or a cell is not a number; the
+        message names file, line, marker and value.
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):
@@ -191,7 +191,7 @@ class BootMarkers:
     heel, toe
         Names of markers one behind the other along the boot.
     left
-        Name of a marker to the left of that line, at the height of the base where the ski lies flat.
+        Name of a marker to the left of that line, at the height of the base of a flat ski.
     sole
         Middle of the sole at the level of the base, from the heel's marker: ahead, left, up in the boot's axes (m).
     """
@@ -215,7 +215,7 @@ def boots_of_markers(
     Parameters
     ----------
     markers
-        In axes whose x points horizontally down the slope and whose third or second axis points up.
+        In axes with x horizontally down the slope and the second or third axis upwards.
     left, right
         The markers of each boot.
     up

@@ -31,9 +31,9 @@ class MotionTable(Shown):
     time
         (n,), rising (s).
     columns
-        By name, (n,) each; what they are says their name.
+        Columns by name, (n,) each; the name states the quantity.
     in_degrees
-        Whether angles are in degrees (default: False, radians, as OpenSim reads a file that says nothing).
+        True if angles are in degrees (default: False, radians, as OpenSim reads a file without a statement).
     name
         That the head begins with.
     head
@@ -68,7 +68,7 @@ class MotionTable(Shown):
 
 
 def require_rising(what: str, time: FloatArray) -> None:
-    """ParameterError if there is no time, or one that does not rise."""
+    """ParameterError if the time is missing or does not rise."""
     if np.ndim(time) != 1 or not len(time):
         raise ParameterError(
             "{field}: time has shape {shape}; there must be one row or more",
@@ -143,7 +143,7 @@ def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) 
 
 
 def number_of(cell: str, where: str) -> float:
-    """The number of a cell; ``where`` it stands, for the message."""
+    """The number of a cell; ``where`` is its place, for the message."""
     try:
         return float(cell)
     except ValueError:

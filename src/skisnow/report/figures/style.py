@@ -185,7 +185,7 @@ def error_bars(axes: Axes, x: FloatArray, ends: FloatArray, site: TextArray, sty
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist]) -> None:
-    """Draw the legend below the axes, in as many equal columns as fit."""
+    """Draw the legend below the axes, in the largest number of equal columns that fit."""
     if not handles:
         return
     room_mm = figure.get_figwidth() * MM_PER_INCH - 4.0

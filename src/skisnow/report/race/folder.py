@@ -61,7 +61,7 @@ def write_race(
     run
         Run on the quickest line, drawn over the course.
     against
-        Names of the variants whose times are written gate by gate.
+        Names of the variants with a table of times at each gate.
 
     Returns
     -------

@@ -238,7 +238,7 @@ def gross_grip_utilisation(run: Run) -> FloatArray:
 
 
 def slip_of_a_place(run: Run) -> float:
-    """Way (m) by which a place of snow slips across while one ski passes, from the shear's work; NaN without a hold.
+    """Distance (m) that a place of snow slips across while one ski passes, from the shear's work; NaN without grip.
 
     W/s = u ∫ S_f e ds/l for both skis, with the work W over the way s and the length l of ski in the snow.
     """

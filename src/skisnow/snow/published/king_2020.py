@@ -7,8 +7,8 @@ Notes
 -----
 Arguments are in N and m; L is in the equations in mm.
 
-Fit a is over all samples, fit b without the 5 % that it missed by most. There is none for the surface area. None of the
-snow was groomed.
+Fit a is over all samples, fit b without the 5 % with the largest residuals. There is none for the surface area. None of
+the snow was groomed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), J. Glaciol.: what the paper prints.
+"""Values printed in Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), J. Glaciol.
 
 *Measurement of mechanical properties of snow for simulation of skiing*: 236 penetration and 108 shear experiments on
 compacted snow of groomed slopes in the European Alps, with a 200 × 62 mm ski tool and a blade. No raw data are public.

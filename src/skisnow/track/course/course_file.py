@@ -44,9 +44,9 @@ def read_course(
     Parameters
     ----------
     path
-        A name of `course_names`, or the path of a file: CSV with the columns ``gate``,
-        ``x_m``, ``y_m``, ``side``, and where the outer poles are known ``outer_x_m``, ``outer_y_m``; or GPX with one
-        waypoint for each gate, in their order, whose type, symbol, comment, description or name says left or right.
+        A name of `course_names`, or the path of a file: CSV with the columns ``gate``, ``x_m``, ``y_m``, ``side``, and,
+        if the outer poles are known, ``outer_x_m``, ``outer_y_m``; or GPX with one waypoint for each gate, in their
+        order, whose type, symbol, comment, description or name contains left or right.
     discipline
         Discipline whose rules `course_warnings` checks.
     latitude_deg, longitude_deg

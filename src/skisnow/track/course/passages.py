@@ -36,7 +36,7 @@ class Passage(ShownFields):
         The gate.
     outcome
         "passed": feet and ski tips crossed the gate's line between the poles; "straddled": with a pole between them;
-        "missed": beside it; "backwards": against the course only; "not_reached".
+        "missed": outside the poles; "backwards": against the course only; "not_reached".
     words
         The outcome as a sentence.
     time

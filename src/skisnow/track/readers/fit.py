@@ -139,7 +139,7 @@ def _decode(data: bytes, name: str, records: _Records) -> None:
 
 
 def _number(message: Any, *names: str) -> float:
-    """The first of these fields that holds a finite number, else NaN."""
+    """The first of these fields that contains a finite number, else NaN."""
     for name in names:
         value = message.get_value(name, fallback=None)
         if isinstance(value, int | float) and math.isfinite(value):

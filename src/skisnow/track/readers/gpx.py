@@ -168,7 +168,7 @@ def _required_moment(point: _Point, name: str, place: int) -> datetime:
 
 
 def _moment(text: str) -> datetime | None:
-    """The time in UTC; GPX says UTC, so a time without zone is taken at its word.
+    """The time in UTC; a time without zone counts as UTC, as the GPX format defines.
 
     >>> _moment("2022-12-27T16:51:14.5+01:00").isoformat(), _moment("2022-12-27")
     ('2022-12-27T15:51:14.500000+00:00', None)

@@ -257,7 +257,7 @@ def _has_fix(message: Any) -> bool:
 
 
 def _solution(message: Any) -> Solution:
-    """Kind of solution: of GGA by its quality; of GNS by its modes, that of the least accurate system."""
+    """Kind of solution: of GGA by its quality; of GNS by its modes, the least accurate system's."""
     if message.msgID == "GGA":
         return QUALITIES.get(_number(message, "quality"), "")
     modes = {MODES[mode] for mode in str(getattr(message, "posMode", "")) if mode in MODES}
