@@ -2,7 +2,7 @@
 benchmarks.campaign_intervals FOLDER``.
 
 Each case writes one JSON file into the folder after every block of campaigns. A second call continues there.
-``--table`` prints the Markdown table of docs/validation/intervals.md from the files.
+``--table`` prints the Markdown table of docs/validation/reference-campaign.md from the files.
 """
 
 from __future__ import annotations

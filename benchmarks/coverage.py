@@ -1,7 +1,7 @@
 """Bias and coverage of the coefficients b of the paper's rows over simulated campaigns: ``python -m
 benchmarks.coverage``.
 
-The intervals are the bootstrap intervals of the model table. Writes a table of docs/validation/intervals.md.
+The intervals are the bootstrap intervals of the model table. Writes a table of docs/validation/reference-campaign.md.
 Intervals of each series are in ``benchmarks.campaign_intervals``.
 """
 
@@ -95,7 +95,7 @@ def main() -> None:
             )
             lines += table(condition, outcomes)
             print(f"{condition}: {time.monotonic() - start:.0f} s", file=sys.stderr)
-    write_tables("validation/intervals", {"coefficients": lines})
+    write_tables("validation/reference-campaign", {"coefficients": lines})
 
 
 if __name__ == "__main__":

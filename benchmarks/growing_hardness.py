@@ -78,12 +78,12 @@ def row(hardness: float, growth: float, count: int) -> str:
 
 
 def main() -> None:
-    """Write the table of docs/validation/intervals.md."""
+    """Write the table of docs/validation/reference-campaign.md."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.growing_hardness")
     parser.add_argument("--series", type=int, default=30_000)
     count = parser.parse_args().series
     lines = [*HEAD, *(row(H, growth, count) for H, growth in product((1e8, 1e9, 1e10), (0.0, 0.2, 0.5)))]
-    write_tables("validation/intervals", {"growing-hardness": lines})
+    write_tables("validation/reference-campaign", {"growing-hardness": lines})
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ def csv_text(table: str) -> str:
 
 
 def table_path(page: str, name: str) -> Path:
-    """File of a page's table; `page` is such as ``validation/intervals``."""
+    """File of a page's table; `page` is such as ``validation/measured``."""
     path = DOCS / page
     return path.parent / "tables" / f"{path.name}-{name.replace(' ', '-')}.csv"
 

@@ -78,12 +78,12 @@ def _cells(name: str, site: str, hardness_of_site: float, series: np.ndarray, si
 
 
 def main() -> None:
-    """Write the table of docs/validation/intervals.md."""
+    """Write the table of docs/validation/reference-campaign.md."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.unloading")
     parser.add_argument("--campaigns", type=int, default=1000)
     seeds = range(parser.parse_args().campaigns)
     lines = [*HEAD, *(row for name, noise in CASES.items() for row in rows(name, noise, seeds))]
-    write_tables("validation/intervals", {"unloading": lines})
+    write_tables("validation/reference-campaign", {"unloading": lines})
 
 
 if __name__ == "__main__":

@@ -125,7 +125,7 @@ def _percent(value: float) -> str:
     return significant(value, 3)
 
 
-def validation_turn_contrast(_folder: Path) -> dict[str, str]:
+def validation_measured(_folder: Path) -> dict[str, str]:
     """Numbers and tables of the pairs in docs/gallery/contrast; no run is computed."""
     from benchmarks.contrast.found import found, numbers, read_rows, tables
 

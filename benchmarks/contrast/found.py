@@ -162,7 +162,7 @@ def point(row: Row) -> tuple[Any, ...]:
 
 
 def numbers(pairs: dict[str, Found]) -> dict[str, str]:
-    """For the sentences of docs/validation/turn-contrast.md."""
+    """For the sentences of docs/validation/measured.md."""
     count, of = both_published(pairs)
     told = {
         "pairs": str(sum(each.asked for each in pairs.values())),
@@ -188,7 +188,7 @@ def numbers(pairs: dict[str, Found]) -> dict[str, str]:
 
 
 def tables(pairs: dict[str, Found]) -> dict[str, str]:
-    """Tables of docs/validation/turn-contrast.md."""
+    """Tables of docs/validation/measured.md."""
     return {
         "unknowns": _unknowns_table(),
         "outcomes": _outcomes_table(pairs),

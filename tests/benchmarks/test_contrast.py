@@ -146,7 +146,7 @@ def test_strength_by_hand() -> None:
 
 def test_the_page_says_what_the_kept_pairs_say() -> None:
     write_numbers: Any = importlib.import_module("write_numbers")
-    page = "validation/turn-contrast.md"
+    page = "validation/measured.md"
     computed = write_numbers.anew(page)
     assert len(computed) == 6  # with its tables
     assert computed == {path: path.read_text(encoding="utf-8") for path in computed}

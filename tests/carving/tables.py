@@ -1,4 +1,4 @@
-"""Tables and figure of docs/validation/equilibrium.md: python -m tests.carving.tables (needs Exudyn)."""
+"""Tables and figure of docs/validation/simulated-turn.md: python -m tests.carving.tables (needs Exudyn)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ FIGURES = Path(__file__).parents[2] / "docs" / "_static" / "validation"
 
 def table(name: str, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     write_tables(
-        "validation/equilibrium", {name: ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]}
+        "validation/simulated-turn",
+        {name: ["| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)]},
     )
 
 
@@ -144,7 +145,7 @@ def mesh() -> dict[tuple[float, float], FloatArray]:
             all_off[hardness, ratio] = off
             rows.append([f"{hardness:g}", f"{ratio:g}", *(f"{value:+.3f}" for value in off[MESHES.index(160)])])
     table(
-        "convergence",
+        "mesh",
         ["H_V (N/mm³)", "k_u/H_V", "R boot (%)", "R chord (%)", "greatest depth (%)", "contact (%)"],
         rows,
     )

@@ -246,8 +246,7 @@ def test_numbers_that_no_turn_has(asked: dict[str, float], told: str | Coded) ->
 
 
 ROOT = Path(__file__).resolve().parents[2]
-NAMES = ("carved-turn", "carve-derivatives")
-PAGES = [(ROOT / "docs" / "methods" / f"{name}.md").read_text("utf-8") for name in NAMES]
+PAGE = (ROOT / "docs" / "methods" / "carved-turn.md").read_text("utf-8")
 CORE = ROOT / "src" / "core"
 SOURCES = [*sorted((CORE / "carve").glob("*.?pp")), CORE / "snow" / "hypoplastic.hpp"]
 
@@ -255,6 +254,6 @@ SOURCES = [*sorted((CORE / "carve").glob("*.?pp")), CORE / "snow" / "hypoplastic
 def test_marks() -> None:
     """In brackets, without links; in the sources they begin a remark."""
     marked = re.findall(r"^ *// \[([a-z ]+)\]", "\n".join(each.read_text("utf-8") for each in SOURCES), re.MULTILINE)
-    named = re.findall(r"\[([a-z]+(?:, [a-z]+)*)\](?!\()", "\n".join(PAGES))
+    named = re.findall(r"\[([a-z]+(?:, [a-z]+)*)\](?!\()", PAGE)
     assert {name for group in named for name in group.split(", ")} == set(marked)
     assert {"hypoplastic", "strip", "balance"} <= set(marked)

@@ -19,5 +19,5 @@ def test_every_key_and_every_offset_is_told() -> None:
     commands = (DOCS / "files" / "command-line.md").read_text(encoding="utf-8")
     keys = keys_of(json_schema("compare")) - {"schema_version"}
     assert {key for key in keys if f"`{key}`" not in commands} == set()
-    page = (DOCS / "methods" / "track-distances.md").read_text(encoding="utf-8")
+    page = (DOCS / "methods" / "tracks.md").read_text(encoding="utf-8")
     assert all(f"*{offset}*" in page for offset in OFFSETS)

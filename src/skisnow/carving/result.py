@@ -182,7 +182,7 @@ class Equilibrium(Shown):
 
         References
         ----------
-        The page docs/methods/carve-derivatives.md.
+        The page docs/methods/carved-turn.md.
         """
         return self.derivatives().sensitivity(output, parameters)
 

@@ -1,6 +1,6 @@
 """Exact derivatives of a carve by the adjoint state: how an output grows with ski, snow, load and edge angle.
 
-Equations: docs/methods/carve-derivatives.md.
+Equations: docs/methods/carved-turn.md.
 """
 
 from __future__ import annotations

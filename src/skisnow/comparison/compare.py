@@ -98,7 +98,7 @@ def compare_tracks(
 
     References
     ----------
-    The page docs/methods/track-distances.md.
+    The page docs/methods/tracks.md.
     """
     _require_options(fit, time_from, known_to, slope_angle)
     if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:

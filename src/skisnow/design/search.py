@@ -46,7 +46,7 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     References
     ----------
     * The page docs/files/ski.md.
-    * The page docs/methods/carve-derivatives.md.
+    * The page docs/methods/carved-turn.md.
 
     Examples
     --------

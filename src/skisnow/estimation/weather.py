@@ -68,7 +68,7 @@ def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
 
     References
     ----------
-    The page docs/files/instruments.md.
+    The page docs/files/campaign.md.
     """
     weather = campaign.weather
     if weather is None:

@@ -53,7 +53,7 @@ def write_caaml(pit: SnowPit, path: str | Path) -> Path:
 
     References
     ----------
-    The page docs/files/instruments.md.
+    The page docs/files/campaign.md.
     """
     write_file(path, caaml_text(pit))
     return Path(path)

@@ -189,7 +189,7 @@ def time_gates(course: Course, moving: Run | Track) -> CourseResult:
 
     References
     ----------
-    The page docs/files/course.md.
+    The page docs/files/scenario.md.
     """
     if isinstance(moving, Track):
         return passages(course, track_point(moving, course), {})

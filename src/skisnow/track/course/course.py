@@ -228,7 +228,7 @@ def course_names() -> tuple[str, ...]:
 
     References
     ----------
-    The page docs/files/course.md.
+    The page docs/files/scenario.md.
 
     Examples
     --------

@@ -70,7 +70,7 @@ def read_course(
 
     References
     ----------
-    The page docs/files/course.md.
+    The page docs/files/scenario.md.
     """
     name = str(path)
     path = course_place(name) if name in course_names() else Path(path)
