@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
+from xml.etree import ElementTree
 
 import pytest
 
 from skisnow.carving.answer import answer_dict, answered
 from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.report.formatting import significant
-from skisnow.web.pages.carve import RATIOS, SLIDERS
+from skisnow.web.carved_turn import RATIOS, SLIDERS
 
 from .conftest import Served, ready
 
@@ -58,3 +60,31 @@ def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
     page.get_by_text("Snow: H_V = 0.207 N/mm³").wait_for()
     headline.get_by_text(radius(48.0, published="race-piste"), exact=True).wait_for()
     assert page.get_by_role("slider", name="Snow hardness H_V (N/mm³)").is_hidden()
+
+
+def test_the_designed_ski_follows_and_the_charts_are_saved(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}design?ski=slalom")
+    headline = page.get_by_role("region", name="Carved radius")
+    headline.get_by_text("slalom, designed: carved radius 10.3 m").wait_for()
+    ready(page)
+    page.get_by_label("Wanted radius (m)").fill("12")
+    page.get_by_role("button", name="Find the design").click()
+    headline.get_by_text("slalom, designed: carved radius 12.0 m").wait_for()
+    slider = page.get_by_role("slider", name="Sidecut, tip and tail (mm)")
+    assert float(slider.input_value()) < 30  # narrower: it has moved from the middle
+    slider.press("ArrowLeft")
+    page.get_by_text(re.compile(r"tip and tail \(mm\): -6\.?5?$")).wait_for()
+    for kind, begin in (("SVG", b"<svg"), ("PNG", b"\x89PNG")):
+        with page.expect_download() as download:
+            page.get_by_role("button", name=f"Curves as {kind}").click()
+        content = download.value.path().read_bytes()
+        assert download.value.suggested_filename == f"design.{kind.lower()}"
+        assert content.startswith(begin)
+        assert len(content) > 10_000
+        if kind == "SVG":
+            root = ElementTree.fromstring(content)
+            assert len(root.findall("{*}svg")) == 2  # both charts
+            assert [each.text for each in root.iter() if each.get("class") == "name"] == [
+                "slalom, designed",
+                "slalom",
+            ] * 2

@@ -75,7 +75,7 @@ def test_all_text_stands_out(page: Page, served: Served) -> None:
         assert [row for row in found if contrast(row[1], row[2]) < LEAST] == [], place
 
 
-READY = {"skis": "td", "carve": "td", "simulate": "summary", "study": ".range", "replay": ".card"}
+READY = {"skis": "td", "carve": "td", "design": "td", "simulate": "summary", "study": ".range", "replay": ".card"}
 
 
 def test_every_page_of_the_navigation_is_looked_at() -> None:

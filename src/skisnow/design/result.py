@@ -17,7 +17,7 @@ from .._support.messages import Message
 from .._support.staging import write_file
 from ..carving.outputs import OUTPUTS
 from ..ski import Ski
-from ..ski.ski_file import ski_of_keys, write_keys
+from ..ski.ski_file import keys_text, ski_of_keys
 from .evaluation import carve_at
 from .problem import Search, linear_constraints
 
@@ -146,8 +146,8 @@ class Design(Shown):
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         paths = [folder / name for name in ("ski.toml", "ski-rounded.toml", "table.csv", "design.json")]
-        write_keys(self.keys, paths[0])
-        write_keys(self.rounded_keys, paths[1])
+        write_file(paths[0], keys_text(self.keys))
+        write_file(paths[1], keys_text(self.rounded_keys))
         text = io.StringIO()
         table = csv.DictWriter(text, DesignRow.__slots__, lineterminator="\n")
         table.writeheader()

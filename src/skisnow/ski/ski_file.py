@@ -165,15 +165,15 @@ def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like:
         raise (error if str(error).startswith(str(path)) else error.at(path)) from error
 
 
-def write_keys(keys: Mapping[str, Any], path: Path, *, digits: int = 9) -> None:
-    """Write a ski file without a table; numbers with that many digits."""
+def keys_text(keys: Mapping[str, Any]) -> str:
+    """Text of a ski file without a table; numbers with nine digits."""
 
     def text(value: Any) -> str:
         if isinstance(value, list | tuple):
             return f"[{', '.join(text(item) for item in value)}]"
-        return toml_text(float(f"{value:.{digits}g}") if isinstance(value, float) else value)
+        return toml_text(float(f"{value:.9g}") if isinstance(value, float) else value)
 
-    write_file(path, "".join(f"{key} = {text(value)}\n" for key, value in keys.items()))
+    return "".join(f"{key} = {text(value)}\n" for key, value in keys.items())
 
 
 def write_ski(ski: Ski, path: str | Path) -> None:
@@ -276,6 +276,10 @@ class Sources:
     def take_snow(self, snow: SnowProperties, *, results: str, site: str | None) -> None:
         """Use an existing snow instead of that of the words `results` and `site`, whose file is then not read."""
         self._snows[None, results, site] = snow
+
+    def take_ski(self, word: str, keys: Mapping[str, Any]) -> None:
+        """Take the ski of these keys for that of a word, whose file is then not read."""
+        self._skis[word] = with_range_warnings(lambda: ski_of_keys(keys))
 
     def path(self, word: str) -> Path:
         """The place of a file."""

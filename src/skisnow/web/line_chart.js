@@ -93,6 +93,41 @@ function legend(lines, styles, from, to) {
   return [found, found.length ? y + LEGEND - EDGE : EDGE];
 }
 
+const SHARPNESS = 2; // pixels of a picture for each of the page
+
+// All charts of the page one below the other, as one drawing with its size.
+function drawing() {
+  const whole = made("svg", { xmlns: "http://www.w3.org/2000/svg" });
+  let width = 0, height = 0;
+  for (const chart of document.querySelectorAll("[data-drawn] > svg")) {
+    const copy = chart.cloneNode(true);
+    for (const [name, value] of [["y", height], ["width", chart.clientWidth]]) copy.setAttribute(name, value);
+    whole.append(copy);
+    width = Math.max(width, chart.clientWidth), height += Number(chart.getAttribute("height"));
+  }
+  for (const [name, value] of [["width", width], ["height", height]]) whole.setAttribute(name, value);
+  whole.prepend(made("rect", { width, height, fill: "#fff" }));
+  return [new Blob([new XMLSerializer().serializeToString(whole)], { type: "image/svg+xml" }), width, height];
+}
+
+async function picture([svg, width, height]) {
+  const image = new Image(), page = document.createElement("canvas");
+  image.src = URL.createObjectURL(svg);
+  await image.decode();
+  URL.revokeObjectURL(image.src);
+  page.width = SHARPNESS * width, page.height = SHARPNESS * height;
+  page.getContext("2d").drawImage(image, 0, 0, page.width, page.height);
+  return new Promise((done) => page.toBlob(done));
+}
+
+window.saveCharts = async (file) => {
+  const drawn = drawing(), link = document.createElement("a");
+  link.href = URL.createObjectURL(file.endsWith(".png") ? await picture(drawn) : drawn[0]);
+  link.download = file;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+};
+
 export default {
   template: '<div><svg role="img" style="display: block; width: 100%; touch-action: pan-y"></svg></div>',
   props: { panel: Object, height: Number, styles: Array },
@@ -138,7 +173,7 @@ export default {
       children.push(made("text", { x: (LEFT + right) / 2, y: height - 8 - row, "text-anchor": "middle" }, panel.x));
       if (before) children.push(made("text", { x: LEFT, y: height - 8, class: "end" }, ends[0]));
       if (behind) children.push(made("text", { x: right, y: height - 8, "text-anchor": "end", class: "end" }, ends[1]));
-      const middle = (top + bottom) / 2;
+      const middle = Math.max((top + bottom) / 2, wide(panel.y) / 2 + 2);
       children.push(made("text", { x: 16, y: middle, "text-anchor": "middle", transform: `rotate(-90 16 ${middle})` }, panel.y));
       // a clip area for values beyond the range
       const inside = made("svg", { x: LEFT, y: top, width: Math.max(0, right - LEFT), height: bottom - top,

@@ -13,6 +13,7 @@ from nicegui.element import Element
 
 from .._support.messages import Message, decimal_sign
 from ..report.formatting import significant
+from .elements import button
 from .language import language_of, said
 
 if TYPE_CHECKING:
@@ -114,6 +115,12 @@ class LineChart(Element, component="line_chart.js"):
         else:
             words = Message("{chart}: {extent}", chart=self._words, extent=_extent(values))
         return said(words, self.client)
+
+
+def save_buttons(name: str) -> None:
+    """Add buttons with which the browser saves all charts of the page in one file of this name."""
+    for kind, words in (("png", Message("Curves as PNG")), ("svg", Message("Curves as SVG"))):
+        button(words, None).on("click", js_handler=f"() => saveCharts('{name}.{kind}')")
 
 
 def _extent(values: Sequence[float]) -> Message:

@@ -22,13 +22,12 @@ from skisnow.estimation.results import results_json
 from skisnow.report.formatting import significant
 from skisnow.ski import ski_names
 from skisnow.snow import published_names
+from skisnow.web import carved_turn
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.pages import carve
 
 from ..campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from .desk import Desk, Sheet
@@ -94,20 +93,20 @@ def told(page: Sheet) -> str:
 def held(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, list[Any]]:
     """Answers that come when the event is set, and the questions."""
     released, asked = threading.Event(), list[Any]()
-    at_once = carve._Solver.answers
+    at_once = carved_turn.Solver.answers
 
-    def late(self: Any, questions: Sequence[dict[str, object]], snow: Any) -> Any:
-        asked.append(list(questions))
+    def late(self: Any, questions: Any) -> Any:
+        asked.append(questions.questions)
         assert released.wait(60)
-        return at_once(self, questions, snow)
+        return at_once(self, questions)
 
-    monkeypatch.setattr(carve._Solver, "answers", late)
+    monkeypatch.setattr(carved_turn.Solver, "answers", late)
     return released, asked
 
 
 def said_instead(monkeypatch: pytest.MonkeyPatch, *found: Any) -> None:
     """Let these be the answers."""
-    monkeypatch.setattr(carve._Solver, "answers", lambda *_: list(found))
+    monkeypatch.setattr(carved_turn.Solver, "answers", lambda *_: list(found))
 
 
 def campaign(desk: Desk, folder: Path, *, shear: str = "") -> str:
@@ -330,7 +329,7 @@ def test_while_an_answer_is_late_it_is_said_and_only_the_last_question_waits(
     desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     released, asked = held(monkeypatch)
-    monkeypatch.setattr(carve, "PATIENCE_S", 0.0)
+    monkeypatch.setattr(carved_turn, "PATIENCE_S", 0.0)
     page = desk.open("/carve")
     assert told(page) == "Computing …"
     page.until(lambda: asked)
@@ -352,7 +351,7 @@ def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk, monkeypatch: py
     page = desk.open("/carve")
     page.shows("[status] carver: equilibrium.")
     failure = ZeroDivisionError("division by zero")
-    monkeypatch.setattr(carve._Solver, "answers", Mock(side_effect=failure))
+    monkeypatch.setattr(carved_turn.Solver, "answers", Mock(side_effect=failure))
     move(page, ANGLE, "49")
     assert desk.fails() is failure
     page.told("notify ")

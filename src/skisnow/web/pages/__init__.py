@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-PAGES: Final = ("campaigns", "skis", "carve", "simulate", "study", "replay")
+PAGES: Final = ("campaigns", "skis", "carve", "design", "simulate", "study", "replay")
 """Modules of this folder, in the order of the navigation."""
 
 INNER: Final = ("import_file", "describe", "enter", "correct", "analysis", "study_table")

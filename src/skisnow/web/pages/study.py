@@ -10,6 +10,8 @@ from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, joined
 from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
+from ..carved_turn import OF_SNOW as CARVE_SNOW
+from ..carved_turn import SLIDERS
 from ..elements import Words, button, choice, link, named, option_texts
 from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
@@ -22,8 +24,6 @@ from ..snow_choice import SnowChoice
 from ..studies import Studies, StudyJob, estimate_words, unit_s
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..words import typed_number
-from .carve import OF_SNOW as CARVE_SNOW
-from .carve import SLIDERS
 from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, with_given
 from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address

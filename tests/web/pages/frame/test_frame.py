@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 def test_the_head_leads_to_every_page_and_to_the_other_language(desk: Desk, language: str) -> None:
     page = desk.open("/skis?ski=slalom&added=", language)
     links = {each.props["href"]: each for each in page.of(ui.link)}
-    places = ["/", "/skis", "/carve", "/simulate", "/study", "/replay"]
+    places = ["/", "/skis", "/carve", "/design", "/simulate", "/study", "/replay"]
     assert [href for href in links if href in places] == places
     assert [href for href, each in links.items() if each.props.get("aria-current") == "page"] == ["/skis"]
     other = {"en": "de", "de": "en"}[language]

@@ -1,0 +1,226 @@
+"""Page of a design: sliders for a ski's shape and stiffness beside a competitor in the same turn, and a search."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from nicegui import run, ui
+
+from ..._support.errors import SkisnowError
+from ..._support.messages import Message, joined
+from ...carving.edge_line import BOOT_REACH
+from ...ski.ski_file import keys_text
+from ..carved_turn import NUMBERS, SLIDERS, Asked, CarvedTurn, Solver, taken
+from ..elements import Words, button, choice, field, option_texts
+from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
+from ..layout import error_sentence, framed
+from ..snow_choice import SnowChoice
+from ..words import typed_number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ...design import Design
+    from ..settings import Lab
+
+PATH: Final = "/design"
+TITLE: Final = Message("Design")
+SIDECUT: Final = "sidecut_mm"
+STIFFNESS: Final = "EI_factor"
+TIP: Final = "EI_before_middle"
+WIDENED: Final = ("tip_width_mm", "tail_width_mm")
+WIDTHS: Final = ("waist_width_mm", *WIDENED)
+_CHANGES: Final = tuple(f"{half / 2:+g}" for half in range(-30, 31))
+_FACTORS: Final = tuple(f"{hundredths / 100:g}" for hundredths in range(50, 205, 5))
+SHAPES: Final = {
+    SIDECUT: (Message("Sidecut, tip and tail (mm)"), _CHANGES, "+0"),
+    "waist_width_mm": (Message("Waist (mm)"), _CHANGES, "+0"),
+    "tip_width_mm": (Message("Tip (mm)"), _CHANGES, "+0"),
+    "tail_width_mm": (Message("Tail (mm)"), _CHANGES, "+0"),
+    STIFFNESS: (Message("Stiffness EI ×"), _FACTORS, "1"),
+    TIP: (Message("EI before the middle ×"), _FACTORS, "1"),
+}
+"""Sliders of the ski: changes of widths, and factors."""
+UNLOADING_RATIO: Final = 10.0
+STARTS: Final = 2
+PEAK: Final = "force_per_length_N_per_m"
+BENT: Final = "bending_mm"
+FACTS: Final = {
+    "grip_utilisation": (Message("Grip utilisation (1: side-slip)"), ""),
+    "side_force_limit_N": (Message("Shear capacity of the snow"), "N"),
+    PEAK: (Message("Greatest force per length"), "N/m"),
+    BENT: (Message("Deflection 0.4 m before the boot"), "mm"),
+}
+
+
+def add_page(lab: Lab) -> None:
+    """Add the page to the application."""
+    solver, skis = Solver(), LabSkis(lab.runs)
+
+    @ui.page(PATH)
+    async def design(ski: str = "", other: str = "") -> None:
+        with framed(Message("Design"), here=PATH):
+            _Design(lab, solver, skis, (ski, other)).ask()
+
+
+def designed_keys(keys: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
+    """Keys of a ski file with the changes of `SHAPES`; the EI of the rows before the middle row has its own factor."""
+    before = len(keys["EI_N_m2"]) // 2
+    stiffness = [
+        float(value) * changes[STIFFNESS] * (changes[TIP] if row < before else 1.0)
+        for row, value in enumerate(keys["EI_N_m2"])
+    ]
+    widths = {key: keys[key] + changes[key] + (changes[SIDECUT] if key in WIDENED else 0.0) for key in WIDTHS}
+    return {**keys, **widths, "EI_N_m2": stiffness}
+
+
+def designable_skis(skis: LabSkis) -> dict[str, Mapping[str, Any]]:
+    """Keys of the skis that are made of three widths and a list of stiffness, by name."""
+    found = {}
+    for name in skis.names():
+        try:
+            keys = ski_of_texts(*skis.texts(name))[0].keys or {}
+        except SkisnowError:  # *Skis* and *Carve* show the error of a damaged file
+            continue
+        if all(key in keys for key in WIDTHS) and isinstance(keys.get("EI_N_m2"), list):
+            found[name] = keys
+    return found
+
+
+def found_design(asked: Asked, target: float) -> Design:
+    """The ski of the first question with the sidecut and stiffness that make a radius (m)."""
+    from ...design.search import design_ski
+    from ...design.task import design_task
+    from ...ski.ski_file import Sources
+
+    sources = Sources()
+    question = taken(asked, sources)[0]
+    bounds = {key: [float(SHAPES[key][1][0]), float(SHAPES[key][1][-1])] for key in (SIDECUT, STIFFNESS)}
+    task = {
+        "ski": question.pop("ski"),
+        "variables": bounds,
+        "conditions": [question],
+        "goals": [{"output": "turn_radius_boot_m", "target": target}],
+        "starts": STARTS,
+    }
+    return design_ski(design_task(task, sources=sources))
+
+
+class _Design(CarvedTurn):
+    """Sliders of ski and turn on the left, the answer on the right."""
+
+    facts = FACTS
+    panels = (PEAK, BENT)
+    height = 215
+
+    def __init__(self, lab: Lab, solver: Solver, skis: LabSkis, names_in_address: tuple[str, str]) -> None:
+        super().__init__(solver)
+        self._skis = skis
+        own = designable_skis(skis)
+        first, other = names_in_address
+        self._begun = own
+        with ui.element("div").classes("carving designing"):
+            with ui.element("section"):
+                with ui.element("div").classes("fields large"):
+                    self._ski = choice(Message("Ski"), list(own), first if first in own else next(iter(own)))
+                    others = _others(skis)
+                    self._other = choice(
+                        Message("Compared with"), others, other if other in others else str(self._ski.value)
+                    )
+                    self.snow = SnowChoice(lab, NUMBERS, self.update_snow)
+                self.add_sliders(SHAPES | SLIDERS)
+                self._add_search()
+                self._add_saving()
+            with ui.element("section").classes("curves"):
+                self.add_status()
+                self.add_facts()
+                self.add_charts()
+                self.add_files("design")
+        self._ski.on_value_change(self._begin)
+        self._other.on_value_change(self.ask)
+
+    def _add_search(self) -> None:
+        with ui.element("div").classes("acts"):
+            self._target = field(Message("Wanted radius (m)"), "12", numeric=True)
+            self._search = button(Message("Find the design"), self._find, "main")
+        self._found = Words("").classes("status").props("role=status")
+
+    def _add_saving(self) -> None:
+        with ui.element("div").classes("acts"):
+            self._name = field(Message("New name"))
+            button(Message("Save in the lab"), self._save, once=True)
+            button(Message("Download the file"), self._export)
+        self._saved = Words("").classes("status").props("role=status")
+
+    def _begin(self) -> None:
+        for key, (_, _, start) in SHAPES.items():
+            self.sliders[key].put(float(start), "+g" if start == "+0" else "g")
+        self.ask()
+
+    def _keys(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
+        name = str(self._ski.value)
+        changes = {key: float(SHAPES[key][2] if key in without else self.sliders[key].value) for key in SHAPES}
+        source = f"designed in the lab from the ski {name}"
+        return designed_keys(self._begun[name], changes) | {"name": f"{name}, designed", "source": source}
+
+    def asked(self) -> Asked:
+        """The designed ski and its competitor in the same turn."""
+        snow = self.snow.chosen()
+        turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
+        skis: list[Any] = [self._keys()]
+        if self._other.value != NOTHING:
+            skis.append(self._skis.word(str(self._other.value)))
+        return Asked([{"ski": ski, **turn} for ski in skis], snow)
+
+    def fact(self, key: str, answer: dict[str, Any]) -> float | None:
+        """Greatest force, deflection at one place, or a number of the answer."""
+        if key == PEAK:
+            return max(answer[PEAK]) if answer[PEAK] else None
+        if key == BENT:
+            distance = [abs(place - BOOT_REACH) for place in answer["station_m"]]
+            return answer[BENT][distance.index(min(distance))] if answer[BENT] else None
+        return super().fact(key, answer)
+
+    async def _find(self) -> None:
+        _tell(self._found, Message("Searching …"))
+        self._search.disable()
+        try:
+            target = typed_number(Message("the wanted radius"), str(self._target.value or ""))
+            snow = self.snow.chosen()
+            turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
+            asked = Asked([{"ski": self._keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
+            design = await run.io_bound(found_design, asked, target)
+        except SkisnowError as error:
+            _tell(self._found, error_sentence(error), bad=True)
+            return
+        finally:
+            self._search.enable()
+        if design is None:  # the server ends
+            return
+        for key, spec in ((SIDECUT, "+.3g"), (STIFFNESS, ".3g")):
+            self.sliders[key].put(design.values[key], spec)
+        done = Message("Sidecut and stiffness are set: the ski makes this radius.")
+        _tell(self._found, done if design.reached else joined(design.remarks[:-1]), bad=not design.reached)
+        self.ask()
+
+    async def _save(self) -> None:
+        name = " ".join(str(self._name.value or "").split())
+        try:
+            await run.io_bound(self._skis.save_texts, name, keys_text(self._keys()), "")
+        except SkisnowError as error:
+            _tell(self._saved, Message("Not saved: {error}", error=error_sentence(error)), bad=True)
+            return
+        self._other.set_options(option_texts(_others(self._skis)))
+        _tell(self._saved, Message("Saved: {name}. Carve and Simulate have it too.", name=name))
+
+    def _export(self) -> None:
+        ui.download(keys_text(self._keys()).encode(), FILE)
+
+
+def _others(skis: LabSkis) -> dict[str, str]:
+    return {NOTHING: Message("nothing"), **{name: name for name in skis.names()}}
+
+
+def _tell(label: ui.label, text: str, *, bad: bool = False) -> None:
+    label.set_text(text)
+    label.classes(add="bad" if bad else "good", remove="good" if bad else "bad")
