@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 sys.path.insert(0, str(Path(__file__).parent))
 from key_tables import write_schemas, write_tables
+from write_gallery import write_pages
 
 _PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -109,9 +110,10 @@ def _align_numbers(_app: Sphinx, doctree: Any) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Write tables of keys and schemas; register the renderer of equations, the reader of bars, levels of captions."""
+    """Write tables of keys, schemas and the gallery; register what reads and renders parts of pages."""
     write_tables()
     write_schemas()
+    write_pages()
     app.connect("autodoc-process-docstring", _bars)
     app.connect("doctree-read", _align_numbers)
     app.connect("html-page-context", _levels, priority=900)  # behind the theme's own

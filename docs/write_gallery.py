@@ -1,8 +1,8 @@
-"""Pages, figures and printed numbers of the gallery: python docs/write_gallery.py [--check] [NAME ...].
+"""Figures and printed numbers of the gallery: python docs/write_gallery.py [--check] [NAME ...].
 
 An example is a script in ``examples/gallery`` that prints what it found and saves one figure under its own name. Its
 docstring has a title, a text, and two lines: ``Figure:``, what is to be seen, and ``Known from:``, where its number is
-known from. Each theme in ``THEMES`` is a page with a section for each of its examples.
+known from. The build of the docs writes a card and a section for each (`write_pages`).
 """
 
 from __future__ import annotations
@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 DOCS: Final = Path(__file__).resolve().parent
 EXAMPLES: Final = DOCS.parent / "examples" / "gallery"
 PICTURES: Final = DOCS / "_static" / "gallery"
-PAGES: Final = DOCS / "gallery"
-START, END = "<!-- examples -->", "<!-- end of examples -->"
+PRINTED: Final = DOCS / "gallery" / "printed"
 THEMES: Final = {
     "snow": (
         "Tests on the slope, and snow that remembers",
@@ -49,7 +48,7 @@ THEMES: Final = {
         ),
     ),
 }
-"""Title and examples of each page."""
+"""Title and examples of each theme."""
 STYLE: Final[dict[str, Any]] = {
     "figure.figsize": (6.4, 3.8),
     "figure.constrained_layout.use": True,
@@ -111,16 +110,23 @@ def ran(name: str) -> Ran:
     return Ran(values, told.getvalue(), picture)
 
 
-def page(theme: str, printed: dict[str, str]) -> str:
-    """Markdown of the page of a theme, with what each example printed."""
-    title, group = THEMES[theme]
-    return "\n".join([f"# {title}\n", *(_section(name, printed[name]) for name in group)])
+def write_pages(folder: Path = DOCS / "_generated" / "gallery") -> None:
+    """Write the cards of all examples and their sections, which the page includes."""
+    folder.mkdir(parents=True, exist_ok=True)
+    cards = "\n".join(_cards(title, group) for title, group in THEMES.values())
+    (folder / "cards.md").write_text(cards, encoding="utf-8")
+    (folder / "examples.md").write_text("\n".join(map(_section, names())), encoding="utf-8")
 
 
-def _section(name: str, printed: str) -> str:
+def _cards(title: str, group: tuple[str, ...]) -> str:
+    cards = (f"- [![](../_static/gallery/{name}.png) {words(name).title}](#{name})" for name in group)
+    return "\n".join((f"## {title}\n\n{{.cards}}", *cards, ""))
+
+
+def _section(name: str) -> str:
     example = words(name)
     return f"""({name})=
-## {example.title}
+### {example.title}
 
 {example.text}
 
@@ -129,7 +135,7 @@ def _section(name: str, printed: str) -> str:
 *{example.figure}* Known from: {example.known}
 
 ```
-{printed}```
+{printed(name)}```
 
 ```{{literalinclude}} ../../examples/gallery/{name}.py
 :language: python
@@ -138,26 +144,9 @@ def _section(name: str, printed: str) -> str:
 """
 
 
-def printed_on_pages() -> dict[str, str]:
-    """What each example printed according to the pages."""
-    printed = {}
-    for theme, (_, group) in THEMES.items():
-        text = (PAGES / f"{theme}.md").read_text(encoding="utf-8")
-        for name in group:
-            printed[name] = text.partition(f"({name})=\n")[2].partition("```\n")[2].partition("```")[0]
-    return printed
-
-
-def index() -> str:
-    """The part of the start page that shows all examples."""
-    parts = []
-    for theme, (title, group) in THEMES.items():
-        cards = "\n".join(
-            f"- [![](../_static/gallery/{name}.png) {words(name).title}]({theme}.md#{name})" for name in group
-        )
-        parts.append(f"## {title}\n\n{{.cards}}\n{cards}\n")
-    pages = "\n".join(THEMES)
-    return f"{START}\n" + "\n".join(parts) + f"\n```{{toctree}}\n:hidden:\n\n{pages}\n```\n{END}"
+def printed(name: str) -> str:
+    """Output of an example, as it was kept."""
+    return (PRINTED / f"{name}.txt").read_text(encoding="utf-8")
 
 
 def _sentence(text: str) -> str:
@@ -171,41 +160,26 @@ def _first_line(name: str) -> int:
     return (tree.body[0].end_lineno or 0) + 2
 
 
-def _with_index(text: str) -> str:
-    head, _, rest = text.partition(START)
-    return head + index() + rest.partition(END)[2]
-
-
-def _differs(path: Path, text: str, *, check: bool) -> bool:
-    """Whether a page said something else; unless it is only checked, it is written."""
-    if path.exists() and path.read_text(encoding="utf-8") == text:
-        return False
-    if not check:
-        path.write_text(text, encoding="utf-8")
-    print(f"{path.relative_to(DOCS)}: {'otherwise' if check else 'written anew'}")
-    return True
-
-
 def _draw(name: str, picture: bytes) -> None:
     write_fewer_colours(PICTURES / f"{name}.png", io.BytesIO(picture))
 
 
 def main() -> int:
-    """Number of pages that said something else."""
-    parser = argparse.ArgumentParser(description="The gallery's pages and figures, made anew.")
+    """Number of examples that print something else than was kept."""
+    parser = argparse.ArgumentParser(description="The gallery's figures and printed numbers, computed again.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="such as one_series; all by default")
-    parser.add_argument("--check", action="store_true", help="write nothing; the exit status tells how many differ")
-    asked = parser.parse_args()
-    start = PAGES / "index.md"
-    stale = [_differs(start, _with_index(start.read_text(encoding="utf-8")), check=asked.check)]
-    printed = printed_on_pages()
-    for name in asked.names or names():
+    parser.add_argument("--check", action="store_true", help="write nothing; the exit status counts what differs")
+    options = parser.parse_args()
+    stale = 0
+    for name in options.names or names():
         example = ran(name)
-        printed[name] = example.printed
-        if not asked.check:
+        if example.printed != printed(name):
+            stale += 1
+            print(f"{name}: prints something else")
+        if not options.check:
             _draw(name, example.picture)
-    stale += [_differs(PAGES / f"{theme}.md", page(theme, printed), check=asked.check) for theme in THEMES]
-    return sum(stale) if asked.check else 0
+            (PRINTED / f"{name}.txt").write_text(example.printed, encoding="utf-8")
+    return stale if options.check else 0
 
 
 if __name__ == "__main__":

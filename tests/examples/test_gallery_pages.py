@@ -1,9 +1,10 @@
-"""Pages of the gallery are up to date; its examples are short and use public names."""
+"""The gallery has all examples; they are short and use public names."""
 
 from __future__ import annotations
 
 import ast
 import re
+from pathlib import Path
 
 import pytest
 
@@ -19,7 +20,7 @@ NAMES = tuple(builder().names())
 def test_every_script_has_its_place() -> None:
     assert sorted(NAMES) == sorted(path.stem for path in builder().EXAMPLES.glob("*.py"))
     assert len(set(NAMES)) == len(NAMES) == 16
-    assert all((builder().PAGES / f"{theme}.md").exists() for theme in builder().THEMES)
+    assert sorted(NAMES) == sorted(path.stem for path in builder().PRINTED.iterdir())
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -42,20 +43,16 @@ def test_every_example_is_described(name: str) -> None:
     assert (builder().PICTURES / f"{name}.png").exists()
 
 
-@pytest.mark.parametrize("theme", builder().THEMES)
-def test_page_is_up_to_date(theme: str) -> None:
-    """All but what the examples print, which the slow test below compares."""
-    page = (builder().PAGES / f"{theme}.md").read_text(encoding="utf-8")
-    assert page == builder().page(theme, builder().printed_on_pages())
-
-
-def test_start_page_shows_them_all() -> None:
-    text = (builder().PAGES / "index.md").read_text(encoding="utf-8")
-    assert builder().index() in text
+def test_the_build_writes_a_card_and_a_section_for_each(tmp_path: Path) -> None:
+    builder().write_pages(tmp_path)
+    cards, sections = ((tmp_path / f"{name}.md").read_text(encoding="utf-8") for name in ("cards", "examples"))
+    assert [cards.count(f"(#{name})") for name in NAMES] == [1] * len(NAMES)
+    assert [sections.count(f"({name})=") for name in NAMES] == [1] * len(NAMES)
+    assert all(builder().printed(name) in sections for name in NAMES)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_page_prints_what_the_script_prints(name: str) -> None:
     """After a change of the physics: python docs/write_gallery.py."""
-    assert builder().printed_on_pages()[name] == builder().ran(name).printed
+    assert builder().printed(name) == builder().ran(name).printed
