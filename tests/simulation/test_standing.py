@@ -11,7 +11,7 @@ import pytest
 
 from skisnow.scenario import Plane, Profile
 from skisnow.simulation.run_setup import laid_out
-from skisnow.simulation.simulated_run import _carried_across, weight_meets_base, why_no_start
+from skisnow.simulation.static_start import _carried_across, no_start, weight_meets_base
 
 from .runs.sledges import rigid_ski, scenario
 
@@ -24,11 +24,11 @@ def stood(hardness: float, edge_angle_deg: float) -> Any:
         ski=SimpleNamespace(
             width=np.array([0.06, 0.07]), station=np.array([0.9, 0.0, -0.8]), contact_points=(0.8, -0.7)
         ),
-        sledge=SimpleNamespace(edge_angle=math.radians(edge_angle_deg), stance_width=0.5),
+        sledge=SimpleNamespace(edge_angle=math.radians(edge_angle_deg), stance_width=0.5, centre_of_mass=(0.0, 0.5)),
         contact=SimpleNamespace(hardness_at=lambda x, y: hardness + x + y),
         start=SimpleNamespace(x=0.0, y=0.0),
     )
-    return SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0})
+    return SimpleNamespace(scenario=scenario, numbers={"load_N": 425.0}, drive=object())
 
 
 def carried(hardness: float, edge_angle_deg: float) -> tuple[float, float]:
@@ -61,8 +61,8 @@ def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
     ],
 )
 def test_where_the_weight_passes_is_told(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skisnow.simulation.simulated_run.weight_meets_base", lambda _: (ahead, left))
-    assert told in why_no_start(stood(12.5e6, 45.0))
+    monkeypatch.setattr("skisnow.simulation.static_start.weight_meets_base", lambda _: (ahead, left))
+    assert told in str(no_start(stood(12.5e6, 45.0)))
 
 
 @pytest.mark.parametrize(

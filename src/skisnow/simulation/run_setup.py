@@ -52,6 +52,13 @@ SET_DOWN: Final = 0.1
 """Distance (m) of the boots past a border that still counts as on it: a sledge may start there and settle."""
 AT_REST: Final = 1e-6
 """Last step (m) of Newton's method that counts as equilibrium."""
+TIPPED: Final = math.radians(60.0)
+"""Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
+PITCHED: Final = math.radians(40.0)
+"""Angle between the length of a sledge on the snow and the surface at which it has tipped over (modelling assumption).
+
+Beyond it a ski is on its shovel or tail: a line across the snow meets its base more than once.
+"""
 _UP: Final = np.array([0.0, 0.0, 1.0])
 
 

@@ -11,30 +11,23 @@ from typing import Final, TypeAlias
 
 import numpy as np
 
-from .._support.errors import ModelLimitWarning, ParameterError, SolverError
+from .._support.errors import ModelLimitWarning, ParameterError
 from .._support.messages import Message
 from .._support.units import MM
 from ..contact import Laws
 from ..scenario import Scenario
 from ..scenario.plausibility import model_limits
-from ..scenario.terrain import down_and_left
 from ..skier import BalancedSkier, Controller
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_record import Record
-from .run_setup import AT_REST, Setup, hardness_at_start, set_up
+from .run_setup import AT_REST, PITCHED, TIPPED, Setup, set_up
 from .run_summary import GatesAhead, run_gates
+from .static_start import no_start
 
 Progress: TypeAlias = Callable[[float, float], None]
 """Takes the simulated time (s), and the share of the run that is done, 0 to 1."""
 
-TIPPED: Final = math.radians(60.0)
-"""Angle between the sledge and the snow's normal at which it has tipped over (modelling assumption)."""
-PITCHED: Final = math.radians(40.0)
-"""Angle between the length of a sledge on the snow and the surface at which it has tipped over (modelling assumption).
-
-Beyond it a ski is on its shovel or tail: a line across the snow meets its base more than once.
-"""
 LONGEST_FLIGHT: Final = 0.3
 """Time (s) with both skis off the snow after which it is airborne (modelling assumption)."""
 SINKING_DEPTH: Final = 0.5
@@ -187,7 +180,7 @@ def _run_once(
         return computed_run(setup, record, "sunk", 0.0), setup
     if not setup.static_residual <= AT_REST:
         setup.dynamics.contact.require_finite_laws()
-        raise SolverError(why_no_start(setup), code="no_start")
+        raise no_start(setup)
     begin = time.perf_counter()
     try:
         outcome = _loop(setup, record, progress)
@@ -361,57 +354,3 @@ def _groove(setup: Setup) -> Groove:
     left = across[wide] / width[wide, None]
     middle = 0.5 * (rows[first, 2:5] + rows[last, 2:5])[wide]
     return Groove(middle, left, width[wide], depth[wide], setup.residual_depth(depth[wide]))
-
-
-def why_no_start(setup: Setup) -> str:
-    """Reason of a missing start: the weight passes beside the skis' support, or the search failed."""
-    ahead, left = weight_meets_base(setup)
-    right_end, left_end = _carried_across(setup)
-    if not -right_end <= left <= left_end:
-        side, reach = ("left", left_end) if left > left_end else ("right", right_end)
-        return (
-            "the sledge falls over at its start: on this slope, at this heading, its weight passes "
-            f"{abs(left):.3g} m to the {side} of the boots' middle, and the skis carry to {reach:.3g} m there. Lower "
-            "sledge.centre_of_mass_height_m, widen sledge.stance_width_m, or bring start.heading_deg nearer to 0"
-        )
-    front, rear = setup.scenario.ski.contact_points
-    if not rear <= ahead <= front:
-        side, reach = ("before", front) if ahead > front else ("behind", -rear)
-        return (
-            "the sledge falls over at its start: on this slope, at this heading, its weight passes "
-            f"{abs(ahead):.3g} m {side} the boots, and the skis carry to {reach:.3g} m there. Change "
-            "sledge.centre_of_mass_forward_m, or lower sledge.centre_of_mass_height_m"
-        )
-    return (
-        "the search for the sledge at rest, from which the run starts, did not come to an end, although its weight "
-        "falls between the skis. Take a smaller sledge.edge_angle_deg, softer snow, or a lower "
-        "sledge.centre_of_mass_height_m, and please report the scenario"
-    )
-
-
-def weight_meets_base(setup: Setup) -> tuple[float, float]:
-    """Point where the vertical through the centre of mass meets the bases' level: ahead and left (m).
-
-    As the sledge was set down, before it leans.
-    """
-    start = setup.scenario.start
-    normal = setup.slope_normal(start.x, start.y)
-    down, aside = down_and_left(normal)
-    forward = math.cos(start.heading) * down + math.sin(start.heading) * aside
-    gravity, centre = setup.dynamics.body.gravity, setup.dynamics.body.first_moment / setup.dynamics.body.mass
-    pulls = np.array([gravity @ forward, gravity @ np.cross(normal, forward), gravity @ normal])
-    ahead, left, _ = centre - pulls * centre[2] / pulls[2]
-    return float(ahead), float(left)
-
-
-def _carried_across(setup: Setup) -> tuple[float, float]:
-    """Largest distance (m) right and left at which snow can support the skis: from edges to waterline."""
-    ski, angle = setup.scenario.ski, setup.scenario.sledge.edge_angle
-    width, length = float(ski.width.max()), float(ski.station[0] - ski.station[-1])
-    tangent = max(math.tan(abs(angle)), 1e-9)
-    # all of the weight on one ski; a sledge that leans may double it
-    hardness = hardness_at_start(setup.scenario)
-    depth = math.sqrt(4.0 * setup.numbers["load_N"] * tangent / (hardness * 0.8 * length))
-    side, wet = setup.scenario.sledge.stance_width / 2.0, min(2.0 * depth / tangent, width)
-    beyond = wet - width / 2.0
-    return (side + beyond, side + width / 2.0) if angle > 0.0 else (side + width / 2.0, side + beyond)
