@@ -16,7 +16,7 @@ from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.force_map import ForceMap
 from skisnow.skier.plan import AHEAD, STEP, Gravity, Planned, RecedingLine, half_waves, with_run_out
 from skisnow.skier.posture import AHEAD as FORE
-from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, RIGHT_TOE, STANCE
+from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, RIGHT_TOE, RISE, STANCE
 from skisnow.skier.seen import seen_at
 from skisnow.skier.yaw import (
     BODY,
@@ -116,8 +116,8 @@ def _up_in_space(boots: Any) -> Any:
 
 def test_rates_of_poses_are_those_of_the_posture() -> None:
     body, step = posture(), 1e-4
-    body.numbers += [0.05, 0.2, 0.3, 0.1, 0.15, -0.1, 0.1, 0.1]
-    body.rates += [0.5, -0.7, 1.0, 2.0, -1.0, 0.3, -0.3, 0.2]
+    body.numbers += [0.05, 0.2, 0.3, 0.1, 0.15, -0.1, 0.1, 0.1, -0.04]
+    body.rates += [0.5, -0.7, 1.0, 2.0, -1.0, 0.3, -0.3, 0.2, 0.1]
     now = body.poses()
     body.numbers += step * body.rates
     for pose, later in zip(now, body.poses(), strict=True):
@@ -155,6 +155,19 @@ def test_legs_give_way_to_a_load_that_is_off_and_put_a_lifted_ski_down() -> None
     lifted = posture()
     lifted.step(Command((0.0, 0.0)), saw(aside=0.05, lifted=True), dt)
     assert lifted.rates[ASIDE] == pytest.approx(20.0 * 0.05)
+
+
+@pytest.mark.parametrize(("edge", "share"), [(0.0, 0.0), (2.5, 0.25), (10.0, 1.0)])
+def test_each_leg_is_a_damper_of_3000_N_s_per_m_on_an_edged_ski(edge: float, share: float) -> None:
+    """90 N too much shorten both by 15 mm/s; 60 N more on the left tilt by 20 mm/s each over 0.44 m, 0.6 m below."""
+    body = posture(leg_yielding=0.0)
+    body.numbers[LEFT_EDGE : LEFT_EDGE + 2] = math.radians(edge)
+    body.step(Command((0.0, 0.0), load=720.0), saw(left=435.0, right=375.0, pressure=60.0 * 0.44 / 720.0), 0.005)
+    assert body.rates[RISE] == pytest.approx(-0.015 * share, abs=1e-9)
+    assert body.rates[ASIDE] == pytest.approx(2.0 * 0.02 / 0.44 * 0.6 * share, abs=1e-9)
+    body.numbers[RISE] = -0.02
+    body.step(Command((0.0, 0.0)), saw(), 0.005)  # who asks for no load stands up again
+    assert body.rates[RISE] > 0.0
 
 
 def test_force_and_edge_of_the_map_are_inverse() -> None:

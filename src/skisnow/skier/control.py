@@ -16,8 +16,8 @@ from .posture import Command, Posture
 from .seen import Seen
 from .yaw import FACING, Body, heading_ahead, yaw_gain, yaw_state
 
-FORCE_TIME: Final = 0.02
-"""Time (s) over which measured forces are smoothed (found by trial: from 0.01 to 0.04 the loads stay smooth)."""
+FORCE_TIME: Final = 0.05
+"""Time (s) over which the measured force is smoothed, half a bounce of the body on the snow (modelling assumption)."""
 BLADE_TIME: Final = 0.03
 """Time (s) over which it is known whether a ski is a blade or a slider (modelling assumption)."""
 BLADE, SLIDER = math.radians(1.0), math.radians(3.5)
@@ -113,13 +113,8 @@ class SkidControl:
     slip: float = 0.0
     _blade: Smoothed = field(default_factory=lambda: Smoothed(BLADE_TIME, 0.5))
     _balanced: Smoothed = field(default_factory=lambda: Smoothed(FORCE_TIME))
-    _loads: tuple[Smoothed, Smoothed] = field(init=False)
     _gain: FloatArray = field(default_factory=lambda: np.zeros((2, 7)))
     _since: float = math.inf
-
-    def __post_init__(self) -> None:
-        half = 0.5 * self.body.mass * self.gravity.normal
-        self._loads = (Smoothed(FORCE_TIME, half), Smoothed(FORCE_TIME, half))
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
         """Command to the body until the next call."""
@@ -128,7 +123,7 @@ class SkidControl:
         slips = self._slips(seen, planned)
         self.slip = float(slips[0])
         self.balance = self._balance(seen, posture, planned, dt)
-        edge = self._edge(seen, posture, planned, dt)
+        edge = self._edge(seen, posture, planned)
         torque, shift = self._yaw(seen, posture, planned, slips, dt)
         return Command(
             edge=(edge, edge),
@@ -136,6 +131,7 @@ class SkidControl:
             ahead=shift,
             aside=self.balance.rate**2 * (seen_aside(seen, posture) - self.balance.balanced - self.balance.pressure),
             pressure=self.balance.pressure,
+            load=self.body.mass * self.gravity.normal,
         )
 
     def _planned(self, seen: Seen) -> Planned:
@@ -178,17 +174,14 @@ class SkidControl:
         pressure = max(-reach, min(reach, outer + (1.0 + self.skier.leg_gain) * error))
         return Balance(self._balanced.value, wanted, error, pressure, rate)
 
-    def _edge(self, seen: Seen, posture: Posture, planned: Planned, dt: float) -> float:
+    def _edge(self, seen: Seen, posture: Posture, planned: Planned) -> float:
         """Edge angle (rad) that gives the planned force, with the correction for balance."""
         mass, gravity = self.body.mass, self.gravity.normal
         planned_force = float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / math.cos(self.slip)
         asked = planned_force + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)
         asked = max(-BOUND, min(BOUND, asked))
-        loads = (seen.left, seen.right) if seen.bears else (0.5 * mass * gravity,) * 2
-        loads = (max(60.0, loads[0]), max(60.0, loads[1]))
-        more = max(1.0, 0.5 * mass * gravity / sum(loads))
-        smooth = tuple(each.step(more * load, dt) for each, load in zip(self._loads, loads, strict=True))
-        angle = self.snow.edge(mass * abs(asked), smooth, self.grip)
+        outer = self.skier.outer_share * mass * gravity  # planned loads: measured ones would feed a bounce back
+        angle = self.snow.edge(mass * abs(asked), (outer, mass * gravity - outer), self.grip)
         if abs(posture.edge) < SLIDING:
             angle = min(angle, max(math.radians(0.2), 2.0 * seen.slip * math.copysign(1.0, asked)))
         return math.copysign(angle, asked)

@@ -14,7 +14,7 @@ from ..geometry.boot_axes import axes_of
 from ..scenario.skier import Skier
 from .seen import Seen
 
-AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE = range(8)
+AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE, RISE = range(9)
 """Places in the numbers of a posture."""
 BLUNT: Final = math.sin(math.radians(3.0))
 """Sine of the edge angle below which a ski counts as flat for its lift (modelling assumption)."""
@@ -32,6 +32,14 @@ OPENING: Final = 6.0
 """Corner frequency (1/s) of toe-in and stance (modelling assumption)."""
 YIELDING_INERTIA: Final = 1.5
 """Inertia (kg m²) with which the skis give way to the snow about the hips (found by trial)."""
+DAMPING: Final = 3e3
+"""Of one leg that gives way to a load that it is not to bear (N s/m): snow under edged skis, some 2 · 10⁵ N/m, and the
+body swing with it at a third of the critical damping."""
+DAMPED_FROM: Final = math.radians(5.0)
+"""Edge angle from which legs give way in full; the snow under flat skis is too stiff for it (derived: its stiffness
+times the control's period over the damping is to stay below 1)."""
+SETTLING, FASTEST_RISE = 3.0, 0.5
+"""Rate (1/s) at which the height goes back to its own, and its greatest speed (m/s) (modelling assumptions)."""
 FASTEST_SHIFT: Final = 25.0
 """Greatest acceleration of the centre of mass along the skis (m/s²) (found by trial: with 60 the loads peak)."""
 
@@ -52,6 +60,8 @@ class Command:
         Acceleration of the centre of mass to the left of the feet (m/s²).
     pressure
         Place of the centre of pressure to the left of the feet's middle that legs give way to (m).
+    load
+        That both legs bear together (N), which they give way to; None: they do not shorten.
     toe
         Angle of the left and the right ski from their mean heading.
     stance
@@ -65,6 +75,7 @@ class Command:
     ahead: float = 0.0
     aside: float = 0.0
     pressure: float = 0.0
+    load: float | None = None
     toe: tuple[float, float] = (0.0, 0.0)
     stance: float | None = None
     edge_rate: float | None = None
@@ -86,8 +97,8 @@ class Posture:
     Attributes
     ----------
     numbers, rates
-        Centre of mass ahead of and to the left of the feet, yaw of the body against the skis, edge angles, toes and
-        stance, and their rates.
+        Centre of mass ahead of and to the left of the feet, yaw of the body against the skis, edge angles, toes,
+        stance and rise of the centre of mass, and their rates.
     acceleration
         Acceleration of the centre of mass, relative to the feet, to the left, in the last period (m/s²).
     """
@@ -97,19 +108,24 @@ class Posture:
     stance: float
     half_width: float
     numbers: FloatArray = field(init=False)
-    rates: FloatArray = field(default_factory=lambda: np.zeros(8))
+    rates: FloatArray = field(default_factory=lambda: np.zeros(9))
     acceleration: float = 0.0
     _moment: float = 0.0  # smoothed moment of the snow on the boots (N m)
     _gives: float = 0.0  # rate to the left by legs that give way (m/s)
 
     def __post_init__(self) -> None:
-        self.numbers = np.zeros(8)
+        self.numbers = np.zeros(9)
         self.numbers[STANCE] = self.stance
 
     @property
     def aside_rate(self) -> float:
         """Planned rate of the centre of mass to the left, without the yielding of the legs (m/s)."""
         return float(self.rates[ASIDE]) - self._gives
+
+    @property
+    def height(self) -> float:
+        """Of the centre of mass over the feet (m)."""
+        return self.centre[1] + float(self.numbers[RISE])
 
     @property
     def edge(self) -> float:
@@ -132,6 +148,7 @@ class Posture:
     def step(self, command: Command, seen: Seen, dt: float) -> None:
         """Move by a period (s), as far as joints and legs allow."""
         self._step_aside(command, seen, dt)
+        self._step_rise(command, seen, dt)
         self._step_ahead(command.ahead, dt)
         if command.hip_torque is not None:
             self._step_hips(command.hip_torque, seen, dt)
@@ -157,11 +174,30 @@ class Posture:
         free = seen.lifted or not seen.bears
         back = min(1.0, TOUCH * dt) if free else 0.0
         later = (1.0 - back) * self.aside_rate + back * seen.aside_rate + command.aside * dt
-        gives = TOUCH * (seen.aside - place) if free else self.skier.leg_yielding * (seen.pressure - command.pressure)
-        most = math.sqrt(self.skier.longest_leg**2 - self.centre[1] ** 2)
+        gives = TOUCH * (seen.aside - place) if free else self._yielding(command) * (seen.pressure - command.pressure)
+        most = math.sqrt(self.skier.longest_leg**2 - self.height**2)
         self.acceleration = (later + gives - rate) / dt
         self.numbers[ASIDE] = max(-most, min(most, place + 0.5 * (rate + later + gives) * dt))
         self.rates[ASIDE], self._gives = later + gives, gives
+
+    def _edged(self) -> float:
+        """Share of the damping of the legs that the edges allow, from 0 to 1."""
+        edge = min(abs(float(self.numbers[LEFT_EDGE])), abs(float(self.numbers[RIGHT_EDGE])))
+        return min(1.0, (edge / DAMPED_FROM) ** 2)
+
+    def _yielding(self, command: Command) -> float:
+        """Speed aside by legs that give way, over the error of the centre of pressure (1/s)."""
+        least = self.skier.leg_yielding
+        damped = 2.0 * self.centre[1] * (command.load or 0.0) / (DAMPING * self.stance**2)
+        return least + self._edged() * max(0.0, damped - least)
+
+    def _step_rise(self, command: Command, seen: Seen, dt: float) -> None:
+        """Legs give way to a load that is not asked for."""
+        rate = float(self.rates[RISE])
+        more = 0.0 if command.load is None else self._edged() * (command.load - seen.load) / (2.0 * DAMPING)
+        later = max(-FASTEST_RISE, min(FASTEST_RISE, more - SETTLING * float(self.numbers[RISE])))
+        self.numbers[RISE] += 0.5 * (rate + later) * dt
+        self.rates[RISE] = later
 
     def _step_ahead(self, asked: float, dt: float) -> None:
         """Within the range and the rate of the skier's fore and aft."""
@@ -194,7 +230,7 @@ def _stops_within(way: float) -> float:
 
 def pose_of(numbers: FloatArray, centre: tuple[float, float], half_width: float) -> list[tuple[FloatArray, FloatArray]]:
     """Place and axes of the left and the right boot in the body that has these numbers."""
-    height = centre[1]
+    height = centre[1] + numbers[RISE]
     lean, yaw = math.atan2(numbers[ASIDE], height), numbers[HIP]
     body = _about_ahead(-lean) @ _about_up(yaw)
     middle = np.array([numbers[AHEAD], numbers[ASIDE], height])
