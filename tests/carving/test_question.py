@@ -16,8 +16,9 @@ from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.carving.answer import answer_dict, answered, answers_dict, equilibrium_dict
 from skisnow.carving.equilibrium import rest
-from skisnow.carving.question import CarveQuestion, carve_question, implausible_values, require_clamp
+from skisnow.carving.question import SKI_FACTORS, CarveQuestion, carve_question, implausible_values, require_clamp
 from skisnow.carving.result import Equilibrium
+from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.snow import SnowProperties
 from skisnow.snow.properties import GREATEST_LIKELY_HARDNESS
 from tests.coded import Coded, coded, raises
@@ -243,6 +244,20 @@ def test_numbers_that_no_turn_has(asked: dict[str, float], told: str | Coded) ->
     sound: dict[str, Any] = {"edge_angle": 0.5, "load": 800.0, "unloading_ratio": 10.0}
     with raises(ParameterError, told):
         carve(read_ski("slalom"), load_snow("race-piste"), **sound | asked)
+
+
+@pytest.mark.parametrize("name", SKI_FACTORS)
+def test_a_factor_of_a_question_is_that_of_an_edit(name: str) -> None:
+    ski = read_ski("slalom")
+    edit = SkiEdit(edit_stations(ski), {SKI_FACTORS[name]: 1.1})
+    asked = REQUEST | {"published": "race-piste", "unloading_ratio": 10.0}
+    found, before = (answered(carve_question(asked | {name: factor})) for factor in (1.1, 1.0))
+    edited = edited_ski(ski, edit, name="edited", source="test")
+    wanted = carve(
+        edited, load_snow("race-piste"), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0, elements=80
+    )
+    assert found.equilibrium.turn_radius_boot == wanted.turn_radius_boot != before.equilibrium.turn_radius_boot
+    assert before.ski.keys == ski.keys
 
 
 ROOT = Path(__file__).resolve().parents[2]

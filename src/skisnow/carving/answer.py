@@ -56,6 +56,7 @@ def answered(question: CarveQuestion, *, sources: Sources | None = None) -> Carv
     """
     sources = sources or Sources()
     ski, warned = sources.ski(question.ski)
+    ski = question.changed(ski)
     snow = asked_snow(question, sources)
     require_clamp(ski, question.clamp_length_m)
     edge_angle = question.edge_angle_deg * CARVE_KEYS["edge_angle_deg"].factor

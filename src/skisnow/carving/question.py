@@ -13,6 +13,7 @@ from .._support.units import MM, N_PER_MM3, in_degrees_if_radians
 from ..parameters import Quantity, nearest, own_quantities, require_declared
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
+from ..ski.editing import SIDECUT, SkiEdit, edit_stations, edited_ski
 from ..snow import SnowProperties
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
 from .checks import GREATEST_EDGE_ANGLE
@@ -107,6 +108,20 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
 
 
 _SNOW: Final = {quantity.name: quantity for quantity in own_quantities(SnowProperties)}
+
+
+SKI_FACTORS: Final = {
+    "sidecut_factor": SIDECUT,
+    "width_factor": "width_mm",
+    "EI_factor": "EI_N_m2",
+    "GJ_factor": "GJ_N_m2",
+}
+"""Inputs that change the ski, with the factors of `SkiEdit`."""
+
+
+def _factor(name: str, what: Message) -> Quantity:
+    meaning = Message("factor of the ski's {what}", what=what)
+    return Quantity(name, meaning, label=meaning, lowest=0.01, highest=100.0, origin="the ski's own")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -242,8 +257,20 @@ class CarveQuestion:
         ),
     ] = False
 
+    sidecut_factor: Annotated[float, _factor("sidecut_factor", Message("width beyond that of the waist"))] = 1.0
+    width_factor: Annotated[float, _factor("width_factor", Message("width"))] = 1.0
+    EI_factor: Annotated[float, _factor("EI_factor", Message("bending stiffness EI"))] = 1.0
+    GJ_factor: Annotated[float, _factor("GJ_factor", Message("torsional stiffness GJ"))] = 1.0
+
     def __post_init__(self) -> None:
         require_declared(self)
+
+    def changed(self, ski: Ski) -> Ski:
+        """The ski with the factors of the question; the same object if all are 1."""
+        factors = {column: float(getattr(self, name)) for name, column in SKI_FACTORS.items()}
+        if all(factor == 1.0 for factor in factors.values()):
+            return ski
+        return edited_ski(ski, SkiEdit(edit_stations(ski), factors), name=ski.name, source=ski.source)
 
     def as_dict(self) -> dict[str, Any]:
         """The inputs under their names."""

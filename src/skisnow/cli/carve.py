@@ -85,6 +85,9 @@ def _add_choices(parser: argparse.ArgumentParser) -> None:
     choices.add_argument(
         "--at-rest", action="store_const", const=True, help="set down on virgin snow, without side force"
     )
+    changes = parser.add_argument_group("changes of the ski")
+    for name, what in {"sidecut": "width beyond that of the waist", "width": "width", "EI": "EI", "GJ": "GJ"}.items():
+        changes.add_argument(f"--{name}-factor", type=number(""), metavar="F", help=f"factor of its {what}")
 
 
 def run(options: argparse.Namespace) -> int:

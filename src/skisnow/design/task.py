@@ -13,7 +13,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.user_files import read_toml
 from ..carving.outputs import OUTPUTS
-from ..carving.question import CARVE_KEYS, CarveQuestion, carve_question
+from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
 from ..parameters import Quantity, checked_table, made, nearest
 from ..ski import Ski
 from ..ski.editing import shape_parameters
@@ -24,7 +24,7 @@ from .variables import COMBINED, Variable, combined_names
 FEWEST_STARTS: Final = 8
 """Starts of the search: a worst case over contact with snow has several local optima."""
 _LISTED: Final = ("edge_angle_deg", "load_N", "published")
-_WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest")
+_WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest", *SKI_FACTORS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -34,9 +34,9 @@ def field(
     return made
 
 
-def choice(label: str, options: Sequence[str] | Mapping[str, str], value: str | None) -> ui.select:
-    """Menu with options as texts by value."""
-    made = ui.select(option_texts(options), label=said(label), value=value)
+def choice(label: str, options: Sequence[str] | Mapping[str, str], value: str | list[str] | None) -> ui.select:
+    """Menu with options as texts by value; several can be chosen if ``value`` is a list."""
+    made = ui.select(option_texts(options), label=said(label), value=value, multiple=isinstance(value, list))
     return made.props("outlined stack-label").classes("field")
 
 

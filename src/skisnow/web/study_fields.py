@@ -71,7 +71,7 @@ class StudyQuestion:
     of
         `CARVE`, or the name of a scenario.
     varied, fixed
-        Ranges and values by key.
+        Ranges and values by key; a list of values varies, too.
     beside
         Contents of the files that fixed values name, by name.
     named
@@ -97,9 +97,16 @@ class StudyQuestion:
         lines = [f'out = "{TABLE}"']
         if self.of != CARVE:
             lines.append(f"scenario = {_toml(self.of)}")
-        fixed = (f"{_key(name)} = {_toml(value)}" for name, value in self.fixed.items())
+        fixed, listed = (
+            [
+                f"{_key(name)} = {_toml(value)}"
+                for name, value in self.fixed.items()
+                if isinstance(value, list) == several
+            ]
+            for several in (False, True)
+        )
         varied = (f"{_key(name)} = {values.toml()}" for name, values in self.varied.items())
-        return "\n".join([*lines, "", "[fixed]", *fixed, "", "[grid]", *varied, ""])
+        return "\n".join([*lines, "", "[fixed]", *fixed, "", "[grid]", *listed, *varied, ""])
 
     def fixed_words(self) -> dict[str, str]:
         """Fixed numbers as texts by key."""

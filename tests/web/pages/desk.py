@@ -105,7 +105,8 @@ class Sheet:
     def fill(self, name: str, value: object, number: int = 0) -> None:
         """Type or choose, and leave the field."""
         made = self.field(name, number)
-        assert not isinstance(made, ui.select) or value in made.options, (value, made.options)
+        chosen = value if isinstance(value, list) else [value]
+        assert not isinstance(made, ui.select) or all(each in made.options for each in chosen), (value, made.options)
         self.desk.do(lambda: made.set_value(value), self.client)
         self.fire(made, "change", {})
 

@@ -84,8 +84,10 @@ class _Form:
                 Message("What is studied"), {CARVE: CARVED, **{name: name for name in scenario_names()}}, CARVE
             )
             self._ski = choice(Message("Ski"), self._skis.names(), self._skis.names()[0])
+            self._further = choice(Message("Further skis"), self._skis.names(), []).props("use-chips")
             self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         self._of.on_value_change(self._draw)
+        self._further.on_value_change(self._follow)
         with redrawn_by(self._of):
             heading(Message("What varies"), 2)
             self._varied = ui.element("div")
@@ -108,6 +110,7 @@ class _Form:
         skis = self._skis.names()
         names = {name: name for name in skis} if self._is_carve else with_given(skis)
         self._ski.set_options(option_texts(names), value=next(iter(names)))
+        self._further.set_visibility(self._is_carve)
         for place in (self._varied, self._inputs):
             place.clear()
         keys = study_keys(of)
@@ -173,7 +176,7 @@ class _Form:
         for name, field in self._fields.items():
             field.place.set_visibility(name not in varied and not from_snow.get(name))
         try:
-            points = self._axes[0].count() * self._axes[1].count()
+            points = self._axes[0].count() * self._axes[1].count() * len(self._chosen_names())
         except ParameterError:
             self._estimate.set_text("")
             return
@@ -230,7 +233,7 @@ class _Form:
                 )
         fixed = {name: field.check() for name, field in self._fields.items() if self._counts(name, field)}
         files, named_words = dict[str, bytes](), list[str]()
-        for values, further_files, words in (self._chosen_ski(), self._chosen_snow()):
+        for values, further_files, words in (self._chosen_skis(), self._chosen_snow()):
             fixed |= values
             files |= further_files
             named_words += words
@@ -247,17 +250,28 @@ class _Form:
         varied = {axis.name for axis in self._axes} & set(SCENARIO_SNOW)
         return name in SCENARIO_SNOW and bool(field.text) and (bool(varied) or any(other.is_changed for other in pair))
 
-    def _chosen_ski(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
-        ski = str(self._ski.value)
-        if ski == GIVEN:
+    def _chosen_names(self) -> list[str]:
+        """Name of the ski, and of carved turns also of further skis."""
+        further = [str(name) for name in self._further.value or ()] if self._is_carve else []
+        return list(dict.fromkeys([str(self._ski.value), *further]))
+
+    def _chosen_skis(self) -> tuple[dict[str, Any], dict[str, bytes], list[str]]:
+        names = self._chosen_names()
+        if names == [GIVEN]:
             return {}, {}, []
-        word, table = self._skis.word(ski), ""
-        texts = dict[str, bytes]()
-        if word != ski:
+        words, texts = list[str](), dict[str, bytes]()
+        for ski in names:
+            if self._skis.word(ski) == ski:
+                words.append(ski)
+                continue
+            folder = "ski" if len(names) == 1 else f"ski/{ski}"
             text, table = self._skis.texts(ski)
-            texts = {f"ski/{FILE}": text.encode("utf-8")} | ({f"ski/{TABLE}": table.encode("utf-8")} if table else {})
-        key = "ski" if self._is_carve else "ski.name" if word == ski else "ski.file"
-        return {key: ski if word == ski else f"ski/{FILE}"}, texts, [Message("ski: {ski}", ski=ski)]
+            texts |= {f"{folder}/{FILE}": text.encode("utf-8")}
+            texts |= {f"{folder}/{TABLE}": table.encode("utf-8")} if table else {}
+            words.append(f"{folder}/{FILE}")
+        key = "ski" if self._is_carve else "ski.file" if texts else "ski.name"
+        told = Message("ski: {ski}", ski=names[0]) if len(names) == 1 else Message("skis: {skis}", skis=names)
+        return {key: words[0] if len(words) == 1 else words}, texts, [told]
 
     def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
         snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."

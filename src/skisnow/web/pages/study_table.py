@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 HERE: Final = "/study"
 FILES: Final = f"{HERE}/files"
 ALL: Final = "study.zip"
+SKI: Final = "ski"
 ROWS: Final = 200
 """Maximum number of rows on the page; the file has all."""
 OF_CARVES: Final = {
@@ -123,10 +124,10 @@ class _ResultsView:
         self._table = table
         of = getattr(study.subject, "scenario", CARVE)
         self._keys = study_keys(of)
-        values = {name: sorted({row[name] for row in table.rows}) for name in study.varied}
-        self._x, *others = sorted(study.varied, key=lambda name: -len(values[name]))
-        self._other = others[0] if others else ""
-        self._lines = values.get(self._other, [None])
+        count = {name: len({row[name] for row in table.rows}) for name in study.varied if name != SKI}
+        self._x, *others = sorted(count, key=lambda name: -count[name])
+        self._others = [name for name in study.varied if name in (SKI, *others)]
+        self._lines = sorted({self._line_of(row) for row in table.rows})
         self._results = dict(OF_CARVES if of == CARVE else OF_RUNS)
         self._shown = choice(Message("Result"), self._results, next(iter(self._results)))
         self._chart = ui.element("div")
@@ -142,6 +143,13 @@ class _ResultsView:
             chart = LineChart(x, y, Message("Chart of {y} over {x}", y=y, x=x), height=320)
         chart.show([self._line(number, result) for number in self._order()])
 
+    def _line_of(self, row: dict[str, Any]) -> tuple[Any, ...]:
+        """Values that the points of a line share."""
+        return tuple(row["ski_name" if name == SKI else name] for name in self._others)
+
+    def _called(self, name: str) -> str:
+        return Message("Ski") if name == SKI else called(self._keys[name])
+
     def _order(self) -> list[int]:
         """Order of drawing: the first, middle and last lines, which have names, are on top."""
         count = len(self._lines)
@@ -149,18 +157,21 @@ class _ResultsView:
         return [*(number for number in range(count) if number not in named), *named]
 
     def _line(self, number: int, result: str) -> ChartLine:
-        value, count = self._lines[number], len(self._lines)
-        rows = [row for row in self._table.rows if not self._other or row[self._other] == value]
+        values, count = self._lines[number], len(self._lines)
+        rows = [row for row in self._table.rows if self._line_of(row) == values]
         rows.sort(key=lambda row: row[self._x])
         styles = {column: style for style, column in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
-        other = f"{called(self._keys[self._other])}: {_short(value)}" if self._other else ""
-        name = other if number in styles else ""
+        words = [
+            value if name == SKI else f"{said(self._called(name))}: {_short(value)}"
+            for name, value in zip(self._others, values, strict=True)
+        ]
+        name = ", ".join(words) if number in styles else ""
         x, y = ([row[column] for row in rows] for column in (self._x, result))
         return ChartLine(x, y, styles.get(number, BEHIND), name=name)
 
     def _rows(self, study: Study) -> None:
         heading(Message("Table"))
-        columns = {name: called(self._keys[name]) for name in study.varied} | self._results
+        columns = {name: self._called(name) for name in study.varied} | self._results
         place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), Message("Table"))
         with place, ui.element("table"):
             with ui.element("thead"), ui.element("tr"):
@@ -193,6 +204,6 @@ def _add_row(row: dict[str, Any], columns: list[str]) -> None:
     with ui.element("tr"):
         for name in columns:
             with ui.element("td").classes("n"):
-                Words("–" if row[name] is None else significant(row[name]))
+                Words(row["ski_name"] if name == SKI else "–" if row[name] is None else significant(row[name]))
         with ui.element("td"):
             Words(outcome)

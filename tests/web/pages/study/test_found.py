@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import tomllib
 import zipfile
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import skisnow
 from skisnow.report.formatting import significant
+from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
+from skisnow.snow import SnowProperties
+from skisnow.studies import read_study, run_study
+from skisnow.web.lab_skis import LabSkis
 from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
-from .shared import ANGLE, LOAD, SPEED, TURN, asked
+from .shared import ANGLE, FIRST, LOAD, SPEED, TURN, VALUES, asked, estimate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -162,6 +168,34 @@ def test_of_two_inputs_the_one_with_more_values_is_along_the_axis(desk: Desk) ->
         assert line["x"] == angles
         assert line["y"] == pytest.approx([load / angle for angle in angles], abs=0.01)
     assert page.tagged("th")[0].slots["default"].children[0].text == LOAD
+
+
+def test_several_skis_are_lines_of_their_names(desk: Desk) -> None:
+    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
+    page = desk.open("/study")
+    page.fill("Further skis", ["slalom", "mine"])
+    page.fill(FIRST, "EI_factor")
+    page.fill(VALUES, "3")
+    assert estimate(page).startswith("9 points")
+    job, text = asked(desk, page)
+    mine = "ski/mine/ski.toml"
+    assert text["grid"] == {"ski": ["carver", "slalom", mine], "EI_factor": {"from": 0.5, "to": 2.0, "n": 3}}
+    assert "ski" not in text["fixed"]
+    folder = desk.lab.runs / "studies" / job["name"]
+    study = read_study(folder / "study.toml")
+    run_study(study, workers=1)
+    (folder / "job.json").write_text(json.dumps(job | {"state": "done"}), encoding="utf-8")
+    page = desk.open(f"/study/{job['name']}")
+    lines = page.charts()["Carved radius (m)"]["lines"]
+    assert [line["name"] for line in lines] == ["carver", "mine", "slalom"]
+    assert lines[1]["y"] == lines[2]["y"] != lines[0]["y"]
+    snow = SnowProperties(2e8, 5e5, source="numbers")
+    softer = skisnow.read_ski("slalom")
+    softer = edited_ski(softer, SkiEdit(edit_stations(softer), {"EI_N_m2": 0.5}), name="softer", source="test")
+    answer = skisnow.carve(softer, snow, edge_angle=math.pi / 4, load=800.0, unloading_ratio=10.0)
+    assert lines[2]["x"] == [0.5, 1.25, 2.0]
+    assert lines[2]["y"][0] == pytest.approx(answer.turn_radius_boot, abs=1e-3)
+    assert page.outline().count("mine") == 3  # in the table
 
 
 def test_a_table_of_runs(desk: Desk) -> None:

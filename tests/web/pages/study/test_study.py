@@ -78,6 +78,10 @@ def test_the_menus_name_what_there_is(desk: Desk) -> None:
         "clamp_length_m": "Clamp length (m)",
         "footprint_stiffness_N_per_mm2": "Footprint stiffness (N/mm²)",
         "elements": "Elements",
+        "sidecut_factor": "Factor of the ski's width beyond that of the waist",
+        "width_factor": "Factor of the ski's width",
+        "EI_factor": "Factor of the ski's bending stiffness EI",
+        "GJ_factor": "Factor of the ski's torsional stiffness GJ",
     }
     assert page.field(FIRST).options == of_turns
     assert page.field(SECOND).options == {"nothing": "nothing", **of_turns}
