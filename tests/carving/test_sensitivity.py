@@ -13,7 +13,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve
 from skisnow.carving.outputs import At, output_growth
 from skisnow.carving.result import Equilibrium
-from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives, CarveRequest
+from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives, CarveRequest
 from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import clamped
@@ -158,6 +158,25 @@ def test_strength_and_mass_play_no_part_in_the_radius() -> None:
     assert (by_strength.derivative, by_strength.kink) == (0.0, math.inf)
     (grip,) = found.sensitivity("grip_utilisation", ["snow.S_f_N_per_mm2"])
     assert grip.relative == pytest.approx(-1.0, rel=1e-12)
+
+
+def test_at_a_kink_both_sides_have_their_derivative() -> None:
+    """Followed to where another station becomes the source of the groove; each side against its own differences."""
+    output, case = "force_per_length_N_per_m", {"edge_angle": math.radians(45.0), "unloading_ratio": 10.0}
+    load, kink = 800.0, math.inf
+    while kink > AT_KINK:
+        exact = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), load=load, **case))  # type: ignore[arg-type]
+        (found,) = exact.sensitivity(output, ["load_N"])
+        assert (found.one_sided is None) == (found.kink > AT_KINK)
+        kink, load = found.kink, load * (1.0 + found.kink)
+    assert found.one_sided is not None
+    place, near, h = OUTPUTS.index(output), exact.at.solution, 4e-3
+    for side, value in zip((-1.0, 1.0), found.one_sided, strict=True):
+        one, two, three = (moved(exact.request, near, "load_N", side * n * h)[place] for n in (1.0, 2.0, 3.0))
+        assert value == pytest.approx(side * (8.0 * two - 5.0 * one - 3.0 * three) / (2.0 * h), rel=1e-6)
+    assert np.ptp(np.array(found.one_sided, float)) > 0.01
+    elastic = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), load=800.0, edge_angle=0.5, unloading_ratio=1.0))
+    assert elastic._beside("unloading_ratio", -1e-6, output) is None  # no snow is softer when it unloads
 
 
 def test_a_rigid_wedge_in_closed_form() -> None:

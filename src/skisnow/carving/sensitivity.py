@@ -16,10 +16,11 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
-from ..ski.editing import LINEAR, shape_parameters, shape_value
+from ..ski.beam import clamped
+from ..ski.editing import LINEAR, shape_parameters, shape_value, varied_ski
 from .outputs import AT_BOOT, OUTPUTS, At, OutputGrowth, output_growth
 from .shape import Shape, beam_gradient, beam_moved, bent_by, shape_growth
-from .solve import Solution, refined
+from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
     from ..compiled import core
@@ -37,6 +38,14 @@ CONDITIONS: Final = (
     "snow.S_f_N_per_mm2",
 )
 """Parameters besides those of the ski. Load and edge angle change the side force, load × tan ϑ, with them."""
+AT_KINK: Final = 1e-6
+"""Relative distance to a kink below which a derivative has two values."""
+_BESIDE: Final = 1e-9  # relative change of the parameter, behind twice the distance, at which they are taken
+_IN_CONDITIONS: Final = (
+    "edge_angle", "hardness", "excess", "load", "moment", "side_force", "bevel", "bevel_width", "pitch_of_force",
+    "pitch_of_shear",
+)  # fmt: skip
+"""Numbers of the core that are conditions, in their order."""
 _ANGLE, _HARDNESS, _EXCESS, _LOAD, _MOMENT, _SIDE_FORCE, _BEVEL, _BEVEL_WIDTH, _PITCH, _PITCH_OF_SHEAR = range(10)
 _RUNNING_LENGTH, _GREATEST_WIDTH = 10, 11  # numbers of the core
 
@@ -58,6 +67,9 @@ class Sensitivity:
     kink
         Relative change of the parameter at which a station touches or leaves the snow or the groove, to first order:
         beyond it the derivative is another.
+    one_sided
+        Where the kink is nearer than `AT_KINK`: the derivatives just below and just above the parameter; None on a side
+        without an equilibrium.
     """
 
     output: str
@@ -67,6 +79,7 @@ class Sensitivity:
     derivative: float
     relative: float | None
     kink: float
+    one_sided: tuple[float | None, float | None] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,6 +132,7 @@ class CarveDerivatives:
     point: core.CarvePoint = field(init=False)
     at: At = field(init=False)
     _directions: dict[str, _Direction] = field(default_factory=dict)
+    _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
     _gradients: dict[str, tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None] = field(
         default_factory=dict
     )
@@ -185,8 +199,36 @@ class CarveDerivatives:
             value, growth = self.value(name), self._derivative(name, *growth_and_gradient)
             relative = growth * value / growth_and_gradient[0].value if value and growth_and_gradient[0].value else None
             kink = self._kink(name) / (abs(value) or 1.0) if kinks else math.inf
-            out.append(Sensitivity(output, name, growth_and_gradient[0].value, value, growth, relative, kink))
+            step = (2.0 * kink + _BESIDE) * (abs(value) or 1.0)
+            sides = (self._beside(name, -step, output), self._beside(name, step, output)) if kink < AT_KINK else None
+            out.append(Sensitivity(output, name, growth_and_gradient[0].value, value, growth, relative, kink, sides))
         return tuple(out)
+
+    def _beside(self, name: str, change: float, output: str) -> float | None:
+        """Derivative where the parameter is a little changed; None without an equilibrium or output there."""
+        if (name, change) not in self._neighbours:
+            self._neighbours[name, change] = self._moved(name, change)
+        neighbour = self._neighbours[name, change]
+        if neighbour is None or neighbour.output(output) is None:
+            return None
+        return float(neighbour.sensitivity(output, [name], kinks=False)[0].derivative)
+
+    def _moved(self, name: str, change: float) -> CarveDerivatives | None:
+        """The derivatives with a parameter changed a little."""
+        request, direction = self.request, self._direction(name)
+        given, model = request.conditions, request.model
+        numbers = zip(_IN_CONDITIONS, direction.numbers[: len(_IN_CONDITIONS)], strict=True)
+        given = given._replace(**{key: getattr(given, key) + change * float(growth) for key, growth in numbers})
+        if given.excess < 0.0 or given.edge_angle < 0.0:
+            return None
+        if name not in CONDITIONS:
+            model = clamped(varied_ski(model.ski, name, change), model.clamp_length, request.elements)
+        near = self.at.solution if model.size == request.model.size else None
+        solution = solved(model, given, near=near)
+        strength = None if request.strength is None else request.strength + change * direction.strength
+        if not solution.converged:
+            return None
+        return CarveDerivatives(CarveRequest(model, given, strength, solution, request.elements))
 
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""
