@@ -43,7 +43,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         action="store_true",
         help="do not ask: accept what headings, units and notes state, and reject the file if anything else is needed",
     )
-    parser.add_argument("--template", type=Path, metavar="DIR", help="campaign of an earlier import with its answers")
+    parser.add_argument(
+        "--template", metavar="NAME|DIR", help="saved template, or campaign of an earlier import, with its answers"
+    )
+    parser.add_argument("--save-template", metavar="NAME", help="save the answers under a name for the next campaign")
     parser.add_argument("--undo", type=Path, metavar="DIR", help="remove the files of an import, if none was changed")
     for option, (form, about) in OPTIONS.items():
         parser.add_argument(f"--{option}", action="append", default=[], metavar=form, help=about)
@@ -52,7 +55,8 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(options: argparse.Namespace) -> int:
     """Import the file or undo an import, and print what was written."""
-    from ..campaign.importing import undo_import, write_import
+    from ..campaign.importing import save_template, undo_import, write_import
+    from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 
     if options.undo is not None:
         print(f"Removed: {', '.join(undo_import(options.undo))}")
@@ -67,6 +71,9 @@ def run(options: argparse.Namespace) -> int:
     if asks and input("Write this campaign? [y/N] ").strip().lower() not in {"y", "yes", "j", "ja"}:
         print("Nothing was written.")
         return 1
+    if options.save_template is not None:
+        saved = save_template(options.save_template, proposal.files[CAMPAIGN_FILE])
+        print(f"Template {options.save_template} saved: {saved}")
     write_import(proposal.files, options.out)
     print(f"Written: {', '.join(str(options.out / name) for name in proposal.files)}")
     print(f"Then: skisnow analyse {options.out}")

@@ -10,7 +10,18 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
-from ..campaign.importing import RECORD, Answers, Proposal, parse_template, propose, write_import
+from ..campaign.importing import (
+    RECORD,
+    TEMPLATES,
+    Answers,
+    Proposal,
+    parse_template,
+    propose,
+    read_template,
+    save_template,
+    saved_templates,
+    write_import,
+)
 from ..campaign.reading.campaign import campaign_of_files
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..estimation.result_rows import first_hardness
@@ -23,6 +34,8 @@ if TYPE_CHECKING:
     from .settings import Lab
 
 FOLDER: Final = "imports"
+_SAVED: Final = "saved:"
+"""Before the name of a saved template, to distinguish it from ids of campaigns."""
 ENDINGS: Final = (".xlsx", ".xlsm", ".csv", ".txt", ".tsv")
 
 
@@ -84,13 +97,24 @@ class FileImports:
         return added
 
     def templates(self) -> dict[str, str]:
-        """Names of the campaigns with a template, by id, the newest first."""
+        """Saved templates, then the campaigns with a template, the newest first: names by choice."""
         stored = reversed(self._lab.store.list())
-        return {
+        campaigns = {
             campaign.id: campaign.name for campaign in stored if any(file.path == RECORD for file in campaign.files)
         }
+        return {f"{_SAVED}{name}": name for name in saved_templates(self._templates)} | campaigns
+
+    def save_template(self, name: str, files: Mapping[str, bytes]) -> None:
+        """Save the mapping of an import under a name; ParameterError for a name that cannot be used."""
+        save_template(name.strip(), files[CAMPAIGN_FILE], folder=self._templates)
+
+    @property
+    def _templates(self) -> Path:
+        return self._lab.runs.parent / TEMPLATES
 
     def template(self, id_: str) -> Answers:
-        """Answers of an imported campaign."""
+        """Answers of a saved template or of an imported campaign."""
+        if id_.startswith(_SAVED):
+            return read_template(id_.removeprefix(_SAVED), named=self._templates)
         stored, files = self._lab.store.contents(required_id(id_), {CAMPAIGN_FILE})
         return parse_template(files[CAMPAIGN_FILE].decode(), stored.name)

@@ -11,9 +11,18 @@ import pytest
 from openpyxl import Workbook
 from tests.coded import raises
 
-from skisnow._support.errors import OutputError
+from skisnow._support.errors import OutputError, ParameterError
 from skisnow.campaign import read_campaign
-from skisnow.campaign.importing import Answers, Proposal, propose, read_template, undo_import, write_import
+from skisnow.campaign.importing import (
+    Answers,
+    Proposal,
+    propose,
+    read_template,
+    save_template,
+    saved_templates,
+    undo_import,
+    write_import,
+)
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
 
@@ -251,3 +260,23 @@ def test_changed_files_are_not_undone(tmp_path: Path) -> None:
     with raises(OutputError, "changed_since", files=["shear.csv"]):
         undo_import(tmp_path / "a")
     assert (tmp_path / "a/penetration.csv").exists()
+
+
+def test_a_template_has_a_name(tmp_path: Path) -> None:
+    """Saved once, it answers the next file; other answers under its name are an error, as names of other files are."""
+    book = everyday()
+    book["Hang oben"]["C6"] = None
+    answers = Answers.of_options({"unit": ["Last=kg"]})
+    campaign = propose(FILE, bytes_of(book), answers).files["campaign.toml"]
+    save_template("Gletscher 2026", campaign, folder=tmp_path)
+    save_template("Gletscher 2026", campaign, folder=tmp_path)
+    assert list(saved_templates(tmp_path)) == ["Gletscher 2026"]
+    require_right(propose(FILE, bytes_of(book), read_template("Gletscher 2026", named=tmp_path)))
+    other = propose(FILE, bytes_of(book), answers.with_("column", "Bemerkung", "-")).files["campaign.toml"]
+    with raises(ParameterError, "name_in_use", name="Gletscher 2026"):
+        save_template("Gletscher 2026", other, folder=tmp_path)
+    for name in ("../other", "", ".hidden", "a/b", "a" * 61):
+        with raises(ParameterError, "bad_name", name=name):
+            save_template(name, campaign, folder=tmp_path)
+    with raises(ParameterError, "no_template", name="Gletscher", saved=["Gletscher 2026"]):
+        read_template("Gletscher", named=tmp_path)

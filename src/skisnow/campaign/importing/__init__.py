@@ -1,6 +1,6 @@
 """Import of workbooks and CSV files in any layout: proposed tables, columns, units, tools and sites."""
 
-from .answers import Answers, Question, parse_template, read_template
+from .answers import TEMPLATES, Answers, Question, parse_template, read_template, save_template, saved_templates
 from .columns import ColumnChoice
 from .folder import RECORD, undo_import, write_import
 from .proposal import Proposal, propose
@@ -9,6 +9,7 @@ from .sheets import Section
 
 __all__ = [
     "RECORD",
+    "TEMPLATES",
     "Answers",
     "ColumnChoice",
     "ImportedTable",
@@ -18,6 +19,8 @@ __all__ = [
     "parse_template",
     "propose",
     "read_template",
+    "save_template",
+    "saved_templates",
     "undo_import",
     "write_import",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
+from ..._support.staging import write_file
 from ..._support.user_files import read_toml, toml_text, toml_values
 from ..problems import error
 from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 SECTION: Final = "import"
 NONE: Final = "-"
 """Answer for a table or column that is not imported."""
+TEMPLATES: Final = "import-templates"
+_NAME: Final = re.compile(r"[^\W_][\w .()-]{0,59}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,21 +98,82 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
     return key.strip(), value.strip()
 
 
-def read_template(place: str | Path) -> Answers:
+def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
     """Answers of an earlier import.
 
     Parameters
     ----------
     place
-        Folder of its campaign, or its campaign.toml.
+        Name of a saved template, folder of a campaign, or a campaign.toml.
+    named
+        Folder of the saved templates (default: the user's own).
 
     Raises
     ------
     ParameterError
-        The file has no ``[import]``, or an answer is not a text.
+        No such template or campaign; the file has no ``[import]``, or an answer is not a text.
     """
-    path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else Path(place)
+    saved = saved_templates(named)
+    path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else saved.get(str(place), Path(place))
+    if not path.exists():
+        raise ParameterError(
+            "{name} is no saved template and no campaign. Saved: {saved}.",
+            code="no_template",
+            name=str(place),
+            saved=list(saved) or Message("none"),
+        )
     return _template(read_toml(path), str(path))
+
+
+def saved_templates(folder: Path | None = None) -> dict[str, Path]:
+    """Files of the saved templates by name, in a folder or the user's own."""
+    places = (own_templates() if folder is None else folder).glob("*.toml")
+    return {path.stem: path for path in sorted(places)}
+
+
+def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> Path:
+    """Save the mapping of an import under a name; returns the file.
+
+    Parameters
+    ----------
+    name
+        Letters, digits, spaces and ``-_.()``; its first character is a letter or digit.
+    campaign
+        Contents of the campaign.toml of the import.
+    folder
+        Folder of the saved templates (default: the user's own).
+
+    Raises
+    ------
+    ParameterError
+        Another name is needed, also because a template with other answers has it.
+    """
+    if not _NAME.fullmatch(name):
+        raise ParameterError(
+            "{name!r} is not a name of a template. Allowed: up to 60 letters, digits, spaces and -_.(), beginning with "
+            "a letter or digit.",
+            code="bad_name",
+            name=name,
+        )
+    text = "\n".join(parse_template(campaign.decode(), name).toml_lines()).lstrip() + "\n"
+    path = (own_templates() if folder is None else folder) / f"{name}.toml"
+    if path.exists() and path.read_text(encoding="utf-8") != text:
+        raise ParameterError(
+            "A template {name} with other answers exists. Take another name, or remove {file}.",
+            code="name_in_use",
+            name=name,
+            file=path,
+        )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_file(path, text)
+    return path
+
+
+def own_templates() -> Path:
+    """Folder of the user's own templates, next to the user's own store."""
+    from ..store import default_path
+
+    return default_path().parent / TEMPLATES
 
 
 def parse_template(text: str, name: str) -> Answers:

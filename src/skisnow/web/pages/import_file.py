@@ -22,6 +22,8 @@ from ..subprocesses import BOUNDS, confined
 from ..words import TABLES, label
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from ...campaign.importing import ColumnChoice, ImportedTable, Proposal, Question
     from ..settings import Lab
 
@@ -70,10 +72,13 @@ class _Import:
         templates = self.imports.templates()
         if templates:
             options = {"": said(Message("none")), **templates}
-            choice(Message("Template of an earlier import"), options, "").on_value_change(self._use_template)
+            choice(Message("Template"), options, "").on_value_change(self._use_template)
         with ui.element("div").classes("acts"):
             self._store = button(Message("Store the campaign"), self._keep, "main", once=True)
             self._status = Words("").classes("status").props("role=status aria-live=polite")
+        with ui.element("div").classes("acts"):
+            self._name = field(Message("Name of the template"), "")
+            button(Message("Save the answers as a template"), self._save_template, "small")
         with ui.element("div").classes("two"):
             self._choices = named(ui.element("section"), Message("Proposal"))
             self._preview = named(ui.element("section").classes("stored-rows"), Message("Preview"))
@@ -172,11 +177,17 @@ class _Import:
         self.answers = self.imports.template(chosen) if chosen else Answers()
         await self.draw()
 
-    async def _keep(self) -> None:
+    def _save_template(self) -> None:
+        self.imports.save_template(str(self._name.value), self._ready_files())
+        self._say(Message("Template saved for the next campaign: {name}", name=self._name.value), good=True)
+
+    def _ready_files(self) -> Mapping[str, bytes]:
         if self.tried is None or self.tried.proposal.problems:
             raise ParameterError("Answer the questions first.", code="not_ready")
-        files = self.tried.proposal.files
-        added = await run.io_bound(self.imports.store, self.id_, files)
+        return self.tried.proposal.files
+
+    async def _keep(self) -> None:
+        added = await run.io_bound(self.imports.store, self.id_, self._ready_files())
         if added is not None:
             ui.navigate.to(f"/?added={added}")
 

@@ -11,7 +11,7 @@ from nicegui import ui
 
 from skisnow import samples
 from skisnow.campaign import write_reference
-from skisnow.campaign.importing import RECORD
+from skisnow.campaign.importing import RECORD, TEMPLATES
 from skisnow.campaign.store import Journals, NewEntry
 from skisnow.replay.page import MODULES
 from skisnow.web.replay_addresses import FILES, FIRST, FIRST_FILE
@@ -103,15 +103,27 @@ def test_the_replay_is_small_and_is_a_run_of_several_seconds_with_its_gates(desk
 WORKBOOK = (Path(samples.__file__).parent / "files" / "two-sites.xlsx").read_bytes()
 
 
-@pytest.mark.parametrize(("language", "store"), [("en", "Store the campaign"), ("de", "Kampagne speichern")])
+@pytest.mark.parametrize(
+    ("language", "name", "save", "template", "store"),
+    [
+        ("en", "Name of the template", "Save the answers as a template", "Template", "Store the campaign"),
+        ("de", "Name der Vorlage", "Antworten als Vorlage speichern", "Vorlage", "Kampagne speichern"),
+    ],
+)
 def test_workbook_is_proposed_stored_and_taken_back(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch, language: str, store: str
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, language: str, name: str, save: str, template: str, store: str
 ) -> None:
     in_this_process(monkeypatch, "transfer", "pages.import_file")
     answer = desk.post("/import", language, files={"files": ("two-sites.xlsx", WORKBOOK)})
     assert answer.status_code == 303
     page = desk.open(answer.headers["location"], language)
     page.shows("1.163")
+    page.fill(name, "glacier")
+    page.press(save)
+    page.shows("glacier")
+    assert (desk.lab.runs.parent / TEMPLATES / "glacier.toml").is_file()
+    again = desk.post("/import", language, files={"files": ("two-sites.xlsx", WORKBOOK)})
+    assert "saved:glacier" in desk.open(again.headers["location"], language).field(template).options
     page.press(store)
     page.told("open ")
     (stored,) = desk.lab.store.list()
