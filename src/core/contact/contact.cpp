@@ -317,38 +317,13 @@ void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, s
 }
 
 ContactPower SnowContact::power(int k, const Pose& pose, const Motion& motion) const {
-  const Sections& s = sections(k);
   const Wrench& wrench = wrenches_[std::size_t(k)];
-  double v[3], o[3], all = 0.0;
-  for (std::size_t a = 0; a < 3; a++) {
-    v[a] = o[a] = 0.0;
-    for (std::size_t b = 0; b < 3; b++) {
-      v[a] += pose.rotation[b][a] * motion.velocity[b];
-      o[a] += pose.rotation[b][a] * motion.turning[b];
-    }
-    all += wrench.force[a] * v[a] + wrench.moment[a] * o[a];
-  }
+  ContactPower out = kernels_->sum_power(motion, pose, sections(k));
+  double all = 0.0;
+  for (std::size_t a = 0; a < 3; a++)
+    for (std::size_t b = 0; b < 3; b++)
+      all += pose.rotation[b][a] * (wrench.force[a] * motion.velocity[b] + wrench.moment[a] * motion.turning[b]);
   for (std::size_t i = 0; i < motion.beam.size(); i++) all += wrench.beam[i] * motion.beam[i];
-  ContactPower out{0.0, 0.0, 0.0, 0.0};
-  for (int i = 0; i < s.count(); i++) {
-    if (!s.touches(i)) continue;
-    double lifting, twisting;
-    alone::beam_rates(motion, s.base, i, lifting, twisting);
-    const alone::Cut<double> cut = alone::Cut<double>::stored(s.base, i);
-    for (int side = 0; side < 2; side++) {
-      const double shear = s[of_edge(LEFT_SHEAR, side)][i];
-      if (shear == 0.0) continue;
-      const alone::Edge<double> edge = cut.edge(side);
-      const double turning = edge.reach * twisting;
-      const alone::Vector<double> velocity{v[0] + o[1] * edge.up - o[2] * edge.left,
-                                           v[1] + o[2] * cut.station - o[0] * edge.up - cut.sp * turning,
-                                           v[2] + o[0] * edge.left - o[1] * cut.station + lifting - cut.cp * turning};
-      out.shear += shear * dot(velocity, edge.across);
-    }
-    if (!rated_.empty()) out.damping += s[RATE_POWER][i];
-    const double rubbed = s[RUB][i] * s[SLIDING][i] + s[RUB_ASIDE][i] * s[SLIDING_ASIDE][i];
-    out.friction -= s[MU][i] * rubbed * s[FRICTION_LOAD][i];
-  }
   out.normal = all - out.shear - out.friction;
   return out;
 }

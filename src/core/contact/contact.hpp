@@ -30,12 +30,6 @@ struct Reaction {
   std::vector<double> beam;
 };
 
-// Powers of the snow on a runner (W): across the edge, along it by friction, and of the rest of the force on the base;
-// `damping` is the part of the last that the snow's dashpot c takes.
-struct ContactPower {
-  double shear, friction, normal, damping;
-};
-
 // Laws from outside: they may rewrite strength, thrust and friction of a runner's sections before forces are
 // summed.
 using Laws = std::function<void(int runner, Sections&)>;

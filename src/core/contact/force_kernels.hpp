@@ -314,6 +314,35 @@ void push(const Snow& snow, const Base& base, const Pressures& pressure, const E
   for (int a = 0; a < 3; a++) out.force[a] = sums[a].total(), out.moment[a] = sums[a + 3].total();
 }
 
+// Powers of the shear at the edges, of friction, and of the snow's dashpot.
+template <class V>
+ContactPower sum_power(const Motion& motion, const Pose& pose, const Sections& s) {
+  const BootMotion m(motion, pose);
+  Sum shear, friction, damping;
+  for (int i = 0; i < s.count(); i += WIDTH<V>) {
+    const auto column = [&](auto field) { return load<V>(s[field] + i); };
+    const MaskOf<V> wet = (column(SHARE) > 0.0) & (column(DEEPEST) > 0.0);
+    if (!any(wet)) continue;
+    V lifting, twisting, sheared{};
+    find_beam_rates<V>(motion, s.base, i, lifting, twisting);
+    const Cut<V> c = Cut<V>::stored(s.base, i);
+    for (int k = 0; k < 2; k++) {
+      const V force = column(of_edge(LEFT_SHEAR, k));
+      if (!any(force != 0.0)) continue;
+      const Edge<V> edge = c.edge(k);
+      const V turning = edge.reach * twisting;
+      const Vector<V> velocity{m.v[0] + m.o[1] * edge.up - m.o[2] * edge.left,
+                               m.v[1] + m.o[2] * c.station - m.o[0] * edge.up - c.sp * turning,
+                               m.v[2] + m.o[0] * edge.left - m.o[1] * c.station + lifting - c.cp * turning};
+      sheared += select(force != 0.0, V(force * dot(velocity, edge.across)), V{});
+    }
+    const V rubbed = column(RUB) * column(SLIDING) + column(RUB_ASIDE) * column(SLIDING_ASIDE);
+    const auto add = [&](Sum& sum, V power) { sum.add(i % BLOCK, select(wet, power, V{})); };
+    add(shear, sheared), add(friction, -column(MU) * rubbed * column(FRICTION_LOAD)), add(damping, column(RATE_POWER));
+  }
+  return {shear.total(), friction.total(), 0.0, damping.total()};
+}
+
 // [local_tangent] How the forces of each section change as the base there is moved to the left, off the snow, and
 // twisted: minus the derivatives, the laws' values held. The pressure's growth is known in closed form (`press`); the
 // place of the base and the directions of forces follow by differences of one step. `sense`: of the steps to the left

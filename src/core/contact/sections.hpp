@@ -158,6 +158,12 @@ struct SectionDifferences {
 
 struct RunnerTangent;
 
+// Powers of the snow on a runner (W): across the edge, along it by friction, and of the rest of the force on the base;
+// `damping` is the part of the last that the snow's dashpot c takes.
+struct ContactPower {
+  double shear, friction, normal, damping;
+};
+
 // The stages of an evaluation, each over all lines of a runner: a function from structs to structs without hidden
 // state.
 struct Kernels {
@@ -169,6 +175,8 @@ struct Kernels {
   void (*slide)(const Motion&, const Pose&, double dt, const Snow&, const GrooveLines&, const Base&, const Pressures&,
                 Sliding&);
   void (*push)(const Snow&, const Base&, const Pressures&, const EdgeHold&, const Sliding&, SectionForces&, Wrench&);
+  // all but the normal part
+  ContactPower (*sum_power)(const Motion&, const Pose&, const Sections&);
   // of sections whose pressure's growth is known; a step (m, rad), and its sense to the left and of the twist
   void (*differ)(const Snow&, const GrooveLines&, const Sections&, double step, double sense, bool is_level,
                  SectionDifferences&);

@@ -265,7 +265,7 @@ void Dynamics::accept(const Formula& f, bool observed) {
     feel_boots(f.newest, f.now, f.before);
   else
     follow_skis();
-  last_work_ = work_of_step(f);
+  last_work_ = weighed_ ? weighed_->work : work_of_step(f);
   for (double Work::* each : Work::PARTS) work_.*each += last_work_.*each;
   const double pressure = contact_->elastic_energy(), shear = contact_->held_energy();
   const double friction = contact_->stuck_energy();
@@ -281,6 +281,8 @@ void Dynamics::accept(const Formula& f, bool observed) {
   last_step_ = f.h;
   counts_.steps++;
   for (MovingSki& each : skis_) each.accept();
+  now_ = weighed_ ? weighed_->end : total_energies();
+  weighed_.reset();
   const EnergyBalance balance = energy_balance();
   exchanged_ = balance.exchanged;
   if (!rule_.fixed) follow_balance(balance);

@@ -2,6 +2,8 @@
 // control over a ladder of steps, and the static equilibrium from which a run starts.
 #pragma once
 
+#include <optional>
+
 #include "beam/along.hpp"
 #include "contact/contact.hpp"
 #include "dynamics/body.hpp"
@@ -93,8 +95,14 @@ class Dynamics {
   Numbers rate_before_, moved_;
   double last_step_ = 0.0;
   double share_ = 1.0;  // share of a fixed step, less than 1 if Newton's method has failed
-  // energies at the start and in the snow; rungs of the ladder by which steps are shorter for the balance of energy
-  Energies start_{0.0, 0.0, 0.0};
+  // energies at the start, now, and in the snow; rungs of the ladder by which steps are shorter for the balance of
+  // energy
+  Energies start_{0.0, 0.0, 0.0}, now_{0.0, 0.0, 0.0};
+  struct Weighed {  // work and energies of a step that is tried
+    Work work;
+    Energies end;
+  };
+  std::optional<Weighed> weighed_;
   SnowStore store_;
   SnowAccount losses_;
   double exchanged_ = 0.0;  // energy (J) until the last step
@@ -148,7 +156,7 @@ class Dynamics {
   void accept(const Formula& f, bool observed);
   void observe();
   Work work_of_step(const Formula& f) const;
-  bool loses_energy(const Formula& f) const;
+  bool loses_energy(const Formula& f);
   void add_losses(double pressure, double shear, double friction);
   struct EnergyBalance {
     double open, exchanged;  // (J)

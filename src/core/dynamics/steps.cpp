@@ -23,9 +23,8 @@ constexpr int MOST_NARROWED = 12;   // rungs by which steps get shorter: three o
 }  // namespace
 
 Dynamics::EnergyBalance Dynamics::energy_balance() const {
-  const Energies now = total_energies();
-  const double taken = work_.taken(), open = std::fabs(now.sum() - start_.sum() + taken);
-  return {open, start_.kinetic + std::max(taken, 0.0) + std::max(start_.potential - now.potential, 0.0)};
+  const double taken = work_.taken(), open = std::fabs(now_.sum() - start_.sum() + taken);
+  return {open, start_.kinetic + std::max(taken, 0.0) + std::max(start_.potential - now_.potential, 0.0)};
 }
 
 // [balance] BDF2 damps vibrations that its steps do not resolve. The open balance of energy shows by how much. Where it
@@ -40,9 +39,10 @@ void Dynamics::follow_balance(const EnergyBalance& balance) {
 }
 
 // [step balance] Whether a step leaves much of the energy open: one that passes over a vibration or a strong dashpot.
-bool Dynamics::loses_energy(const Formula& f) const {
+bool Dynamics::loses_energy(const Formula& f) {
   if (!motions_.empty() || f.h < SHORT * rule_.shortest) return false;
-  const double open = energies(body_, layout_, next_).sum() - total_energies().sum() + work_of_step(f).taken();
+  weighed_ = {work_of_step(f), energies(body_, layout_, next_)};
+  const double open = weighed_->end.sum() - now_.sum() + weighed_->work.taken();
   return std::fabs(open) > STEP_OPEN * exchanged_ + LEAST_OPEN;
 }
 
@@ -57,6 +57,7 @@ double Dynamics::on_ladder(double h) const {
 // Take back the step that was tried.
 void Dynamics::reject() {
   contact_->take_back();
+  weighed_.reset();
   counts_.rejected++;
 }
 
@@ -90,6 +91,7 @@ Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solv
 
 Advance Dynamics::advance(double until, long most) {
   const auto entered = std::chrono::steady_clock::now();
+  now_ = total_energies();
   exchanged_ = energy_balance().exchanged;
   for (long tries = 0; time < until; tries++) {
     if (tries == most) return Advance::PAUSED;
