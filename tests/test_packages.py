@@ -32,7 +32,7 @@ def imported(path: Path, modules: set[str]) -> Iterator[str]:
 
 UPWARD = {
     ("skisnow.estimation.analysis", "skisnow.estimation.results"),
-    ("skisnow.estimation.analysis", "skisnow.report.campaign.objects"),
+    ("skisnow.estimation.analysis", "skisnow.report.campaign.summary"),
     ("skisnow.estimation.analysis", "skisnow.report.campaign.page"),
     ("skisnow.report.turn.chain", "skisnow.report.turn.page"),
     ("skisnow.report.turn.chain", "skisnow.report.turn.sentences"),

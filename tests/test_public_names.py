@@ -26,7 +26,7 @@ FUNCTIONS = """
 import skisnow.simulation.run, skisnow.scenario.slope, skisnow.carving.answer
 from skisnow import carve, identify, load_scenario, simulate, study, turn
 assert all(map(callable, (carve, identify, load_scenario, simulate, study, turn)))
-import skisnow.carving, skisnow.pipeline.turn
+import skisnow.carving, skisnow.pipeline
 assert skisnow.carving.Equilibrium is skisnow.Equilibrium and skisnow.simulation.run.Run is skisnow.Run
 """
 

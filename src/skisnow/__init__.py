@@ -81,7 +81,7 @@ if TYPE_CHECKING:
     from .estimation import Analysis, analyse, results_dict
     from .identification import Identification
     from .identification.fitting import identify
-    from .pipeline.turn import turn
+    from .pipeline import turn
     from .racing import QuickestLine
     from .racing import quickest_line as race
     from .report import TurnChain, write_report
@@ -218,7 +218,7 @@ _PACKAGES = {
     "dynamics": ("BootPose",),
     "estimation": ("Analysis", "analyse", "results_dict"),
     "identification": ("Identification", "identify"),
-    "pipeline.turn": ("turn",),
+    "pipeline": ("turn",),
     "racing": ("QuickestLine", "quickest_line"),
     "report": ("TurnChain", "write_report"),
     "scenario": (

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from skisnow.cli.progress import Progress
+from skisnow.cli.output import Progress
 
 
 @pytest.fixture(autouse=True)

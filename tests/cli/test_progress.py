@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from skisnow.cli.progress import Progress, announced
+from skisnow.cli.output import Progress, announced
 
 
 @pytest.fixture(autouse=True)
@@ -18,7 +18,7 @@ def patient() -> None:
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     now = [100.0]
-    monkeypatch.setattr("skisnow.cli.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("skisnow.cli.output.time.monotonic", lambda: now[0])
     return now
 
 

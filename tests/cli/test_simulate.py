@@ -17,7 +17,7 @@ import pytest
 from skisnow import Run, Scenario
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
-from skisnow.cli.progress import Progress
+from skisnow.cli.output import Progress
 from skisnow.cli.schema import json_schema
 from skisnow.simulation.run_tables import write_track
 
@@ -276,7 +276,7 @@ def test_progress_tells_the_real_time_factor(
 ) -> None:
     now = 100.0
     monkeypatch.setitem(Progress.__init__.__kwdefaults__ or {}, "patience_s", 1.0)
-    for module in ("simulate", "progress"):
+    for module in ("simulate", "output"):
         monkeypatch.setattr(f"skisnow.cli.{module}.time", SimpleNamespace(monotonic=lambda: now))
 
     def slow(scenario: Scenario, *, progress: Callable[[float, float], None]) -> Run:

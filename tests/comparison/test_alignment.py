@@ -11,7 +11,7 @@ from skisnow.comparison import Comparison, compare_tracks
 from skisnow.comparison.alignment import Motion, _iterate, fit_motion
 from skisnow.comparison.distances import Polyline, polyline
 from skisnow.comparison.nearest_place import Path
-from skisnow.comparison.time_offset import fit_time
+from skisnow.comparison.result import fit_time
 from skisnow.track.slope_frame import in_slope_frame, inclination, lay_on_slope
 from skisnow.track.track import Track
 from tests.coded import raises

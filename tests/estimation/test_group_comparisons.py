@@ -13,7 +13,7 @@ from statsmodels.stats.multitest import multipletests
 
 import skisnow
 from skisnow.estimation.group_comparisons import Measured, compare_groups, letters_of_groups, measured
-from skisnow.estimation.sites import site_means
+from skisnow.estimation.parts import site_means
 
 from .conftest import MakeCampaign
 

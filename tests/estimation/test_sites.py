@@ -9,6 +9,7 @@ from scipy import stats
 import skisnow
 from skisnow.estimation import campaign_notes
 from skisnow.estimation.comparisons import compare_with_published, own_mean
+from skisnow.estimation.parts import site_means
 from skisnow.estimation.regressions import (
     DENSITY_KEY,
     DROP_CONE_KEY,
@@ -18,7 +19,6 @@ from skisnow.estimation.regressions import (
     shear_observations,
     spot_observations,
 )
-from skisnow.estimation.sites import site_means
 
 from .conftest import MakeCampaign
 

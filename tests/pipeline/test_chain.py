@@ -17,14 +17,14 @@ from referencing import Registry, Resource
 
 import skisnow
 from skisnow import Analysis, Run, Scenario
+from skisnow import pipeline as pipeline_turn
 from skisnow._support.errors import ParameterError
 from skisnow.campaign.reference import reference_campaign
 from skisnow.cli import main
 from skisnow.cli.schema import json_schema
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.parameters import values_of
-from skisnow.pipeline import turn as pipeline_turn
-from skisnow.pipeline.turn import MEASURED, PRIORS, inputs_with
+from skisnow.pipeline import MEASURED, PRIORS, inputs_with
 from skisnow.report.turn.numbers import turn_dict
 from skisnow.scenario.identify_section import prior_of
 from skisnow.ski import write_ski

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from skisnow.report.citation import CITED, bibtex
-from skisnow.report.formatting import p_equals, significant, whole
-from skisnow.report.symbols import figure_text, html, prose
+from skisnow.report.formatting import figure_text, html, p_equals, prose, significant, whole
+from skisnow.report.sheet import CITED, bibtex
 
 
 @pytest.mark.parametrize(

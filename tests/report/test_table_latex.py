@@ -15,7 +15,7 @@ import pytest
 
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.tables import campaign_tables
-from skisnow.report.symbols import latex_escaped
+from skisnow.report.formatting import latex_escaped
 from skisnow.report.table import Column, Table, table_csv
 from skisnow.report.table_latex import PACKAGES, table_latex
 

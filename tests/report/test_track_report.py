@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from skisnow.report.figures.style import journal_style
-from skisnow.report.track.exports import track_gpx, turn_rows
 from skisnow.report.track.figures import named_radii, switch_times, track_along, track_map
 from skisnow.report.track.report import write_track_report
-from skisnow.report.track.summary import track_text, track_verdict
+from skisnow.report.track.summary import track_gpx, track_text, track_verdict, turn_rows
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
 from skisnow.track.summary import TrackSummary, summary_dict, track_summary

@@ -20,10 +20,9 @@ from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, local_axes, site_styles
-from skisnow.report.formatting import days_words
+from skisnow.report.formatting import days_words, figure_text
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
-from skisnow.report.symbols import figure_text
 from skisnow.report.table import Column, record_table, table_html
 from skisnow.report.track.report import comparison_drawing, track_drawings
 from skisnow.scenario.keys import SCENARIO_KEYS

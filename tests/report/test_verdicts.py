@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 
 from skisnow.campaign import Campaign
 from skisnow.report.campaign.data import ReportData
-from skisnow.report.campaign.site_figure import sites
+from skisnow.report.campaign.site_figures import sites
 from skisnow.report.campaign.verdicts import verdict, verdicts
 from skisnow.report.figures.drawing import Drawing, LeftOut
 

@@ -21,7 +21,7 @@ from skisnow.cli import main
 from skisnow.identification import read_measured_grooves
 from skisnow.identification.data_tables import read_photo_cells
 from skisnow.samples import write_samples
-from skisnow.samples.measurements import glide_time
+from skisnow.samples.folder import glide_time
 
 SHIPPED = Path(__file__).resolve().parents[2] / "src" / "skisnow" / "samples" / "files"
 

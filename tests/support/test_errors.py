@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from skisnow._support.content import content_bytes
+from skisnow._support.arrays import content_bytes
 from skisnow._support.errors import FieldDataError, ParameterError, RangeWarning, SkisnowError
 from skisnow._support.units import in_degrees_if_radians, unit_of_name, without_unit
 

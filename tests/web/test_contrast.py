@@ -48,7 +48,7 @@ def test_black_on_white_by_definition() -> None:
 
 def test_lines_are_told_apart_by_colour_and_dashes_alone() -> None:
     """Three to one against the page's white is what graphics need (WCAG 2.2, 1.4.11)."""
-    chart = pytest.importorskip("skisnow.web.line_chart", reason="the web lab is not installed")
+    chart = pytest.importorskip("skisnow.web.widgets", reason="the web lab is not installed")
     read = [style for style in chart.STYLES if style["read"]]
     assert read == list(chart.STYLES[: chart.BEHIND])
     for name in ("colour", "dash"):

@@ -15,8 +15,7 @@ from skisnow.campaign.store import Journals, NewEntry, Store, export_corrected
 from skisnow.estimation import analyse
 from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.formatting import significant
-from skisnow.web.analysis_cache import CampaignSource
-from skisnow.web.campaign_analysis import Choice, Numbers, analyse_files, figure
+from skisnow.web.campaign_analysis import CampaignSource, Choice, Numbers, analyse_files, figure
 from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words

@@ -12,10 +12,10 @@ pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow._support.errors import ParameterError, StoreError
 from skisnow.studies import read_study
-from skisnow.web.line_chart import _short
-from skisnow.web.page_addresses import analysis, carving, correcting, entering, export, required_id
+from skisnow.web.page_requests import analysis, carving, correcting, entering, export, required_id
 from skisnow.web.studies import CARVE_S
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
+from skisnow.web.widgets import _short
 from skisnow.web.words import typed_number
 from tests.coded import raises
 

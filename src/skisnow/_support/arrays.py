@@ -1,11 +1,16 @@
-"""Names of the types of arrays, and their vector product."""
+"""Types of arrays, their vector product, the bytes of an object for fingerprints, and numbers for names."""
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 IntArray: TypeAlias = npt.NDArray[np.int64]
@@ -18,3 +23,35 @@ def cross(first: FloatArray, second: FloatArray) -> FloatArray:
     """Vector product of arrays (…, 3): the numbers of `numpy.cross`, in a quarter of its time."""
     turned = first.take(_NEXT, axis=-1) * second.take(_LAST, axis=-1)
     return np.asarray(turned - first.take(_LAST, axis=-1) * second.take(_NEXT, axis=-1))
+
+
+def content_bytes(thing: object) -> Iterator[bytes]:
+    """Contents of an object, down to numbers and texts: the same for the same content.
+
+    >>> b" ".join(content_bytes((1, "a")))
+    b"1 'a'"
+    """
+    if is_dataclass(thing) and not isinstance(thing, type):
+        yield type(thing).__qualname__.encode()
+        for field in fields(thing):
+            if field.init:
+                yield from content_bytes(getattr(thing, field.name))
+    elif isinstance(thing, tuple | list):
+        for part in thing:
+            yield from content_bytes(part)
+    else:
+        array = getattr(thing, "tobytes", None)
+        yield repr(thing).encode() if array is None else array()
+
+
+def index_names(names: Sequence[str]) -> tuple[list[str], npt.NDArray[np.int64]]:
+    """The distinct names in alphabetical order, and the number of each given name among them.
+
+    An array of texts would be as wide as the longest of them for every entry.
+
+    >>> index_names(["b", "a", "b"])
+    (['a', 'b'], array([1, 0, 1]))
+    """
+    distinct = sorted(set(names))
+    number = {name: index for index, name in enumerate(distinct)}
+    return distinct, np.fromiter((number[name] for name in names), dtype=np.int64, count=len(names))

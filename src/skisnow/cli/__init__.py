@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, SkisnowError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS
-from .ending import Ended
+from .output import Ended
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,12 +26,8 @@ def build_parser() -> argparse.ArgumentParser:
         beginning,
         campaign,
         carve,
-        compare,
         convert,
-        design,
-        export,
         identify,
-        import_file,
         race,
         replay,
         schema,
@@ -41,7 +37,6 @@ def build_parser() -> argparse.ArgumentParser:
         store,
         study,
         track,
-        turn,
     )
     from .options import Parser
 
@@ -52,25 +47,11 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"skisnow {version('skisnow')}")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", parser_class=Parser)
     parser.set_defaults(run=lambda _: parser.print_help(), program=parser)
-    modules = (
-        carve,
-        design,
-        simulate,
-        replay,
-        turn,
-        study,
-        race,
-        track,
-        compare,
-        identify,
-        export,
-        convert,
-        schema,
-        serve,
-    )
     for add_command in (
-        beginning.add_new, import_file.add_parser, campaign.add_check, campaign.add_analyse, store.add_parser,
-        beginning.add_reference, beginning.add_samples, *(module.add_parser for module in modules),
+        beginning.add_new, campaign.add_import, campaign.add_check, campaign.add_analyse, store.add_parser,
+        beginning.add_reference, beginning.add_samples, carve.add_carve, carve.add_design, simulate.add_simulate,
+        replay.add_parser, simulate.add_turn, study.add_parser, race.add_parser, track.add_track, track.add_compare,
+        identify.add_parser, convert.add_export, convert.add_convert, schema.add_parser, serve.add_parser,
         shell.add_completion, shell.add_man,
     ):  # fmt: skip
         add_command(commands)
@@ -108,7 +89,7 @@ def _ended(error: Exception | KeyboardInterrupt) -> int:
     if isinstance(error, SkisnowError | MemoryError):
         _print_error(error)
         return 1
-    from .ending import report_failure
+    from .output import report_failure
 
     return report_failure(error)
 

@@ -1,12 +1,12 @@
-"""``skisnow new``, ``reference`` and ``samples``: templates, the synthetic campaign and sample files to begin with."""
+"""``skisnow new``, ``reference`` and ``samples``: templates, ski files, the synthetic campaign and sample files."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-from .new_ski import add_ski
-from .options import Parser, seed_number
+from .._support.errors import ParameterError
+from .options import Parser, number, seed_number
 
 SEED = "seed of the random numbers, 0 or more (default: 1)"
 
@@ -84,3 +84,97 @@ def write_samples(options: argparse.Namespace) -> int:
     samples.write_samples(options.folder, seed=options.seed)
     print((options.folder / "README.txt").read_text(encoding="utf-8"), end="")
     return 0
+
+
+def add_ski(kinds: argparse._SubParsersAction[Parser]) -> None:
+    """Add the command to those of ``skisnow new``."""
+    ski = kinds.add_parser(
+        "ski",
+        help="a ski file of tables, bend and torsion tests, or of three widths alone",
+        description="Write a ski file of what was measured: tables of widths and stiffness in any layout, three-point "
+        "bend tests, torsion tests, or three widths and a length. What is not measured is taken from another ski and "
+        "named.",
+    )
+    ski.add_argument("ski", type=Path, metavar="SKI.toml", help="ski file to write, with a table beside it")
+    ski.add_argument("--table", type=Path, action="append", default=[], metavar="FILE", help="CSV or XLSX (repeatable)")
+    ski.add_argument("--stations-from", choices=("tip", "tail", "boot"), help="where the stations of tables count from")
+    for name, unit, about in (
+        ("boot", "mm", "distance of the boot from the tail (default: middle of the sidecut length)"),
+        ("length", "mm", "length from tip to tail (default: reach of the widths)"),
+        ("running-length", "mm", "between the contact points of the base"),
+        ("sidecut-length", "mm", "between the widest places"),
+        ("radius", "m", "sidecut radius, beside --widths-mm"),
+        ("mass", "kg", "mass of one ski without binding"),
+        ("dial", "mm", "step of the gauge of bend tests (default: 0.01)"),
+        ("angle-step", "deg", "step of the angle of torsion tests (default: 0.1)"),
+    ):
+        ski.add_argument(f"--{name}-{unit}", type=number(unit, lowest=0), metavar=unit.upper(), help=about)
+    ski.add_argument(
+        "--widths-mm", type=number("mm", lowest=0), nargs=3, metavar=("TIP", "WAIST", "TAIL"), help="three widths"
+    )
+    ski.add_argument(
+        "--like", default="carver", metavar="SKI", help="ski that the rest is taken from (default: carver)"
+    )
+    for name in ("column", "unit"):
+        what = "column" if name == "column" else "unit"
+        ski.add_argument(
+            f"--{name}", action="append", default=[], metavar="HEADING=NAME", help=f"{what} of a heading (repeatable)"
+        )
+    ski.set_defaults(run=run_ski)
+
+
+def run_ski(options: argparse.Namespace) -> int:
+    """Write the ski file and print its sources and assumptions."""
+    from .._support.units import DEGREE, MM
+    from ..design.measured_ski import Measured, measured_ski
+    from ..design.ski_tables import Mapped
+    from ..ski import write_ski
+
+    def in_si(value: float | None, unit: float = MM) -> float | None:
+        return None if value is None else value * unit
+
+    given = {
+        "boot": in_si(options.boot_mm),
+        "length": in_si(options.length_mm),
+        "running_length": in_si(options.running_length_mm),
+        "sidecut_length": in_si(options.sidecut_length_mm),
+        "dial_step": in_si(options.dial_mm),
+        "angle_step": in_si(options.angle_step_deg, DEGREE),
+        "radius": options.radius_m,
+        "mass": options.mass_kg,
+        "widths": options.widths_mm and tuple(width * MM for width in options.widths_mm),
+    }
+    made = measured_ski(
+        Measured(
+            name=options.ski.stem,
+            tables=tuple(options.table),
+            mapped=Mapped(_pairs("--column", options.column), _pairs("--unit", options.unit)),
+            stations_from=options.stations_from,
+            like=options.like,
+            **{name: value for name, value in given.items() if value is not None},
+        )
+    )
+    write_ski(made.ski, options.ski)
+    for name, stiffness in (("EI", made.bending), ("GJ", made.torsion)):
+        if stiffness is not None:
+            print(f"{'station mm':>10}  {name + ' N m²':>10}  {'error':>8}")
+            for station, value, error in zip(stiffness.station, stiffness.value, stiffness.error, strict=True):
+                print(f"{station / MM:10.0f}  {value:10.4g}  {error:8.2g}")
+    for each in made.assumed:
+        print(f"Assumed: {each}")
+    snow = "--published race-piste --unloading-ratio 10"
+    print(f"Then: skisnow carve --ski {options.ski} --edge-angle-deg 45 --load-N 800 {snow}")
+    return 0
+
+
+def _pairs(option: str, texts: list[str]) -> dict[str, str]:
+    """Pairs of heading and statement from an option."""
+    for text in texts:
+        if "=" not in text:
+            raise ParameterError(
+                "{option} {text}: an equals sign is missing. Write HEADING=NAME.",
+                code="not_a_pair",
+                option=option,
+                text=text,
+            )
+    return dict(text.rsplit("=", 1) for text in texts)

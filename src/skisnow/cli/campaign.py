@@ -1,4 +1,4 @@
-"""``skisnow check`` and ``analyse``: problems of a campaign; its snow parameters and, with ``--out``, a report."""
+"""``skisnow check``, ``analyse``, ``import``: a campaign's problems, its snow parameters, and files in any layout."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from .._support.errors import FieldDataError, ParameterError
 from .options import MOST_RESAMPLES, add_language, number, seed_number, whole_number
-from .output import prepare_output
-from .progress import Progress
+from .output import Progress, prepare_output
 
 if TYPE_CHECKING:
     from ..campaign import Problem
+    from ..campaign.importing import Answers, Proposal, Question
 
 
 def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -127,3 +128,122 @@ def analyse(options: argparse.Namespace) -> int:
     if options.out is not None:
         print(f"Report: {options.out / 'report.html'}", file=sys.stderr)
     return 0
+
+
+OPTIONS: Final = {
+    "table": ("SHEET:ROW=TABLE", "table below a row of headings: penetration, shear, density, drop_cone, - for none"),
+    "column": ("HEADING=COLUMN", "column of a heading, or of TABLE.HEADING; - leaves it out"),
+    "unit": ("HEADING=UNIT", "unit of the numbers below a heading, such as kg"),
+    "site": ("SHEET=SITE", "site of the tests on a sheet"),
+    "tool": ("TOOL", "tool with its lengths, such as 'ski 200 x 62 mm', or NAME=TOOL for a name in the table"),
+    "plate": ("LENGTH", "length of the blade, such as '100 mm', or NAME=LENGTH for a name in the table"),
+    "cells": (
+        "KEY=VALUE",
+        "decimal=, or decimal=. for numbers typed as text; fill-down=yes for blank names and angles",
+    ),
+    "ignore": ("PLACE", "row, column or cell that is not imported: SHEET!5, SHEET!H, SHEET!H5"),
+}
+PREVIEW_ROWS: Final = 3
+
+
+def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "import",
+        help="make a campaign of a workbook or CSV file in any layout",
+        description="Find tables, columns, units, tools and sites in FILE, ask for what the file does not state, and "
+        "write a campaign with the original file and the mapping. Each answer is also an option (repeatable).",
+    )
+    parser.add_argument("file", type=Path, nargs="?", metavar="FILE", help="workbook (.xlsx) or CSV file")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder to write, new or empty")
+    parser.add_argument(
+        "--yes",
+        action="store_true",
+        help="do not ask: accept what headings, units and notes state, and reject the file if anything else is needed",
+    )
+    parser.add_argument(
+        "--template", metavar="NAME|DIR", help="saved template, or campaign of an earlier import, with its answers"
+    )
+    parser.add_argument("--save-template", metavar="NAME", help="save the answers under a name for the next campaign")
+    parser.add_argument("--undo", type=Path, metavar="DIR", help="remove the files of an import, if none was changed")
+    for option, (form, about) in OPTIONS.items():
+        parser.add_argument(f"--{option}", action="append", default=[], metavar=form, help=about)
+    parser.set_defaults(run=import_file)
+
+
+def import_file(options: argparse.Namespace) -> int:
+    """Import the file or undo an import, and print what was written."""
+    from ..campaign.importing import save_template, undo_import, write_import
+    from ..campaign.reading.campaign_file import CAMPAIGN_FILE
+
+    if options.undo is not None:
+        print(f"Removed: {', '.join(undo_import(options.undo))}")
+        return 0
+    if options.file is None or options.out is None:
+        raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.", code="missing_option")
+    asks = not options.yes and sys.stdin.isatty()
+    proposal = _answered(options, _answers(options), asks=asks)
+    if proposal.problems:
+        raise FieldDataError(proposal.problems)
+    print("\n".join(preview_lines(proposal)))
+    if asks and input("Write this campaign? [y/N] ").strip().lower() not in {"y", "yes", "j", "ja"}:
+        print("Nothing was written.")
+        return 1
+    if options.save_template is not None:
+        saved = save_template(options.save_template, proposal.files[CAMPAIGN_FILE])
+        print(f"Template {options.save_template} saved: {saved}")
+    write_import(proposal.files, options.out)
+    print(f"Written: {', '.join(str(options.out / name) for name in proposal.files)}")
+    print(f"Then: skisnow analyse {options.out}")
+    return 0
+
+
+def _answers(options: argparse.Namespace) -> Answers:
+    from ..campaign.importing import Answers, read_template
+
+    from_options = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
+    return from_options if options.template is None else read_template(options.template).updated(from_options)
+
+
+def _answered(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:
+    """Proposal after questions on the terminal."""
+    from ..campaign.importing import propose
+
+    data = options.file.read_bytes()
+    proposal = propose(options.file.name, data, answers)
+    while asks and proposal.questions:
+        question = proposal.questions[0]
+        answers = answers.with_(question.option, question.key, _ask(question))
+        proposal = propose(options.file.name, data, answers)
+    return proposal
+
+
+def _ask(question: Question) -> str:
+    print(question.problem.message)
+    if question.choices:
+        print(f"  choices: {', '.join(question.choices)}")
+    default = f" [{question.proposed}]" if question.proposed else ""
+    while not (answer := input(f"  {question.option} {question.key}{default}: ").strip() or question.proposed):
+        pass
+    return answer
+
+
+def preview_lines(proposal: Proposal) -> list[str]:
+    """First rows of each table as they are stored, and H_V of one series."""
+    lines = []
+    for table in proposal.tables:
+        columns = [choice.column for choice in table.columns if choice.column]
+        units = [f"{choice.heading} in {choice.unit.name}" for choice in table.columns if choice.unit is not None]
+        lines += [f"{table.section.key}: {table.form.file}, {len(table.rows)} rows ({', '.join(units)})"]
+        lines += [f"  {', '.join(dict.fromkeys(('site', *columns)))}"]
+        for row in table.rows[:PREVIEW_ROWS]:
+            lines.append("  " + ", ".join(row.cells.get(name, "") for name in dict.fromkeys(("site", *columns))))
+    return [*lines, *_hardness_lines(proposal)]
+
+
+def _hardness_lines(proposal: Proposal) -> list[str]:
+    from ..campaign.reading.campaign import campaign_of_files
+    from ..estimation.result_rows import first_hardness
+
+    first = first_hardness(campaign_of_files(proposal.files))
+    return [f"H_V of {first[0]}: {first[1]:.3f} N/mm³"] if first is not None else []

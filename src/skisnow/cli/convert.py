@@ -1,4 +1,4 @@
-"""``skisnow convert``: other people's formats of snow and of motion, by the endings of the files."""
+"""``skisnow convert`` and ``export``: formats of snow and of motion, and models for other programs."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import argparse
 import sys
 from pathlib import Path
 
-from .options import number
-from .progress import announced
+from .options import Parser, add_changes, number, scenario_of, whole_number
+from .output import announced
 
 
-def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser(
         "convert",
@@ -35,10 +35,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--forces", type=Path, metavar="FILE", help="a .mot or .sto whose columns go into a .c3d beside the markers"
     )
-    parser.set_defaults(run=run, parser=parser)
+    parser.set_defaults(run=convert_file, parser=parser)
 
 
-def run(options: argparse.Namespace) -> int:
+def convert_file(options: argparse.Namespace) -> int:
     """Convert, and print the files that were written."""
     from .._support.units import CM
 
@@ -56,4 +56,94 @@ def run(options: argparse.Namespace) -> int:
         written = convert(options.source, options.target, convert_options)
     for path in written:
         print(path)
+    return 0
+
+
+def add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "export",
+        help="models for other programs: FMUs, MJCF, terrain",
+        description="Write a model for one.",
+    )
+    kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
+    _add_fmu(kinds)
+    _add_mjcf(kinds)
+    _add_chrono(kinds)
+
+
+def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
+    fmu = kinds.add_parser(
+        "fmu",
+        help="a functional mock-up unit for co-simulation",
+        description="Write the sledge of a scenario, or with --contact only its skis in its snow, as an FMU for "
+        "co-simulation. It holds a library for Linux on x86-64, and no Python.",
+    )
+    fmu.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
+    fmu.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .fmu")
+    fmu.add_argument(
+        "--fmi", type=int, choices=(2, 3), default=2, help="version of the standard, 2.0 or 3.0; default: 2"
+    )
+    fmu.add_argument(
+        "--contact", action="store_true", help="the contact of rigid skis: poses in, forces and moments out"
+    )
+    fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; default: 2")
+    add_changes(fmu)
+    fmu.set_defaults(run=_fmu, parser=fmu)
+
+
+def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
+    mjcf = kinds.add_parser(
+        "mjcf",
+        help="a ski for MuJoCo",
+        description="Write a ski as MJCF: rigid segments on hinges with its compliance in bending and torsion.",
+    )
+    mjcf.add_argument("ski", metavar="SKI", help="a ski of the catalogue by its name, or a ski file")
+    mjcf.add_argument("--out", type=Path, metavar="FILE", required=True, help="the file to write, ending in .xml")
+    mjcf.add_argument(
+        "--segments", type=whole_number(4, 400), default=20, metavar="N", help="segments of a ski; default: 20"
+    )
+    mjcf.set_defaults(run=_mjcf)
+
+
+def _add_chrono(kinds: argparse._SubParsersAction[Parser]) -> None:
+    chrono = kinds.add_parser(
+        "chrono",
+        help="the snow of a scenario as a terrain of Chrono::Vehicle, untested",
+        description="Write the snow of a scenario as a deformable terrain of Chrono::Vehicle, after its manual; "
+        "untested.",
+    )
+    chrono.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
+    chrono.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to write into")
+    chrono.set_defaults(run=_chrono)
+
+
+def _fmu(options: argparse.Namespace) -> int:
+    if options.skis is not None and not options.contact:
+        options.parser.error("--skis goes with --contact: a sledge has two")
+    with announced("writing"):
+        from ..interop import write_contact_fmu, write_sledge_fmu
+
+        scenario = scenario_of(options).scenario
+        if options.contact:
+            written = write_contact_fmu(scenario, options.out, fmi=options.fmi, skis=options.skis or 2)
+        else:
+            written = write_sledge_fmu(scenario, options.out, fmi=options.fmi)
+    print(written)
+    return 0
+
+
+def _mjcf(options: argparse.Namespace) -> int:
+    from ..interop.mujoco import write_ski_mjcf
+    from ..ski import read_ski
+
+    print(write_ski_mjcf(read_ski(options.ski), options.out, segments=options.segments))
+    return 0
+
+
+def _chrono(options: argparse.Namespace) -> int:
+    from ..interop.chrono import write_chrono_terrain
+    from ..scenario import scenario_file
+
+    print(write_chrono_terrain(scenario_file(options.scenario).scenario, options.out))
     return 0

@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .ending import Ending, ending_is_an_interrupt
 from .options import (
     MOST_RESAMPLES,
     add_changes,
@@ -20,8 +19,7 @@ from .options import (
     seed_number,
     whole_number,
 )
-from .output import prepare_output, print_json, print_warnings
-from .progress import Progress, announced
+from .output import Ending, Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 

@@ -1,16 +1,29 @@
-"""Output of a command: JSON and warnings on the terminal, the folder for files, and the fonts of figures."""
+"""Output and end of a command: JSON, warnings, progress, the folder for files, signals and unforeseen errors."""
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
+import platform
+import re
+import secrets
+import shutil
+import signal
 import sys
+import tempfile
+import threading
+import time
+import traceback
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
-
-from .progress import announced
+from typing import TYPE_CHECKING, Any, Final, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
+    from types import TracebackType
 
 
 def print_json(contents: Any) -> None:
@@ -50,3 +63,230 @@ def prepare_output(folder: Path) -> None:
     for sentence in prepare_folder(folder):
         print(sentence, file=sys.stderr)
     list_fonts()
+
+
+PAUSE_S: Final = 0.5
+_COUNTED: Final = re.compile(r"(\d+) of (\d+)\b")
+PAUSE_OF_LINES_S: Final = 10.0
+"""Where no line can be rewritten, such as in a log."""
+LINES_AT_ONCE: Final = "SKISNOW_PROGRESS_LINES"
+"""Environment variable: for a program that reads them, lines come as often as a terminal's."""
+
+
+class MovingLine:
+    """One line of stderr that is written over and at last wiped; elsewhere than on a terminal each text is a line."""
+
+    def __init__(self) -> None:
+        self.moves = sys.stderr.isatty()
+        self._width = 0
+
+    def show(self, text: str) -> None:
+        """Overwrite the previous text; longer texts are cut, because a second line would remain."""
+        if self.moves:
+            room = max(shutil.get_terminal_size().columns - 1, 10)
+            shown = text if len(text) <= room else f"{text[: room - 1]}…"
+            sys.stderr.write("\r" + shown.ljust(self._width))
+            self._width = len(shown)
+        else:
+            sys.stderr.write(text + "\n")
+        sys.stderr.flush()
+
+    def wipe(self) -> None:
+        """Leave an empty line, with the next text at its beginning."""
+        if self._width:
+            sys.stderr.write("\r" + " " * self._width + "\r")
+            sys.stderr.flush()
+            self._width = 0
+
+
+class Progress:
+    """Callable that prints the current step, first after one second and then from time to time.
+
+    On a terminal one line is rewritten at most twice a second; elsewhere a line is written at most every ten seconds.
+    """
+
+    def __init__(self, *, patience_s: float = 1.0, pause_s: float | None = None) -> None:
+        self._line = MovingLine()
+        self._next = time.monotonic() + patience_s
+        self._begun: tuple[tuple[str, int], float, int] | None = None
+        often = self._line.moves or LINES_AT_ONCE in os.environ
+        self._pause = pause_s if pause_s is not None else PAUSE_S if often else PAUSE_OF_LINES_S
+
+    def __call__(self, text: str) -> None:
+        """Show the current step if it is time."""
+        time_s = time.monotonic()
+        if time_s < self._next:
+            return
+        self._next = time_s + self._pause
+        self._line.show(text + self._left(text, time_s))
+
+    def _left(self, text: str, time_s: float) -> str:
+        """The time left of work that is counted, "3 of 15", from the second text of its kind on."""
+        counted = _COUNTED.search(text)
+        if counted is None or "left" in text:
+            return ""
+        done, total = int(counted[1]), int(counted[2])
+        kind = (text[: counted.start()], total)
+        if self._begun is None or self._begun[0] != kind:
+            self._begun = (kind, time_s, done)
+        _, begun, before = self._begun
+        if not before < done < total:
+            return ""
+        return f", about {(time_s - begun) * (total - done) / (done - before):.0f} s left"
+
+    def __enter__(self) -> Self:
+        """Start."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Take the line away."""
+        self._line.wipe()
+
+
+@contextmanager
+def announced(doing: str, *, patience_s: float = 2.0, usual_s: float | None = None) -> Iterator[None]:
+    """Print the current step if it takes longer than this; on a terminal also the elapsed and the usual time."""
+    line, done, begun = MovingLine(), threading.Event(), time.monotonic()
+    about = "" if usual_s is None else f" of about {usual_s:.0f} s"
+
+    def tell() -> None:
+        if done.wait(patience_s):
+            return
+        if not line.moves:
+            line.show(f"{doing} …{about and f' about {usual_s:.0f} s'}")
+            return
+        while True:
+            line.show(f"{doing} … {time.monotonic() - begun:.0f} s{about}")
+            if done.wait(PAUSE_S):
+                return
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        done.set()
+        teller.join()
+        line.wipe()
+
+
+LATER: Final = "writing the computed results first; a second request stops at once"
+
+
+class Ended(KeyboardInterrupt):
+    """The system requested the end of this process."""
+
+
+@dataclass(slots=True)
+class Ending:
+    """Requests to end this process, kept also if the interrupt was caught.
+
+    Attributes
+    ----------
+    requested
+        True after a request of the system.
+    pressed
+        True after Ctrl-C during `finishing`.
+    """
+
+    requested: bool = False
+    pressed: bool = False
+
+    def status(self) -> int:
+        """Exit status of an interrupted command: 143 after a request of the system, otherwise 130."""
+        return 143 if self.requested else 130
+
+    @contextmanager
+    def finishing(self) -> Iterator[None]:
+        """Finish a block that takes seconds, such as the writing of a run; a second request interrupts it."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before = {number: signal.signal(number, self._ask_later) for number in (signal.SIGINT, signal.SIGTERM)}
+        already, self._later = self._later, False
+        try:
+            yield
+        finally:
+            self._later = already
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    _later: bool = False
+
+    def _ask(self, *_: Any) -> None:
+        self.requested = True
+        raise Ended
+
+    def _ask_later(self, number: int, _: Any) -> None:
+        by_system = number == signal.SIGTERM
+        self.requested, self.pressed = self.requested or by_system, self.pressed or not by_system
+        if self._later:
+            raise Ended if by_system else KeyboardInterrupt
+        self._later = True
+        with contextlib.suppress(OSError):  # past Python's own buffer, which may be in use at this very moment
+            os.write(2, f"{LATER}\n".encode())
+
+
+@contextmanager
+def ending_is_an_interrupt() -> Iterator[Ending]:
+    """Raise `Ended` at SIGTERM; only the main thread can, in another one nothing changes."""
+    ending = Ending()
+    if threading.current_thread() is not threading.main_thread():
+        yield ending
+        return
+    before = signal.signal(signal.SIGTERM, ending._ask)
+    try:
+        yield ending
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def report_interrupt(stopped: KeyboardInterrupt, place: Path) -> int:
+    """Print where the finished part of the work is kept; returns the exit status."""
+    ended = isinstance(stopped, Ended)
+    print(f"\nskisnow: {'ended' if ended else 'interrupted'}; what is finished is kept in {place}.\n"
+          "The same command goes on with it.", file=sys.stderr)  # fmt: skip
+    return 143 if ended else 130
+
+
+STATUS: Final = 70
+"""Exit status after an unforeseen error; ``EX_SOFTWARE`` of sysexits.h."""
+
+
+def report_failure(error: Exception) -> int:
+    """Write the traceback to a file and print its path; returns the exit status."""
+    reference = secrets.token_hex(4)
+    place = _write_log(f"error-{reference}.txt", _trace(error, reference))
+    where = f"The trace is in {place}; please send it with what you did." if place else "The trace:"
+    what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+    print(f"skisnow: an error that was not foreseen ({what}). Reference {reference}. {where}", file=sys.stderr)
+    if place is None:
+        traceback.print_exception(error)
+    return STATUS
+
+
+def _trace(error: Exception, reference: str) -> str:
+    from importlib.metadata import version
+
+    head = (
+        f"reference {reference}, {datetime.now(UTC):%Y-%m-%d %H:%M:%S} UTC",
+        f"skisnow {version('skisnow')}, Python {platform.python_version()}, {platform.platform()}",
+        f"command {sys.argv}",
+    )
+    return "\n".join((*head, "", *traceback.format_exception(error)))
+
+
+def _write_log(name: str, text: str) -> Path | None:
+    """Path of the written file, in the user's log folder or the temporary folder; None if neither can be written."""
+    from platformdirs import user_log_path
+
+    for folder in (user_log_path("skisnow"), Path(tempfile.gettempdir())):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_text(text, encoding="utf-8", errors="backslashreplace")
+        except OSError:
+            continue
+        return folder / name
+    return None

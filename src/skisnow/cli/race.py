@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .ending import ending_is_an_interrupt, report_interrupt
 from .options import (
     add_changes,
     add_scheduler,
@@ -19,8 +18,15 @@ from .options import (
     seed_number,
     whole_number,
 )
-from .output import prepare_output, print_json, print_warnings
-from .progress import Progress, announced
+from .output import (
+    Progress,
+    announced,
+    ending_is_an_interrupt,
+    prepare_output,
+    print_json,
+    print_warnings,
+    report_interrupt,
+)
 
 if TYPE_CHECKING:
     from ..racing import QuickestLine, RacingLine, Score, Worth

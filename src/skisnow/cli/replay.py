@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .options import add_fall_line_azimuth, add_language, number
-from .progress import announced
+from .output import announced
 
 if TYPE_CHECKING:
     from ..replay import Replay, ReplayTrack

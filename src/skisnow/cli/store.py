@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from .._support.errors import StoreError
-from .progress import Progress
+from .output import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
-from .ending import ending_is_an_interrupt, report_interrupt
 from .options import add_language, add_scheduler, add_workers, scheduler_of
-from .progress import Progress
+from .output import Progress, ending_is_an_interrupt, report_interrupt
 
 if TYPE_CHECKING:
     from ..studies import Study, StudyTable

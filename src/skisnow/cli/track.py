@@ -1,24 +1,29 @@
-"""``skisnow track``: distance, speed, runs and turns of a track, printed and drawn."""
+"""``skisnow track`` and ``compare``: distance, speed and turns of a track, and its distance from a simulated one."""
 
 from __future__ import annotations
 
+import argparse
+import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .options import add_language, number
-from .output import prepare_output, print_json, print_warnings
-from .progress import Progress, announced
+from .._support.units import DEGREE
+from .options import add_fall_line_azimuth, add_language, number
+from .output import Progress, announced, prepare_output, print_json, print_warnings
 
 if TYPE_CHECKING:
     import argparse
 
+    from ..comparison import Comparison
     from ..track.course import Course, CourseResult
+    from ..track.course.gates_table import GateGap
     from ..track.projection import GeodeticPoint
     from ..track.track import Track
 
 
-def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the program's."""
     parser = commands.add_parser(
         "track",
@@ -52,10 +57,10 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, EPS) and track.json")
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
-    parser.set_defaults(run=run, parser=parser)
+    parser.set_defaults(run=summarise, parser=parser)
 
 
-def run(options: argparse.Namespace) -> int:
+def summarise(options: argparse.Namespace) -> int:
     """Read, look, print, draw."""
     if options.discipline is not None and options.course is None:
         options.parser.error("--discipline needs --course: name the file of the gates")
@@ -124,3 +129,172 @@ def _told(result: CourseResult) -> dict[str, Any]:
 
     print_warnings(time_warnings(result))
     return gates_dict(result)
+
+
+def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the program's."""
+    parser = commands.add_parser(
+        "compare",
+        help="distances between a simulated and a measured track",
+        description="Compare a simulated track with a measured one: largest, mean and rms distance by nearest place, "
+        "at equal arc length and at equal time. Of two folders with a gates.csv of the same course also the time that "
+        "was lost from gate to gate.",
+    )
+    track = "a track file, or the folder of a run with its track.csv"
+    parser.add_argument("simulated", type=Path, metavar="SIMULATED", help=track)
+    parser.add_argument("measured", type=Path, metavar="MEASURED", help=track)
+    parser.add_argument(
+        "--fit-offset",
+        metavar="start,heading,time",
+        help="fit what is unknown: one or several of start (place of the first point), heading, time; default: none",
+    )
+    parser.add_argument(
+        "--time-from",
+        choices=("clock", "first-point"),
+        help="origin of equal times: the files' dates or seconds, or each track's first point; default: the "
+        "clock, but the first points where only one file has a date",
+    )
+    _add_placement(parser)
+    parser.add_argument("--from-above", action="store_true", help="leave the heights out")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="write compare.json and the figure (PNG, SVG, PDF, EPS); of gates their table, figure and report.html too",
+    )
+    add_language(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    parser.set_defaults(run=compare, parser=parser)
+
+
+def _add_placement(parser: argparse.ArgumentParser) -> None:
+    add_fall_line_azimuth(parser, "puts a track in latitude and longitude into a simulated run's frame")
+    parser.add_argument(
+        "--slope-angle-deg",
+        type=number("degrees", lowest=0, highest=75),
+        metavar="DEG",
+        help="inclination of the plane slope, with --fall-line-azimuth-deg or --fit-offset start,heading (default: "
+        "that of the run's folder; with a fit also that of the measured heights)",
+    )
+    parser.add_argument(
+        "--known-to-m",
+        type=number("metres", lowest=0),
+        metavar="M",
+        help="how exactly the places of both are known, which no printed digit goes below; 0: print all. Default: as "
+        "the receiver states, else by its kind",
+    )
+
+
+def compare(options: argparse.Namespace) -> int:
+    """Compare, print, write."""
+    fitted = {"start", "heading"} <= set(_offsets(options))
+    if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None and not fitted:
+        options.parser.error(
+            "--slope-angle-deg needs --fall-line-azimuth-deg, the direction in which the slope falls, or --fit-offset "
+            "start,heading"
+        )
+    if options.out is not None:
+        prepare_output(options.out)
+    comparison = _compared(options)
+    from ..comparison import comparison_dict
+    from ..track.course.gates_table import gap_rows, read_gate_gaps
+
+    gaps = read_gate_gaps(options.simulated, options.measured)
+    answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": gap_rows(gaps)})
+    print_warnings(comparison.warnings)
+    text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
+    if options.json:
+        print(text, flush=True)
+    else:
+        from ..report.track.summary import compare_summary
+
+        print(compare_summary(answer), flush=True)
+        if gaps is not None:
+            from ..report.race.folder import gaps_text
+
+            print(f"\n{gaps_text(gaps, comparison.names)}", flush=True)
+    if options.out is not None:
+        _write(options.out, comparison, text, options.language, gaps)
+    return 0
+
+
+def _compared(options: argparse.Namespace) -> Comparison:
+    from ..comparison.alignment import require_offsets
+
+    fit = _offsets(options)
+    require_offsets(fit)
+    with announced("reading the tracks and finding nearest places"):
+        from ..comparison import compare_tracks
+
+        measured = _read(options.measured)
+        simulated = _read(options.simulated)
+        if simulated.origin is not None and measured.origin is not None:
+            simulated = simulated.at_origin(measured.origin)
+        angle = None if options.slope_angle_deg is None else options.slope_angle_deg * DEGREE
+        pairs = ((simulated, measured), (measured, simulated))
+        tracks = [_in_slope(track, options, other.slope_angle if angle is None else angle) for track, other in pairs]
+        time_from = options.time_from and options.time_from.replace("-", "_")
+        return compare_tracks(
+            *tracks,
+            fit=fit,
+            time_from=time_from,
+            from_above=options.from_above,
+            known_to=options.known_to_m,
+            slope_angle=angle if options.fall_line_azimuth_deg is None else None,
+        )
+
+
+def _offsets(options: argparse.Namespace) -> list[str]:
+    return [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
+
+
+def _read(path: Path) -> Track:
+    """A track under the name by which the user called it; that of a run with the angle of its slope."""
+    from ..track.read import read_track
+
+    file = path / "track.csv" if path.is_dir() else path
+    track = read_track(file)
+    angle = _slope_angle_of_run(file) if track.axes == "file" else None
+    return replace(track, name=str(path), slope_angle=angle)
+
+
+def _slope_angle_of_run(file: Path) -> float | None:
+    """Inclination (rad) of x and y of a run's track.csv, 0 on a profile or grid; None for another track."""
+    from .._support.errors import SkisnowError
+    from .._support.user_files import is_file, read_json
+
+    summary = file.with_name("summary.json")
+    if file.name != "track.csv" or not is_file(summary):
+        return None
+    try:
+        slope = read_json(summary)["scenario"]["slope"]
+        return float(slope["angle_deg"]) * DEGREE if slope["kind"] == "plane" else 0.0
+    except (SkisnowError, KeyError, TypeError, ValueError):  # another program's summary, or a damaged one
+        return None
+
+
+def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | None) -> Track:
+    """A track in east, north and up as a simulated run sees it; another one as it is."""
+    from ..track.slope_frame import in_slope_frame
+
+    azimuth = options.fall_line_azimuth_deg
+    if azimuth is None or track.axes != "east_north_up":
+        return track
+    return in_slope_frame(
+        track, fall_line_azimuth=azimuth * DEGREE, slope_angle=slope_angle or None, missing_height="on_slope"
+    )
+
+
+def _write(folder: Path, comparison: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
+    from .._support.staging import staged, write_file
+    from ..report.figures.figure_files import write_pictures
+    from ..report.race.folder import FILES, write_gaps
+    from ..report.track.report import comparison_drawing
+
+    with staged(folder, last="compare.json") as stage:
+        stage.stale += FILES
+        if gaps is not None:
+            write_gaps(gaps, comparison.names, stage.path, language=language)
+        write_file(stage.path / "compare.json", f"{text}\n")
+        write_pictures(map(comparison_drawing, [comparison]), stage.path, every=(), language=language)
+    print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF and EPS", file=sys.stderr)

@@ -27,8 +27,17 @@ from .distances import (
     track_polyline,
 )
 from .nearest_place import Path
-from .result import Comparison, Distances, FittedOffsets
-from .time_offset import FIRST_POINTS, Clock, TimeFrom, common_clock, fit_time, missing_time_reason
+from .result import (
+    FIRST_POINTS,
+    Clock,
+    Comparison,
+    Distances,
+    FittedOffsets,
+    TimeFrom,
+    common_clock,
+    fit_time,
+    missing_time_reason,
+)
 
 FARTHEST: Final = 1000.0
 """Largest distance (m) between the tracks; beyond it they are from different slopes."""

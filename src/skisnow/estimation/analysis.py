@@ -21,7 +21,7 @@ from .group_comparisons import DIFFERENCE, GroupComparison, compare_campaign
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
-from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, seating, used_of
+from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, SiteMean, seating, site_means, site_snow, used_of
 from .readings import readings_of
 from .regressions import (
     DENSITY_KEY,
@@ -38,7 +38,6 @@ from .regressions import (
 )
 from .screening import reading_uncertainty, screened_penetration, screened_shear
 from .shear import shear_displacement, shear_stress
-from .sites import SiteMean, site_means, site_snow
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .spread_groups import scatter_warning
 from .unloading import site_unloading
@@ -156,7 +155,7 @@ class Analysis(Shown):
         ParameterError
             Unknown figure (code ``unknown_figure``), or no data for it (``no_data``).
         """
-        from ..report.campaign.objects import analysis_figure
+        from ..report.campaign.summary import analysis_figure
 
         return analysis_figure(self, what)
 
@@ -185,7 +184,7 @@ class Analysis(Shown):
         pandas.DataFrame
             One row per experiment; the ends of a 95 % interval are the columns with `low` and `high` in their names.
         """
-        from ..report.campaign.objects import analysis_dataframe
+        from ..report.campaign.summary import analysis_dataframe
 
         return analysis_dataframe(self, kind)
 
@@ -197,7 +196,7 @@ class Analysis(Shown):
         xarray.Dataset
             Over the dimensions ``penetration_experiment`` and ``shear_experiment``.
         """
-        from ..report.campaign.objects import analysis_dataset
+        from ..report.campaign.summary import analysis_dataset
 
         return analysis_dataset(self)
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from .._support.arrays import IntArray
-from .._support.content import index_names
+from .._support.arrays import IntArray, index_names
 from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import CONFIDENCE, N_PER_MM2, N_PER_MM3

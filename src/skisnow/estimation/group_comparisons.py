@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 from scipy.special import stdtr
 
-from .._support.content import index_names
+from .._support.arrays import index_names
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from ..statistics.two_groups import compact_letters, holm_corrected, tests_per_group

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..statistics.bounded import non_negative_fits
+from ..statistics.combined_uncertainty import percentile_interval, resampling_counts
 from ..statistics.f_tests import nested_f_test
-from ..statistics.resampling import percentile_interval, resampling_counts
 from .hardness import DEFINITIONS
 from .models import MODELS, NESTED_PAIRS, EndBasis, Model, ModelFit, end_basis
 

@@ -1,4 +1,4 @@
-"""Results of each kind of experiment: the parts of an `Analysis`; seating of each series.
+"""Parts of an `Analysis`: results of each kind of experiment, seating of each series, sites and their snow.
 
 Seating: if the tool touches the snow at a gauge reading δ instead of 0, all depths of the series are δ too large: at
 H_V = 10 N/mm³ and 45° a seating of 0.1 mm on 0.7 mm of depth already moves H_V by a third. Often the largest systematic
@@ -7,16 +7,29 @@ error.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, index_names
 from .._support.display import Facts, Shown, ShownFields, amount, field_facts
+from .._support.messages import Message
+from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from ..snow import SnowProperties
+from ..snow.mean_snow import (
+    mean_snow,
+    no_used_experiment,
+    site_in_words,
+    site_named,
+    with_measured_displacement,
+    with_measured_unloading,
+)
 from .campaign_model import CampaignModel
-from .comparisons import SiteValue
+from .comparisons import OwnValue, SiteValue, own_mean
 from .errors_in_depth import FittedHardness, VolumeFactor
+from .group_comparisons import letters_of_groups
 from .hardness import Hardness
 from .layering import GrowingHardness
 from .model_choice import NestedRows
@@ -27,8 +40,12 @@ from .shear import ShearDisplacement, ShearStress
 from .unloading import SiteUnloading, Unloading
 
 if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
+    from collections.abc import Iterator, Sequence
+
+    from .._support.arrays import BoolArray, FloatArray
+    from ..campaign.records import Campaign
     from .campaign_model import CampaignModel
+    from .group_comparisons import GroupComparison
     from .readings import Readings
 
 
@@ -123,3 +140,153 @@ def _hardness_change(readings: Readings, offset: FloatArray) -> FloatArray:
     corrected = readings.volume_of_series(np.where(left > 0, left, 0.0))
     volume = readings.displaced_volume[readings.largest]
     return np.divide(volume, corrected, out=np.full(volume.shape, np.nan), where=(left > 0) & (corrected > 0)) - 1.0
+
+
+TextArray = npt.NDArray[np.object_]
+
+
+@dataclass(frozen=True, slots=True)
+class SiteMean:
+    """Mean of the n used experiments of one site (``quantity`` as a key of the results, in its unit).
+
+    Sites share one of their ``letters`` where their pair is not shown to differ, after Holm's correction.
+    """
+
+    quantity: str
+    site: str
+    n: int
+    own: OwnValue
+    letters: str = ""
+
+
+def site_means(
+    quantity: str,
+    values: FloatArray,
+    site: Sequence[str],
+    *,
+    geometric: bool,
+    pairs: Sequence[GroupComparison] = (),
+) -> tuple[SiteMean, ...]:
+    """The mean of each site with its interval from the scatter between its experiments, in alphabetical order.
+
+    ``pairs`` are the comparisons of the sites, for their letters.
+    """
+    names, site_of = index_names(site)
+    means = [own_mean(values[site_of == index], [name] * int(np.sum(site_of == index)), geometric=geometric)
+             for index, name in enumerate(names)]  # fmt: skip
+    by_size = [names[index] for index in np.argsort([-mean.value for mean in means]).tolist()]
+    letters = letters_of_groups(pairs, by_size) if len(names) > 1 else dict.fromkeys(names, "")
+    return tuple(
+        SiteMean(quantity, name, int(np.sum(site_of == index)), means[index], letters[name])
+        for index, name in enumerate(names)
+    )
+
+
+def site_snow(
+    campaign: Campaign,
+    penetration: PenetrationAnalysis | None,
+    shear: ShearAnalysis | None,
+    site: str | None,
+    unloading_ratio: float | None,
+) -> SnowProperties:
+    """The means over the used experiments of a site, as `skisnow.read_snow` reads them from results.json."""
+    pressed, sheared = _pressed(penetration, campaign), _sheared(shear, campaign)
+    site = site_of_campaign(campaign, site)
+    hardness, stress = (_of(site, *pair) for pair in (pressed, sheared))
+    name = campaign.name
+    if not hardness.size:
+        sites = sorted({str(row) for row in pressed[1]})
+        raise no_used_experiment(name, site, sites)
+    source = f"{name}, {site_in_words(site)}: {hardness.size} penetration and {stress.size} shear experiments"
+    snow = mean_snow(hardness / N_PER_MM3, stress / N_PER_MM2, source=source, where=name)
+    turned = next((row for row in shear.site_displacement if row.site == site), None) if shear else None
+    if turned is not None:
+        snow = with_measured_displacement(snow, turned.value / MM, (turned.low / MM, turned.high / MM))
+    if unloading_ratio is not None:
+        return replace(snow, unloading_ratio=unloading_ratio)
+    ratios = () if penetration is None else penetration.site_unloading
+    ratio = next((row for row in ratios if row.site == site and row.is_resolved), None)
+    return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
+
+
+def _pressed(penetration: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+    """H_V (N/m³) and site of each used penetration experiment that has one."""
+    tests = campaign.penetration
+    if penetration is None or tests is None:
+        return np.zeros(0), np.zeros(0, dtype=object)
+    return _used(penetration.hardness["H_V"].value, penetration.screened.used, tests.site)
+
+
+def _sheared(shear: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+    """S_f (N/m²) and site of each used shear experiment that has one."""
+    tests = campaign.shear
+    if shear is None or tests is None:
+        return np.zeros(0), np.zeros(0, dtype=object)
+    return _used(shear.stress.value, shear.screened.used, tests.site)
+
+
+def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[FloatArray, TextArray]:
+    there = used & np.isfinite(value)
+    return value[there], np.array(site, dtype=object)[there]
+
+
+def _of(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
+    return value if site is None else value[sites == site]
+
+
+def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
+    """The campaign's own name of a site, see `skisnow.snow.mean_snow.site_named`."""
+    tables = (tests for tests in (campaign.penetration, campaign.shear) if tests is not None)
+    return site_named(site, (name for tests in tables for name in tests.site))
+
+
+def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
+    """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
+    return (*_alike(campaign), *_without_tests(campaign), *_unread(campaign))
+
+
+def _tested(campaign: Campaign) -> set[str]:
+    return {site for tests in (campaign.penetration, campaign.shear) if tests is not None for site in tests.site}
+
+
+def _described(campaign: Campaign) -> dict[str, set[str]]:
+    tables = {
+        "density.csv": campaign.density,
+        "drop_cone.csv": campaign.drop_cone,
+        "snow_micro_pen.csv": campaign.snow_micro_pen,
+    }
+    return {name: set(table.site) for name, table in tables.items() if table is not None}
+
+
+def _alike(campaign: Campaign) -> Iterator[str]:
+    """Names that differ only by capitals and spaces."""
+    names: dict[str, set[str]] = {}
+    for site in _tested(campaign).union(*_described(campaign).values()):
+        names.setdefault("".join(site.split()).casefold(), set()).add(site)
+    for variants in sorted(sorted(variants) for variants in names.values() if len(variants) > 1):
+        listed = [repr(name) for name in variants]
+        yield Message(
+            "The sites {listed} differ by capitals or spaces alone; they count as different sites. Is one meant?",
+            listed=listed,
+        )
+
+
+def _without_tests(campaign: Campaign) -> Iterator[str]:
+    tested = _tested(campaign)
+    if not tested:  # recordings or samples alone
+        return
+    for name, sites in _described(campaign).items():
+        lost = sorted(sites - tested)
+        if lost:
+            listed = [repr(site) for site in lost]
+            yield Message(
+                "{name} describes {listed}, where no test was made: these rows are not included. Is a site misspelt?",
+                name=name,
+                listed=listed,
+            )
+
+
+def _unread(campaign: Campaign) -> Iterator[str]:
+    if campaign.unread_files:
+        listed = ", ".join(campaign.unread_files)
+        yield Message("Not read, as no table of a campaign has this name: {listed}.", listed=listed)

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import FloatArray, IntArray
-from .._support.content import index_names
+from .._support.arrays import FloatArray, IntArray, index_names
 from .._support.display import ShownFields
 from .._support.errors import FitError
 from .._support.messages import Message

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM3
+from .parts import campaign_notes
 from .result_rows import (
     campaign_model_results,
     column_rows,
@@ -25,7 +26,6 @@ from .result_rows import (
     shear_experiments,
     without_nan,
 )
-from .sites import campaign_notes
 from .snow_micro_pen import snow_micro_pen_results
 from .weather import weather_results
 
@@ -34,9 +34,8 @@ if TYPE_CHECKING:
 
     from .analysis import Analysis
     from .errors_in_depth import VolumeFactor
-    from .parts import PenetrationAnalysis, ShearAnalysis
+    from .parts import PenetrationAnalysis, ShearAnalysis, SiteMean
     from .regressions import Regression
-    from .sites import SiteMean
     from .unloading import SiteUnloading
 
 Json: TypeAlias = dict[str, Any]

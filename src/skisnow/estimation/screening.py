@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.content import index_names
+from .._support.arrays import index_names
 from .._support.display import ShownFields
 from .._support.units import N_PER_MM3
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from scipy.special import chdtrc, expit, gammaln
 
-from .._support.content import index_names
+from .._support.arrays import index_names
 from .._support.messages import Message
 from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
 

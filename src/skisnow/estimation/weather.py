@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from .._support.content import index_names
+from .._support.arrays import index_names
 from .._support.display import Facts, Shown
 from .._support.units import HOUR, PERCENT, ZERO_CELSIUS
 

@@ -13,8 +13,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import FloatArray
-from .._support.content import content_bytes
+from .._support.arrays import FloatArray, content_bytes
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator

@@ -13,7 +13,7 @@ import numpy as np
 
 from .._support.errors import FitError, ParameterError
 from .._support.messages import Message
-from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.batch import ExecutorLike, require_executor
 from .._support.processes.kept_rows import KeptRows, forget
 from ..parameters import values_of
 from ..scenario import Scenario, ScenarioFile

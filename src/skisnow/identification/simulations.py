@@ -15,8 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 from .._support.arrays import FloatArray
 from .._support.errors import SkisnowError
 from .._support.messages import Message
-from .._support.processes.batch import Pool, workers_in_force
-from .._support.processes.executors import ExecutorLike
+from .._support.processes.batch import ExecutorLike, Pool, workers_in_force
 from .._support.processes.kept_rows import KeptRows, Row
 from ..scenario import Scenario, Solver, Stop
 from ..scenario.reading import build_input

@@ -9,12 +9,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
-from .._support.content import content_bytes
+from .._support.arrays import content_bytes
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
-from .._support.processes.batch import Pool, workers_in_force
-from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.batch import ExecutorLike, Pool, require_executor, workers_in_force
 from .._support.processes.kept_rows import KeptRows
 from ..scenario import Scenario
 from .line import RacingLine, course_of, first_gates, follower_line

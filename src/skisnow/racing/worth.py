@@ -12,12 +12,10 @@ from typing import Any, Final, get_args
 import numpy as np
 from scipy.stats import qmc
 
-from .._support.arrays import FloatArray
-from .._support.content import content_bytes
+from .._support.arrays import FloatArray, content_bytes
 from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
-from .._support.processes.batch import run_batch
-from .._support.processes.executors import ExecutorLike
+from .._support.processes.batch import ExecutorLike, run_batch
 from .._support.processes.kept_rows import KeptRows
 from ..scenario import Scenario
 from ..ski import Ski

@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.messages import Message
-from .._support.outcomes import outcome_words
+from .._support.messages import Message, outcome_words
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
 from ..simulation.run_summary import feet_and_tips

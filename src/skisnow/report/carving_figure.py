@@ -9,13 +9,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from .._support.arrays import FloatArray
-from .._support.messages import Message
-from .._support.outcomes import outcome_words
+from .._support.messages import Message, outcome_words
 from .._support.units import MM
 from .figures.style import BLACK, COLOURS, DOUBLE_MM, GREY, PALE, legend_below, new_figure
-from .formatting import significant
+from .formatting import figure_text, significant
 from .summaries import answers_of, ski_titles
-from .symbols import figure_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,16 +15,14 @@ from matplotlib.lines import Line2D
 
 from .._support.arrays import BoolArray
 from .._support.errors import require_language
-from .._support.messages import ENGLISH, Message, in_language, template
-from .._support.outcomes import outcome_words
+from .._support.messages import ENGLISH, Message, in_language, outcome_words, template
 from .._support.spreadsheet_text import guarded
 from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing
 from .figures.figure_files import picture_files, silent, write_pictures
 from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, ORANGE, PALE, legend_below, new_figure
-from .formatting import counted, interval, json_text, significant
+from .formatting import counted, figure_text, interval, json_text, prose, significant
 from .sheet import Header, Section, sheet
-from .symbols import figure_text, prose
 from .table import Column, Table
 
 if TYPE_CHECKING:

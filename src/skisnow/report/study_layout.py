@@ -13,7 +13,7 @@ from .._support.errors import ParameterError
 from .._support.messages import local_number
 from ..carving.question import CARVE_KEYS
 from ..studies import StudyTable
-from .symbols import figure_text
+from .formatting import figure_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

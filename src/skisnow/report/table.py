@@ -14,7 +14,7 @@ from markupsafe import Markup
 from .._support.messages import Message, joined, local_number
 from .._support.spreadsheet_text import guarded
 from . import formatting
-from .symbols import html, prose
+from .formatting import html, prose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

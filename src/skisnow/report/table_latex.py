@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, Final
 
 from . import formatting
-from .symbols import latex, latex_escaped
+from .formatting import latex, latex_escaped
 from .table import ROWS_IN_LATEX
 
 if TYPE_CHECKING:

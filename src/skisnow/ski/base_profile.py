@@ -9,12 +9,10 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from ..parameters import require_declared
-from .ski_quantity import ski_quantity
+from ..parameters import Quantity, require_declared
 
 if TYPE_CHECKING:
     from .layout import Layout
-
 
 SHOVEL_HEIGHT: Final = 0.050
 """Height of the tip over the contact points (m). Modelling assumption: 50 mm, a usual alpine ski."""
@@ -213,3 +211,10 @@ class _End:
                 straight=straight * 1e3,
             )
         return (height - straight) / self.length**2
+
+
+def ski_quantity(
+    name: str, meaning: str, allowed: tuple[float, float], usual: tuple[float, float], left_out: str
+) -> Quantity:
+    """A quantity with its allowed and its usual range, and the value without it."""
+    return Quantity(name, meaning, lowest=allowed[0], highest=allowed[1], usual=usual, origin=left_out)

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from .._support.errors import OutputError, ParameterError, SkisnowError
-from .._support.processes.batch import Progress, compute_missing, workers_in_force
-from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, workers_in_force
 from .._support.processes.kept_rows import KeptRows, Row, json_text
 from .._support.staging import cannot_write
 from .._support.user_files import is_file

@@ -12,9 +12,8 @@ from typing import Any, Final, Self
 
 from .._support.errors import ParameterError
 from .._support.messages import template
-from .._support.processes.batch import Progress, compute_missing, workers_in_force
-from .._support.processes.chunk import own_identity
-from .._support.processes.executors import ExecutorLike, require_executor
+from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, workers_in_force
+from .._support.processes.crews import own_identity
 from .._support.processes.kept_rows import KeptRows, NumberedText
 from .._support.user_files import own_json
 from ..parameters import Quantity

@@ -25,8 +25,7 @@ from .._support.spreadsheet_text import (
 )
 from .._support.user_files import plain_bytes
 from ..parameters import Quantity
-from .cells import readers, row_of
-from .rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, ParquetRows, StoredRows, csv_block
+from .rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, ParquetRows, StoredRows, csv_block, readers, row_of
 from .writing import write_csv
 
 MOST_ROWS_HELD: Final = 20_000

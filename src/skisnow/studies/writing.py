@@ -15,8 +15,7 @@ from typing import IO, Any, Final, TypeAlias
 from .._support.errors import ParameterError
 from .._support.sqlite_file import connect
 from .._support.staging import cannot_write, place_to_write
-from .cells import cell, cells
-from .rows import ROWS_OF_A_BLOCK, require_pyarrow
+from .rows import ROWS_OF_A_BLOCK, cell, cells, require_pyarrow
 
 ValueRows: TypeAlias = Callable[[], Iterable[list[Any]]]
 """Starts at the first row with every call; each row has a value for every column."""

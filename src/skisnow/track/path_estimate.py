@@ -14,9 +14,8 @@ from scipy.linalg import lapack
 
 from .._support.arrays import FloatArray, IntArray
 from .._support.units import CONFIDENCE
-from .climb import climb_samples
 from .path_model import STATES, PathFit, PathModel, TimeScales
-from .path_search import WeightedParameters, likely_parameters
+from .posterior import WeightedParameters, climb_samples, likely_parameters
 
 FloatSamples = npt.NDArray[np.float32]
 

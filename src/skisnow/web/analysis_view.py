@@ -13,8 +13,8 @@ from .._support.messages import Message, template
 from ..report.formatting import counted
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
 from .elements import Words, html_words, named
-from .language import language_of, said
 from .layout import error_sentence, heading, sentence
+from .words import language_of, said
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Sequence
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
     from nicegui.events import ValueChangeEventArguments
 
-    from .analysis_cache import AnalysisCache, CachedAnalysis, CampaignSource
-    from .campaign_analysis import FigureImage
+    from .campaign_analysis import AnalysisCache, CachedAnalysis, CampaignSource, FigureImage
 
     Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 

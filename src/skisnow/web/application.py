@@ -16,13 +16,13 @@ from starlette.responses import FileResponse, RedirectResponse, Response
 
 from .._support.messages import languages
 from .guard import Access, Guard
-from .language import COOKIE
 from .layout import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log_to
 from .pages import INNER, PAGES
 from .replay_addresses import FIRST_SCRIPT
 from .settings import PING_EVERY_S, PING_WAIT_S, RECONNECT_S
 from .ski_uploads import add_ski_uploads
 from .transfer import add_transfer
+from .words import COOKIE
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
 from nicegui import background_tasks, run, ui
 
 from .._support.errors import ParameterError, SkisnowError
-from .._support.messages import Message, joined
-from .._support.outcomes import outcome_words
+from .._support.messages import Message, joined, outcome_words
 from ..report.campaign.page import RESULTS
 from ..report.formatting import significant
 from .elements import Words, button, named
-from .language import number_said, said
-from .line_chart import STYLES, ChartLine, LineChart, save_buttons
+from .widgets import STYLES, ChartLine, LineChart, save_buttons
+from .words import number_said, said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from ..report.symbols import SYMBOL
-from .language import said
+from ..report.formatting import SYMBOL
+from .words import said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

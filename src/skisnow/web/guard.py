@@ -24,7 +24,7 @@ from starlette.responses import HTMLResponse, PlainTextResponse, RedirectRespons
 
 from .._support.messages import Message, translated
 from .._support.user_files import natural_number
-from .language import language_of_request
+from .words import language_of_request
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -18,7 +18,7 @@ from ..replay.replay import measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
-from .page_addresses import plain_stem
+from .page_requests import plain_stem
 from .subprocesses import BOUNDS, confined
 from .words import reworded, typed_number
 

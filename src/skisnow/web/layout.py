@@ -19,8 +19,8 @@ from .._support.errors import FieldDataError, ParameterError, SkisnowError, Stor
 from .._support.messages import Message, languages, translated
 from .elements import Words, named
 from .guard import STATUS
-from .language import language_of, language_of_request, said
 from .pages import PAGES
+from .words import language_of, language_of_request, said
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,16 +1,27 @@
-"""Requests from `lab.js`, which keeps typed text in the browser until the server's answer."""
+"""Addresses of a campaign's pages, requests from `lab.js` that keep typed text, and uploads by plain forms."""
 
 from __future__ import annotations
 
 import json
+import re
 from contextvars import ContextVar
 from dataclasses import dataclass
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import quote
 from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import FormData, UploadFile
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
 
-from .elements import button
+from .._support.errors import ParameterError, SkisnowError, StoreError
+from .._support.messages import Message
+from .elements import Words, button
+from .layout import error_sentence, plain_page
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,6 +30,9 @@ if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments
 
     Act: TypeAlias = Callable[[], bool | None]
+    from collections.abc import Callable, Mapping
+
+    from fastapi import FastAPI
 
 ASK: Final = "() => lab.ask(emit)"
 ASK_FOR_ROW: Final = "() => lab.ask(emit, 'row')"
@@ -137,3 +151,139 @@ def form(classes: str = "fields", *, sends: Act | None = None) -> ui.element:
     if sends is None:
         return made.on("keydown.enter", js_handler=ONWARD)
     return made.on("keydown.enter", answering(sends), js_handler=ENTER)
+
+
+_ID: Final = re.compile(r"[0-9a-f]{4,64}")
+
+
+def entering(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
+    """Address of the entry of a campaign, or of a table and test in it; ``head``: cells of a test without rows."""
+    return f"/enter/{id_}" + _query(table, test, **(head or {}))
+
+
+def correcting(id_: str, *, table: str = "", test: str = "") -> str:
+    """Address of the correction of an imported campaign, or of a table and test in it."""
+    return f"/correct/{id_}" + _query(table, test)
+
+
+def _query(table: str, test: str, **further: str) -> str:
+    parameters = {"table": table, "test": test, **further}
+    words = [f"{key}={quote(value, safe='')}" for key, value in parameters.items() if value]
+    return "?" + "&".join(words) if words else ""
+
+
+def carving(ski: str, other: str = "") -> str:
+    """Address of the page Carve with a ski, and another one for comparison."""
+    return f"/carve?ski={quote(ski, safe='')}" + (f"&other={quote(other, safe='')}" if other else "")
+
+
+def analysis(kind: str, id_: str) -> str:
+    """Address of the analysis of a campaign; kind: entry or kept."""
+    return f"/analysis/{kind}/{id_}"
+
+
+def export(kind: str, id_: str) -> str:
+    """Address of a campaign's zip file."""
+    return f"/export/{kind}/{id_}.zip"
+
+
+def plain_stem(called: str, otherwise: str) -> str:
+    """Name of a file without folder and suffix, in characters that are valid in names of folders on every system.
+
+    >>> plain_stem("Hang 3/Übungs lauf.gpx", "track"), plain_stem("雪.csv", "course")
+    ('bungs-lauf', 'course')
+    """
+    stem = PurePosixPath(called.replace("\\", "/")).name.rsplit(".", 1)[0]
+    return re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-")[:40] or otherwise
+
+
+def required_id(text: str) -> str:
+    """Id of a campaign from an address.
+
+    Raises
+    ------
+    StoreError
+        The text is not an id.
+    """
+    if not _ID.fullmatch(text):
+        raise StoreError("This address names no campaign; the list of campaigns names all.", code="no_campaign")
+    return text
+
+
+NOT_STORED = Message("This was not imported")
+ONE_FILE = Message("Nothing was stored: import one file at a time.")
+
+
+def add_upload(
+    app: FastAPI,
+    address: str,
+    store: Callable[[FormData], str],
+    *,
+    max_files: int = 1,
+    max_fields: int = 10,
+    too_many: str = ONE_FILE,
+) -> None:
+    """Add an address that receives a form; the guard in front of the application checks where requests come from.
+
+    Parameters
+    ----------
+    app, address
+        The application, and the address.
+    store
+        Function that stores the upload and returns the address of the next page. Its errors are shown on a page.
+    max_files, max_fields
+        Maximum numbers of files and of other fields.
+    too_many
+        Sentence for a form with more.
+    """
+
+    async def receive(request: Request) -> Response:
+        try:
+            async with request.form(max_files=max_files, max_fields=max_fields) as form:
+                place = await run_in_threadpool(store, form)
+        except (SkisnowError, OSError) as error:
+            return plain_page(
+                NOT_STORED, Message("Nothing was stored: {error}", error=error_sentence(error)), 400, request
+            )
+        except HTTPException:
+            return plain_page(NOT_STORED, too_many, 400, request)
+        return RedirectResponse(place, 303)
+
+    app.add_api_route(address, receive, methods=["POST"], include_in_schema=False, response_model=None)
+
+
+def uploaded_files(form: FormData, key: str, missing: str) -> list[UploadFile]:
+    """Uploaded files of a field; ParameterError with the text `missing` without any."""
+    files = [file for file in form.getlist(key) if isinstance(file, UploadFile) and file.filename]
+    if not files:
+        raise ParameterError(missing, code="no_file")
+    return files
+
+
+def upload_form(address: str) -> ui.element:
+    """Form that is sent to an address."""
+    return ui.element("form").props(f'method=post action="{address}" enctype="multipart/form-data"')
+
+
+def file_input(key: str, label: str, id_: str, further: str = "") -> None:
+    """Field for files with its label; ``further`` properties of the field."""
+    _labelled(id_, label)
+    ui.element("input").props(f"type=file id={id_} name={key} required {further}".rstrip())
+
+
+def text_input(key: str, label: str, id_: str, further: str = "") -> None:
+    """Field for a text with its label; ``further`` properties of the field."""
+    _labelled(id_, label)
+    ui.element("input").props(f"id={id_} name={key} {further}".rstrip()).classes("act plain")
+
+
+def _labelled(id_: str, label: str) -> None:
+    with ui.element("label").props(f"for={id_}"):
+        Words(label)
+
+
+def submit_button(text: str, *, kind: str = "", address: str = "") -> None:
+    """Button that sends the form, to another ``address`` than the form's if it is given."""
+    further = f' formaction="{address}"' if address else ""
+    with ui.element("button").props(f"type=submit{further}").classes(f"act {kind}".strip()):
+        Words(text)

@@ -22,11 +22,11 @@ from ..replay.run_file import RUN_FILE, replay_of_file
 from ..report.race.folder import gaps_of_folders
 from ..ski import read_ski
 from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
-from .language import language_of_request
 from .layout import plain_page
+from .page_requests import add_upload, uploaded_files
 from .runs import JOB, Job
 from .subprocesses import BOUNDS, confined
-from .upload_forms import add_upload, uploaded_files
+from .words import language_of_request
 
 if TYPE_CHECKING:
     from fastapi import FastAPI

@@ -21,8 +21,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
-from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, template
-from .._support.outcomes import outcome_words
+from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, outcome_words, template
 from .._support.staging import write_file
 from .._support.user_files import GivenError, read_json, read_record
 from ..simulation.simulated_run import REMEDIES

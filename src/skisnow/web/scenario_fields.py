@@ -11,9 +11,8 @@ from nicegui import ui
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .elements import choice, field, named
-from .language import number_said, said
 from .layout import sentence
-from .words import reworded
+from .words import number_said, reworded, said
 
 if TYPE_CHECKING:
     from typing import TypeAlias

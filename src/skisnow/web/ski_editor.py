@@ -16,9 +16,8 @@ from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edite
 from ..ski.file_keys import COLUMNS
 from .elements import Words, button, field, named
 from .lab_skis import ski_of_texts
-from .language import number_said, said
 from .layout import heading, sentence
-from .words import typed_number
+from .words import number_said, said, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable

@@ -23,10 +23,10 @@ from .lab_skis import (
     measured_text,
     ski_of_uploads,
 )
-from .language import said
 from .layout import error_sentence, heading, sentence
+from .page_requests import add_upload, file_input, submit_button, text_input, upload_form, uploaded_files
 from .subprocesses import SKI_BOUNDS, confined
-from .upload_forms import add_upload, file_input, submit_button, text_input, upload_form, uploaded_files
+from .words import said
 
 if TYPE_CHECKING:
     from collections.abc import Callable

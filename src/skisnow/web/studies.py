@@ -17,10 +17,8 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
-from .._support.messages import ENGLISH, Message, in_language, joined
-from .._support.outcomes import outcome_words
-from .._support.processes.batch import available_cores
-from .._support.processes.executors import LOCAL
+from .._support.messages import ENGLISH, Message, in_language, joined, outcome_words
+from .._support.processes.batch import LOCAL, available_cores
 from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
 from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness

@@ -16,10 +16,9 @@ from .._support.messages import Message, template
 from .._support.user_files import natural_number
 from ..carving.question import CARVE_KEYS
 from .elements import choice, field, named
-from .language import number_said, said
 from .layout import sentence
 from .scenario_fields import called, with_point, written
-from .words import reworded, typed_number
+from .words import number_said, reworded, said, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -1,10 +1,12 @@
-"""Import of campaigns by a form, and export as zip files."""
+"""Import and export of campaigns: forms, waiting uploads with their templates, and zip files."""
 
 from __future__ import annotations
 
 import io
+import secrets
 import shutil
-from pathlib import Path
+from dataclasses import dataclass
+from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
@@ -15,21 +17,36 @@ from starlette.responses import Response
 
 from .._support.errors import ParameterError, StoreError
 from .._support.messages import Message
+from ..campaign.importing import (
+    RECORD,
+    TEMPLATES,
+    Answers,
+    Proposal,
+    parse_template,
+    propose,
+    read_template,
+    save_template,
+    saved_templates,
+    write_import,
+)
 from ..campaign.reading import READ_FILES, FilesInMemory
+from ..campaign.reading.campaign import campaign_of_files
+from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replay_journal
-from .file_imports import ENDINGS, FileImports
+from ..estimation.result_rows import first_hardness
 from .layout import error_sentence, plain_page
-from .page_addresses import required_id
+from .page_requests import add_upload, required_id, uploaded_files
 from .subprocesses import BOUNDS, confined
-from .upload_forms import add_upload, uploaded_files
 from .uploads import add_uploaded, files_below, write_zip
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
+    from typing import IO
 
     from fastapi import FastAPI
 
     from .settings import Lab
+
 
 IMPORT: Final = "/import"
 
@@ -120,3 +137,90 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     Writing: TypeAlias = Callable[[Path], None]
+
+
+FOLDER: Final = "imports"
+_SAVED: Final = "saved:"
+"""Before the name of a saved template, to distinguish it from ids of campaigns."""
+ENDINGS: Final = (".xlsx", ".xlsm", ".csv", ".txt", ".tsv")
+
+
+@dataclass(frozen=True, slots=True)
+class TriedImport:
+    """A proposal, with name and H_V (N/mm³) of one series once it is complete."""
+
+    proposal: Proposal
+    hardness: tuple[str, float] | None
+
+
+def try_import(name: str, data: bytes, answers: Answers) -> TriedImport:
+    """Propose an import, and compute H_V of one series."""
+    proposal = propose(name, data, answers)
+    return TriedImport(proposal, first_hardness(campaign_of_files(proposal.files)) if proposal.files else None)
+
+
+class FileImports:
+    """Uploads that wait for their import, each in a folder of the lab."""
+
+    def __init__(self, lab: Lab) -> None:
+        self._lab = lab
+        self._folder = lab.runs / FOLDER
+
+    def keep(self, name: str, content: IO[bytes]) -> str:
+        """Keep an uploaded file; returns its id."""
+        id_ = secrets.token_hex(6)
+        place = self._folder / id_
+        place.mkdir(parents=True)
+        with (place / "content").open("xb") as file:
+            shutil.copyfileobj(content, file)
+        (place / "name").write_text(PurePath(name.replace("\\", "/")).name, encoding="utf-8")
+        return id_
+
+    def name(self, id_: str) -> str:
+        """Name of an uploaded file.
+
+        Raises
+        ------
+        ParameterError
+            No such upload waits.
+        """
+        place = self._folder / required_id(id_) / "name"
+        if not place.is_file():
+            raise ParameterError("This upload was imported already. Choose the file again.", code="no_upload")
+        return place.read_text(encoding="utf-8")
+
+    def content(self, id_: str) -> tuple[str, bytes]:
+        """Name and bytes of an uploaded file; ParameterError as `name`."""
+        return self.name(id_), (self._folder / required_id(id_) / "content").read_bytes()
+
+    def store(self, id_: str, files: Mapping[str, bytes]) -> str:
+        """Store a campaign and forget its upload; returns the id of the campaign."""
+        with TemporaryDirectory(prefix="skisnow-import-") as name:
+            folder = Path(name) / PurePath(self.name(id_)).stem
+            write_import(files, folder)
+            added = self._lab.store.add(folder).id
+        shutil.rmtree(self._folder / required_id(id_))
+        return added
+
+    def templates(self) -> dict[str, str]:
+        """Saved templates, then the campaigns with a template, the newest first: names by choice."""
+        stored = reversed(self._lab.store.list())
+        campaigns = {
+            campaign.id: campaign.name for campaign in stored if any(file.path == RECORD for file in campaign.files)
+        }
+        return {f"{_SAVED}{name}": name for name in saved_templates(self._templates)} | campaigns
+
+    def save_template(self, name: str, files: Mapping[str, bytes]) -> None:
+        """Save the mapping of an import under a name; ParameterError for a name that cannot be used."""
+        save_template(name.strip(), files[CAMPAIGN_FILE], folder=self._templates)
+
+    @property
+    def _templates(self) -> Path:
+        return self._lab.runs.parent / TEMPLATES
+
+    def template(self, id_: str) -> Answers:
+        """Answers of a saved template or of an imported campaign."""
+        if id_.startswith(_SAVED):
+            return read_template(id_.removeprefix(_SAVED), named=self._templates)
+        stored, files = self._lab.store.contents(required_id(id_), {CAMPAIGN_FILE})
+        return parse_template(files[CAMPAIGN_FILE].decode(), stored.name)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from skisnow.campaign import check_campaign, read_campaign
-from skisnow.campaign.reading.synonyms import columns_by_synonym
+from skisnow.campaign.reading.headings import columns_by_synonym
 from skisnow.campaign.reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, TableForm
 from skisnow.cli import main
 

@@ -21,7 +21,7 @@ from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
 from skisnow.campaign.snow_pit import read_density_layers
 from skisnow.campaign.templates import workbook_bytes
-from skisnow.cli import import_file
+from skisnow.cli import campaign
 from skisnow.interop.caaml import write_caaml
 from tests.campaign.recordings import built
 from tests.interop.pits import full_pit
@@ -195,9 +195,9 @@ READERS = (
         name="two-sites.xlsx",
         target="two-sites.xlsx",
         files=lambda: {"two-sites.xlsx": (SAMPLES / "two-sites.xlsx").read_bytes()},
-        read=lambda folder: import_file._answered(Namespace(file=folder / "two-sites.xlsx"), Answers(), asks=False),
+        read=lambda folder: campaign._answered(Namespace(file=folder / "two-sites.xlsx"), Answers(), asks=False),
         mutations=archive(_member),
-        covers=("cli.import_file:_answered",),
+        covers=("cli.campaign:_answered",),
     ),
     Reader(
         name="[import]",

@@ -11,11 +11,9 @@ from typing import Any
 import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
-from skisnow._support.processes import chunk, crews, dask_cluster
-from skisnow._support.processes.batch import Pool, run_batch
-from skisnow._support.processes.chunk import Identity
-from skisnow._support.processes.crews import LOST
-from skisnow._support.processes.executors import require_executor
+from skisnow._support.processes import crews, dask_cluster
+from skisnow._support.processes.batch import Pool, require_executor, run_batch
+from skisnow._support.processes.crews import LOST, Identity
 from skisnow._support.processes.kept_rows import KeptRows, row_text
 from skisnow.identification import identify
 from tests.coded import Coded, coded, raises
@@ -95,9 +93,10 @@ def test_what_waits_is_taken_back_at_the_end() -> None:
 
 
 def test_a_worker_with_another_skisnow_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    here = chunk.own_identity()
+    here = crews.own_identity()
     for other in (Identity("0.0.9", here.core), Identity(here.version, "0123456789abcdef")):
-        monkeypatch.setattr(chunk, "own_identity", lambda other=other: other)
+        identities = iter((other,))  # of the caller; the worker's are those that are installed here
+        monkeypatch.setattr(crews, "own_identity", lambda identities=identities: next(identities, here))
         with raises(SkisnowError, "different_versions"):
             run_batch(POINTS, dict, executor=Here())
 

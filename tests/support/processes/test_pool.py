@@ -14,8 +14,7 @@ import pytest
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.messages import Message
 from skisnow._support.processes.batch import Pool, workers_in_force
-from skisnow._support.processes.chunk import compute_rows
-from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker
+from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker, compute_rows
 from skisnow._support.processes.kept_rows import NumberedText
 from tests.coded import raises
 
@@ -103,7 +102,7 @@ def test_a_chunk_tells_how_long_a_point_takes(
         clock[0] += seconds
         return {}
 
-    monkeypatch.setattr("skisnow._support.processes.chunk.time.perf_counter", lambda: clock[0])
+    monkeypatch.setattr("skisnow._support.processes.crews.time.perf_counter", lambda: clock[0])
     assert compute_rows(lasting, list(enumerate(points))).seconds_per_point == each
 
 

@@ -31,8 +31,8 @@ from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
 from skisnow.web.application import lab_application
-from skisnow.web.line_chart import LineChart
 from skisnow.web.settings import Lab
+from skisnow.web.widgets import LineChart
 from tests.coded import all_fields
 
 Answer = TypeVar("Answer")

@@ -15,8 +15,7 @@ from ..environment import load_certificate, needed
 from ..errors import ParameterError, SkisnowError, nearest
 from ..messages import Message, template
 from ..user_files import read_toml
-from .chunk import PointFunction
-from .crews import LOST, Crew, GivenCrew, lost_workers_message
+from .crews import LOST, Crew, GivenCrew, PointFunction, lost_workers_message
 
 BATCH_SYSTEMS: Final = {
     "slurm": "SLURMCluster",

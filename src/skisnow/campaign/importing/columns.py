@@ -11,8 +11,18 @@ from typing import TYPE_CHECKING, Final
 from ..._support.messages import Message
 from ..problems import error
 from ..reading.columns import iso_moment
-from ..reading.headings import conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
-from ..reading.synonyms import SYNONYMS, columns_by_synonym, letters, stated_column
+from ..reading.headings import (
+    SYNONYMS,
+    columns_by_synonym,
+    conversion,
+    known_unit,
+    letters,
+    named_unit,
+    own_unit,
+    stated_column,
+    unit_of_column,
+    units_for,
+)
 from .answers import NONE, Question, ask
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
 from ..problems import error
-from ..reading.synonyms import letters
+from ..reading.headings import letters
 from .answers import Question, ask, is_asked
 from .columns import number_columns
 from .sheets import column_letters

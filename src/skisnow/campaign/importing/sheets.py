@@ -12,8 +12,7 @@ from ..._support.errors import ParameterError
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
 from ..._support.user_files import workbook_sheets
 from ..._support.user_files.workbook import merged_ranges
-from ..reading.headings import FORMS, known_unit, unit_of_column
-from ..reading.synonyms import columns_by_synonym, stated_column
+from ..reading.headings import FORMS, columns_by_synonym, known_unit, stated_column, unit_of_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
 from ..reading.text import CsvText, UnreadableTextError, decode
 from ..reading.workbook_files import is_workbook

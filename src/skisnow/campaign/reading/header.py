@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 from ..._support.messages import Message, joined
 from ..problems import error, warning
-from .headings import conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
-from .synonyms import columns_by_synonym
+from .headings import columns_by_synonym, conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

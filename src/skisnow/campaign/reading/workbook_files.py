@@ -16,7 +16,7 @@ from ..._support.spreadsheet_text import is_number
 from ..._support.user_files import GivenError, toml_text, workbook_sheets
 from ..problems import error, warning
 from .campaign_file import CAMPAIGN_KEYS
-from .synonyms import columns_by_synonym
+from .headings import columns_by_synonym
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:

@@ -9,8 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ..._support.messages import Message
-from ..formatting import interval, p_equals, significant, whole
-from ..symbols import html, prose
+from ..formatting import html, interval, p_equals, prose, significant, whole
 from .data import numbers, pairs
 from .key_results import SIGNIFICANT
 from .series_tables import count_resolved_offsets

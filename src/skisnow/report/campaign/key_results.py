@@ -9,8 +9,7 @@ from markupsafe import Markup
 from ..._support.messages import Message, template
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
-from ..formatting import counted, interval, p_equals, significant, whole
-from ..symbols import html, prose
+from ..formatting import counted, html, interval, p_equals, prose, significant, whole
 from .model_tables import formula, model_name
 from .tables import QUANTITY
 

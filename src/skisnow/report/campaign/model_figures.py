@@ -23,8 +23,7 @@ from ..figures.style import (
     new_figure,
     thinned,
 )
-from ..formatting import significant, whole
-from ..symbols import html, prose
+from ..formatting import html, prose, significant, whole
 from .model_tables import formula
 
 if TYPE_CHECKING:

@@ -16,12 +16,11 @@ from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import prepare_folder, staged, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
-from ..citation import bibtex, cited_text
 from ..figures.drawing import Drawing
 from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
 from ..figures.style import site_styles
 from ..formatting import counted, days_words, moment_words, significant, whole
-from ..sheet import render_template
+from ..sheet import bibtex, cited_text, render_template
 from ..table import table_csv, table_html
 from ..table_latex import table_latex
 from .data import ReportData
@@ -36,9 +35,8 @@ from .findings import (
 from .key_results import headline, key_results
 from .model_figures import model_rmse, residuals
 from .penetration_figures import force_depth, hardness_density, hardness_mean_force, seating_offsets, unloading_ratios
-from .profile_figure import snow_profiles
 from .shear_figures import machining, shear_force_depth, stress_angle, stress_density, stress_hardness
-from .site_figure import sites
+from .site_figures import sites, snow_profiles
 from .tables import campaign_tables
 from .verdicts import verdicts
 

@@ -28,8 +28,7 @@ from ..figures.style import (
     scatter,
     spans_a_decade,
 )
-from ..formatting import p_equals, whole
-from ..symbols import prose
+from ..formatting import p_equals, prose, whole
 from .data import numbers, pairs, texts
 from .series_tables import count_resolved_offsets
 

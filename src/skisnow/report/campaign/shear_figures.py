@@ -16,8 +16,7 @@ from ...forces.cutting import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import BLACK, SitePlot, error_bars, logarithmic, masks, scatter, spans_a_decade
-from ..formatting import counted, interval, p_equals, significant
-from ..symbols import prose
+from ..formatting import counted, interval, p_equals, prose, significant
 from .data import numbers
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 
-from ..symbols import html
+from ..formatting import html
 from .style import thinning_sentence
 
 if TYPE_CHECKING:

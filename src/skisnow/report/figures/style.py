@@ -13,8 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import Formatter, LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 
 from ..._support.messages import Message, local_number
-from ..formatting import counted
-from ..symbols import figure_text
+from ..formatting import counted, figure_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -12,7 +12,7 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import Message, joined
 from ..figures.drawing import Drawing
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, PALE, SINGLE_MM, VERMILLION, legend_below, new_figure
-from ..symbols import figure_text, prose
+from ..formatting import figure_text, prose
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -10,17 +10,15 @@ from typing import TYPE_CHECKING, Any, Final
 from markupsafe import Markup
 
 from ..._support.errors import ParameterError
-from ..._support.messages import ENGLISH, Message, in_language, local_number
-from ..._support.outcomes import outcome_words
+from ..._support.messages import ENGLISH, Message, in_language, local_number, outcome_words
 from ..._support.staging import write_file
 from ...racing import write_line
 from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv, read_gate_gaps
 from ..figures.course import run_course
 from ..figures.drawing import FORMS
 from ..figures.figure_files import render_pictures, write_figure, write_pictures
-from ..formatting import aligned_rows, json_text
+from ..formatting import aligned_rows, html, json_text, prose
 from ..sheet import Header, Section, sheet
-from ..symbols import html, prose
 from ..table import Column, Table
 from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines, race_worth
 

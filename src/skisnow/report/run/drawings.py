@@ -14,8 +14,7 @@ from ...parameters import nearest
 from ..figures.course import run_course
 from ..figures.drawing import Drawing
 from ..figures.style import journal_style
-from ..formatting import significant
-from ..symbols import prose
+from ..formatting import prose, significant
 from .time_figures import (
     run_along_ski,
     run_balance,

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..._support.messages import ENGLISH, Message, in_language, local_number, template
-from ..._support.outcomes import outcome_words
+from ..._support.messages import ENGLISH, Message, in_language, local_number, outcome_words, template
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
@@ -19,9 +18,8 @@ from ...simulation.run_summary import run_gates, run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
 from ..figures.figure_files import silent, write_pictures
-from ..formatting import counted, significant, whole
+from ..formatting import counted, html, prose, significant, whole
 from ..sheet import Header, Section, sheet
-from ..symbols import html, prose
 from .drawings import run_drawings
 from .file import write_run_file
 from .tables import energies_table, gates_table, scenario_table, skis_table, verification_table

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.messages import Message
-from ..._support.outcomes import outcome_words
+from ..._support.messages import Message, outcome_words
 from ...scenario.keys import SCENARIO_KEYS
 from ...simulation.run import OPEN_SHARE
 from ...track.course.gates_table import COLUMNS, gate_rows

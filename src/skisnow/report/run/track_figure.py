@@ -13,8 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import median_filter
 
 from ..._support.arrays import FloatArray
-from ..._support.messages import Message
-from ..._support.outcomes import outcome_words
+from ..._support.messages import Message, outcome_words
 from ..._support.units import MM
 from ...scenario import Plane
 from ..figures.style import BLACK, BLUE, DOUBLE_MM, GREY, VERMILLION, legend_below, new_figure

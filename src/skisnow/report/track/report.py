@@ -29,12 +29,10 @@ from ..figures.style import (
     new_figure,
     plain_number,
 )
-from ..formatting import json_text, significant
+from ..formatting import figure_text, json_text, prose, significant
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
-from ..symbols import figure_text, prose
-from .exports import GPX_FILE, POINTS_FILE, TURNS_FILE, points_csv, track_gpx, turns_csv
 from .figures import coloured_map, track_along, track_map
-from .summary import TITLES
+from .summary import GPX_FILE, POINTS_FILE, TITLES, TURNS_FILE, points_csv, track_gpx, turns_csv
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

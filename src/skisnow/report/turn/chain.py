@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..._support.display import Facts, Shown, amount
-from ..._support.messages import ENGLISH
-from ..._support.outcomes import outcome_words
+from ..._support.messages import ENGLISH, outcome_words
 
 if TYPE_CHECKING:
     from ...estimation import Analysis

@@ -17,8 +17,8 @@ from ...comparison.distances import arc_lengths
 from ...comparison.nearest_place import distance_from_path
 from ...scenario import Plane
 from ..figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, PALE, SKY, VERMILLION, legend_below, new_figure
+from ..formatting import figure_text
 from ..run.track_figure import plan_axes, plan_height_mm, track_limits
-from ..symbols import figure_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -12,18 +12,16 @@ import numpy as np
 from markupsafe import Markup
 
 from ..._support.errors import ParameterError, require_language
-from ..._support.messages import ENGLISH, Message, in_language
-from ..._support.outcomes import outcome_words
+from ..._support.messages import ENGLISH, Message, in_language, outcome_words
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
 from ..figures.drawing import Drawing
 from ..figures.figure_files import write_pictures
-from ..formatting import counted, json_text, significant
+from ..formatting import counted, html, json_text, prose, significant
 from ..run.tables import scenario_table
 from ..run.time_figures import run_along_ski, run_grip
 from ..sheet import Header, Section, sheet
-from ..symbols import html, prose
 from ..table import Column, Table
 from .figures import FEWEST, draw_runs, track_band
 from .numbers import (

@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from markupsafe import Markup
 
-from ..._support.messages import Message, template
-from ..._support.outcomes import outcome_words
+from ..._support.messages import Message, outcome_words, template
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
-from ..formatting import counted, interval, significant
-from ..symbols import html, prose
+from ..formatting import counted, html, interval, prose, significant
 from .numbers import (
     BandShares,
     afterbody_depth_ratio,

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from .course import Course, Discipline, Gate, course_names
-from .course_file import on_slope, read_course
+from .course_file import course_warnings, on_slope, read_course
 from .passages import CourseResult, MovingPoint, Passage, passages
-from .rules import course_warnings
 
 __all__ = [
     "Course",

@@ -11,9 +11,8 @@ from ...campaign.reading.columns import is_unloading_cell
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store.stored_tables import cell_of
 from ..elements import Words, button, field
-from ..language import minute_words, number_said, said
 from ..page_requests import asking_button, form
-from ..words import label
+from ..words import label, minute_words, number_said, said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -14,9 +14,8 @@ from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store import NewEntry
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
 from ..elements import Words
-from ..language import number_said, said
 from ..page_requests import LONGEST
-from ..words import in_words, label, load_words
+from ..words import in_words, label, load_words, number_said, said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

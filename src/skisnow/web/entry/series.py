@@ -10,11 +10,9 @@ from nicegui import ui
 from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
 from ..elements import Words, button, choice, field, named
-from ..language import number_said
 from ..layout import heading, sentence
-from ..page_addresses import entering
-from ..page_requests import answering, asking_button, current_request, form
-from ..words import label
+from ..page_requests import answering, asking_button, current_request, entering, form
+from ..words import label, number_said
 from .changes import changes, focus_button
 from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
 from .series_corrections import AfterWaiting, SeriesCorrections

@@ -9,9 +9,8 @@ from nicegui import ui
 from ..._support.messages import Message, template
 from ..elements import Words, field, named
 from ..entry.readings import STORED
-from ..language import number_said
 from ..page_requests import asking_button, form
-from ..words import label
+from ..words import label, number_said
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
 from .readings import CHANGED, add_load, checked_fields, faults, is_other, refuse, show_state, stored_depth
 

@@ -9,11 +9,9 @@ from nicegui import ui
 from ..._support.messages import Message, joined
 from ...campaign.reading.experiments import TURNING
 from ..elements import Words, choice, field, named
-from ..language import number_said
 from ..layout import heading, sentence
-from ..page_addresses import entering
-from ..page_requests import asking_button, form
-from ..words import label
+from ..page_requests import asking_button, entering, form
+from ..words import label, number_said
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
 

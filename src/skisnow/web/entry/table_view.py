@@ -17,12 +17,21 @@ from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.stored_tables import FORMS
 from ...report.formatting import significant
 from ..elements import StatusLine, Words, choice, field, link, named
-from ..language import minute_words, number_said, said
 from ..layout import error_sentence, heading
-from ..line_chart import BEHIND, ChartLine, LineChart
-from ..page_addresses import entering
-from ..page_requests import current_request
-from ..words import TABLES, displacement_words, hardness_words, in_words, label, stress_words, unloading_words
+from ..page_requests import current_request, entering
+from ..widgets import BEHIND, ChartLine, LineChart
+from ..words import (
+    TABLES,
+    displacement_words,
+    hardness_words,
+    in_words,
+    label,
+    minute_words,
+    number_said,
+    said,
+    stress_words,
+    unloading_words,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -14,18 +14,17 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from ..._support.messages import Message
-from ..analysis_cache import AnalysisCache
 from ..analysis_view import AnalysisView, OpenAnalysis
-from ..campaign_analysis import load_drawing, write_whole_report
+from ..campaign_analysis import AnalysisCache, load_drawing, write_whole_report
 from ..elements import link
-from ..language import language_of_request
 from ..layout import framed, plain_page
-from ..page_addresses import entering, export, required_id
+from ..page_requests import entering, export, required_id
 from ..subprocesses import Worker
 from ..uploads import files_below, write_zip
+from ..words import language_of_request
 
 if TYPE_CHECKING:
-    from ..analysis_cache import CampaignSource
+    from ..campaign_analysis import CampaignSource
     from ..settings import Lab
 
 HERE: Final = "/"

@@ -20,12 +20,11 @@ from ...replay.page import STYLE, page_words
 from ...report.formatting import counted
 from ..edit_session import EditSession
 from ..elements import Words, button, link, named
-from ..language import language_of, minute_words
 from ..layout import framed, heading, sentence
-from ..page_addresses import analysis, correcting, entering, export
+from ..page_requests import analysis, correcting, entering, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..transfer import IMPORT
-from ..upload_forms import file_input, submit_button, upload_form
+from ..words import language_of, minute_words
 
 if TYPE_CHECKING:
     from ...campaign.store import StoredCampaign

@@ -14,11 +14,10 @@ from ..elements import Words, choice, field, link
 from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import table_links, table_view
-from ..language import number_said
 from ..layout import framed, heading, sentence
-from ..page_addresses import analysis, correcting, export, required_id
-from ..page_requests import asking_button, form
+from ..page_requests import analysis, asking_button, correcting, export, form, required_id
 from ..settings import BUILD_S
+from ..words import number_said
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -16,11 +16,9 @@ from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import Description, description_text
 from ..edit_session import EditSession
 from ..elements import StatusLine, choice, field
-from ..language import language_of, number_said, said
 from ..layout import framed, heading, sentence
-from ..page_addresses import entering, required_id
-from ..page_requests import asking_button, current_request, form, go_on, row_button
-from ..words import typed_number
+from ..page_requests import asking_button, current_request, entering, form, go_on, required_id, row_button
+from ..words import language_of, number_said, said, typed_number
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments

@@ -15,7 +15,7 @@ from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
 from ..entry.table_view import SeriesList, table_links, table_view
 from ..layout import framed
-from ..page_addresses import analysis, entering, required_id
+from ..page_requests import analysis, entering, required_id
 from ..words import TABLES
 
 if TYPE_CHECKING:

@@ -14,12 +14,11 @@ from ...campaign.importing import Answers
 from ...campaign.importing.columns import FROM_NOTES
 from ...campaign.reading.headings import units_for
 from ..elements import Words, button, choice, field, named
-from ..file_imports import FileImports, TriedImport, try_import
-from ..language import said
 from ..layout import error_sentence, framed, heading, sentence
 from ..settings import BUILD_S
 from ..subprocesses import BOUNDS, confined
-from ..words import TABLES, label
+from ..transfer import FileImports, TriedImport, try_import
+from ..words import TABLES, label, said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

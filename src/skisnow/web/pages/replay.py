@@ -11,8 +11,8 @@ from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
 from ..elements import Words, link, named
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
-from ..language import said
 from ..layout import framed, heading, sentence
+from ..page_requests import file_input, submit_button, text_input, upload_form
 from ..replay_addresses import (
     GATES,
     LIST,
@@ -24,7 +24,7 @@ from ..replay_addresses import (
     show_address,
 )
 from ..runs import FinishedRun
-from ..upload_forms import file_input, submit_button, text_input, upload_form
+from ..words import said
 
 if TYPE_CHECKING:
     from pathlib import Path

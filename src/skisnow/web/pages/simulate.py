@@ -13,26 +13,25 @@ from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, joined
 from ...replay.run_file import RUN_FILE
 from ..elements import Words, button, choice, field, link, named
-from ..job_list import JobList
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
-from ..language import language_of, number_said
 from ..layout import error_sentence, framed, heading, sentence
-from ..page_requests import redrawn_by
+from ..page_requests import add_upload, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
 from ..runs import STATES, Job, Runs, duration_words, estimated_s, progress_words
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice, require_scenario, results_and_snow_words, snow_words
-from ..upload_forms import add_upload, file_input, submit_button, upload_form, uploaded_files
+from ..widgets import JobList
+from ..words import language_of, number_said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from starlette.datastructures import FormData
 
-    from ..job_list import Act
     from ..settings import Lab
     from ..snow_choice import ChosenSnow
+    from ..widgets import Act
 
 PATH: Final = "/simulate"
 TITLE: Final = Message("Simulate")

@@ -12,14 +12,14 @@ from ..._support.messages import Message
 from ...report.charts import SkiDrawing, ski_drawing
 from ..elements import Words, button, choice, field, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
-from ..language import said
 from ..layout import error_sentence, framed, heading, sentence
-from ..line_chart import STYLES, ChartLine, LineChart
-from ..page_addresses import carving
+from ..page_requests import carving
 from ..settings import BUILD_S
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, edit_ski_texts
 from ..ski_uploads import SkiImportForms
 from ..subprocesses import SKI_BOUNDS, confined
+from ..widgets import STYLES, ChartLine, LineChart
+from ..words import said
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -13,9 +13,7 @@ from ...report.campaign.page import RESULTS
 from ..carved_turn import OF_SNOW as CARVE_SNOW
 from ..carved_turn import SLIDERS
 from ..elements import Words, button, choice, link, named, option_texts
-from ..job_list import JobList
 from ..lab_skis import FILE, TABLE, LabSkis
-from ..language import language_of, said
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
 from ..runs import STATES, Runs, progress_words
@@ -23,15 +21,16 @@ from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
 from ..studies import Studies, StudyJob, estimate_words, unit_s
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
-from ..words import typed_number
+from ..widgets import JobList
+from ..words import language_of, said, typed_number
 from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, with_given
 from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address
 
 if TYPE_CHECKING:
     from ...parameters import InputValue
-    from ..job_list import Act
     from ..settings import Lab
+    from ..widgets import Act
 
 PATH: Final = "/study"
 TITLE: Final = Message("Study")

@@ -12,17 +12,16 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from ..._support.errors import ParameterError
-from ..._support.messages import ENGLISH, Message
-from ..._support.outcomes import outcome_words
+from ..._support.messages import ENGLISH, Message, outcome_words
 from ...report.formatting import significant
 from ..elements import Words, choice, link, named
-from ..language import language_of, number_said, said
 from ..layout import error_sentence, framed, heading, plain_page, sentence
-from ..line_chart import BEHIND, ChartLine, LineChart
 from ..scenario_fields import called, written
 from ..studies import FIGURE, Studies
 from ..study_fields import CARVE, STUDY, TABLE, study_keys
 from ..uploads import write_zip
+from ..widgets import BEHIND, ChartLine, LineChart
+from ..words import language_of, number_said, said
 
 if TYPE_CHECKING:
     from ...studies import Study, StudyTable

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from skisnow.web import analysis_cache as analyses_module
+from skisnow.web import campaign_analysis as analyses_module
 from skisnow.web.campaign_analysis import FigureImage
 from skisnow.web.pages import analysis as page_module
 from skisnow.web.subprocesses import Worker

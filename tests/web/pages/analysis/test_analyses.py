@@ -11,10 +11,9 @@ import pytest
 from skisnow._support.errors import StoreError
 from skisnow.campaign.reading import FilesInMemory
 from skisnow.campaign.store import Journals
-from skisnow.web import analysis_cache as analyses_module
-from skisnow.web.analysis_cache import AnalysisCache, CampaignSource
+from skisnow.web import campaign_analysis as analyses_module
 from skisnow.web.analysis_view import AnalysisView, OpenAnalysis
-from skisnow.web.campaign_analysis import Choice, Numbers, Refusal, analyse_files
+from skisnow.web.campaign_analysis import AnalysisCache, CampaignSource, Choice, Numbers, Refusal, analyse_files
 from skisnow.web.subprocesses import Worker
 from tests.coded import raises
 
@@ -111,7 +110,7 @@ def test_a_lab_that_is_about_to_end_says_so(desk: Desk, tmp_path: Path, monkeypa
     async def nothing(*_: Any) -> None:
         return None
 
-    monkeypatch.setattr("skisnow.web.analysis_cache.run.io_bound", nothing)
+    monkeypatch.setattr("skisnow.web.campaign_analysis.run.io_bound", nothing)
     assert isinstance(desk.wait(subject.analysed(Choice())), Refusal)
     with raises(StoreError, "lab_ends"):
         desk.wait(analyses.subject("kept", id_))

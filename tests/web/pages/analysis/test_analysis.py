@@ -19,7 +19,7 @@ from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
 from skisnow.report.campaign.verdicts import verdicts
-from skisnow.web import analysis_cache as analyses_module
+from skisnow.web import campaign_analysis as analyses_module
 from skisnow.web.campaign_analysis import analyse_files
 from skisnow.web.pages import analysis as page_module
 

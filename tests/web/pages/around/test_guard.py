@@ -17,7 +17,7 @@ from starlette.requests import Request
 
 from skisnow._support.errors import FieldDataError, OutputError, ParameterError, StoreError
 from skisnow.web import layout
-from skisnow.web.analysis_cache import AnalysisCache
+from skisnow.web.campaign_analysis import AnalysisCache
 from skisnow.web.guard import CONTENT_POLICY, COOKIE, Access, Guard
 from skisnow.web.layout import _error_answer, _notify, error_sentence, log_error, log_to, plain_page
 

@@ -15,8 +15,8 @@ from skisnow.report.charts import SeriesCurve
 from skisnow.web import page_requests as answering
 from skisnow.web.edit_session import EditSession, QuickResults
 from skisnow.web.entry.table_view import LiveResults
-from skisnow.web.line_chart import BEHIND
 from skisnow.web.page_requests import PageRequest
+from skisnow.web.widgets import BEHIND
 
 from .shared import (
     DENSITY,

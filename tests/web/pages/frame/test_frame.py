@@ -14,13 +14,8 @@ from starlette.requests import Request
 
 from skisnow._support.messages import Message
 from skisnow.web.elements import FIRST, TypedField, button, field
-from skisnow.web.language import (
-    language_asked,
-    language_of_request,
-    minute_words,
-)
-from skisnow.web.line_chart import STYLES, ChartLine, LineChart
-from skisnow.web.page_addresses import plain_stem
+from skisnow.web.page_requests import plain_stem
+from skisnow.web.widgets import STYLES, ChartLine, LineChart
 from skisnow.web.words import (
     LABELS,
     TABLES,
@@ -29,6 +24,9 @@ from skisnow.web.words import (
     hardness_words,
     in_words,
     label,
+    language_asked,
+    language_of_request,
+    minute_words,
     stress_words,
     unloading_words,
 )
@@ -131,7 +129,7 @@ def test_a_chart_tells_its_extent_and_its_names(desk: Desk, monkeypatch: pytest.
             shortened.append(values)
         return list(values)
 
-    monkeypatch.setattr("skisnow.web.line_chart._short", short)
+    monkeypatch.setattr("skisnow.web.widgets._short", short)
     desk.do(lambda: chart.show(own))
     again = chart.props["panel"]["lines"]
     assert shortened == [[0.0], [0.0]]  # earlier values are not rounded again

@@ -16,9 +16,9 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow.web import job_list
 from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
+from skisnow.web import widgets
 from skisnow.web.runs import Job, Runs, duration_words, estimated_s, new_name, simulated_s, slowness
 from skisnow.web.studies import Studies, StudyJob, measured_slowness, unit_s
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
@@ -426,7 +426,7 @@ def test_of_studies_the_last_five_of_a_kind_tell_how_long_they_take() -> None:
 
 def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     timers = list[Any]()
-    monkeypatch.setattr(f"{job_list.__name__}.ui.timer", lambda *what: timers.append(what))
+    monkeypatch.setattr(f"{widgets.__name__}.ui.timer", lambda *what: timers.append(what))
     studies = Studies(desk.lab.runs)
     first = studies.ask_for(TURNS)
     page = desk.open("/study")
@@ -453,7 +453,7 @@ def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypat
 
 
 def test_what_the_queue_refuses_is_told(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(f"{job_list.__name__}.ui.timer", lambda *_: None)
+    monkeypatch.setattr(f"{widgets.__name__}.ui.timer", lambda *_: None)
     studies = Studies(desk.lab.runs)
     job = studies.ask_for(TURNS)
     page = desk.open("/study")

@@ -14,7 +14,7 @@ from nicegui import ui
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
-from skisnow.web.page_addresses import carving
+from skisnow.web.page_requests import carving
 from skisnow.web.subprocesses import SKI_BOUNDS
 
 from .shared import (

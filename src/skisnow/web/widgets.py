@@ -1,4 +1,4 @@
-"""Chart of lines that follows a slider, drawn as SVG by a small script in the browser.
+"""Parts of pages that are updated in place: charts of lines, and lists of jobs.
 
 A large chart library takes half a second to load and 20 ms for each change of a chart on a laptop.
 """
@@ -7,17 +7,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
 
+from nicegui import ui
 from nicegui.element import Element
 
+from .._support.errors import ParameterError
 from .._support.messages import Message, decimal_sign
 from ..report.formatting import significant
 from .elements import button
-from .language import language_of, said
+from .layout import error_sentence, heading, sentence
+from .words import language_of, said
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from typing import TypeAlias
+
+    from .runs import Runs
+
+    Act: TypeAlias = Callable[[Callable[[str], None], str], None]
+    """Function that calls a function of the queue with a job's name, and shows its errors."""
 
 DIGITS: Final = 5
 STYLES: Final = (
@@ -134,3 +143,60 @@ def _short(values: Sequence[float | None]) -> list[float | None]:
         return [None if value is None or not math.isfinite(value) else value for value in values]
     digits = DIGITS - 1 - math.floor(math.log10(max(sizes)))
     return [None if value is None or not math.isfinite(value) else round(value, digits) for value in values]
+
+
+EVERY_S: Final = 1.0
+
+
+class JobCard(Protocol):
+    """Card of a job with its buttons."""
+
+    place: ui.element
+
+    def show(self, job: Any) -> None:
+        """Show the state of the job."""
+        ...
+
+
+class JobList:
+    """Cards of all jobs, the newest first, updated every second.
+
+    Parameters
+    ----------
+    runs
+        The queue.
+    card
+        Factory of the card of a job, from the queue, the job and an `Act`.
+    nothing
+        Sentence without a job.
+    """
+
+    def __init__(self, runs: Any, card: Callable[[Any, Any, Act], JobCard], nothing: str) -> None:
+        self._runs: Runs = runs
+        self._card = card
+        self._cards: dict[str, JobCard] = {}
+        heading(Message("Queue and history"))
+        self._nothing = sentence(nothing, "quiet")
+        self._place = ui.element("div")
+        self.show()
+        ui.timer(EVERY_S, self.show)
+
+    def show(self) -> None:
+        """Update the cards."""
+        jobs = self._runs.jobs()
+        self._nothing.set_visibility(not jobs)
+        for name in self._cards.keys() - {job.name for job in jobs}:
+            self._cards.pop(name).place.delete()
+        for index, job in enumerate(jobs):
+            if job.name not in self._cards:
+                with self._place:
+                    self._cards[job.name] = card = self._card(self._runs, job, self._act)
+                card.place.move(target_index=index)
+            self._cards[job.name].show(job)
+
+    def _act(self, act: Callable[[str], None], name: str) -> None:
+        try:
+            act(name)
+        except ParameterError as error:
+            ui.notify(said(error_sentence(error)))
+        self.show()

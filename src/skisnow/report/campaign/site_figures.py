@@ -1,0 +1,137 @@
+"""Figures of the sites beside each other, and of SnowMicroPen profiles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib.lines import Line2D
+
+from ..._support.messages import Message
+from ..._support.units import MM
+from ...estimation.snow_micro_pen import depth_profile
+from ..figures.drawing import Drawing, LeftOut
+from ..figures.style import BLUE, COLOURS, GREY, legend_below, logarithmic, mark_synthetic, new_figure, spans_a_decade
+from ..formatting import figure_text, prose
+from .data import numbers, pairs
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+    from ..._support.arrays import FloatArray
+    from ...estimation.snow_micro_pen import DepthProfile
+    from ..figures.style import SiteStyle
+    from .data import Json, ReportData, TextArray
+
+MOST_SITES: Final = 40
+_ROW_MM: Final = 4.6
+_MARGIN_MM: Final = 22.0
+_GOLDEN_SHARE: Final = 0.618034
+"""Its multiples spread points evenly across a row without a random number."""
+_SITES: Final = (
+    ("H_V_N_per_mm3", Message("snow hardness $H_\\mathrm{{V}}$ (N/mm³)")),
+    ("S_f_N_per_mm2", Message("failure shear stress $S_\\mathrm{{f}}$ (N/mm²)")),
+)
+
+
+def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Mean of each site with its 95 % interval and its letters, above the single experiments."""
+    name = "sites"
+    rows = {key: [row for row in data.results["site_means"] if row["quantity"] == key] for key, _ in _SITES}
+    panels = [(key, label) for key, label in _SITES if len(rows[key]) > 1 and numbers(rows[key], "mean").min() > 0]
+    if not panels:
+        return LeftOut(name, Message("Sites compared"), Message("no two sites have used experiments of one kind"))
+    if max(len(rows[key]) for key, _ in panels) > MOST_SITES:
+        return LeftOut(name, Message("Sites compared"), Message("there are more than {most} sites", most=MOST_SITES))
+    most = max(len(rows[key]) for key, _ in panels)
+    figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + _ROW_MM * most)
+    for place, (key, label) in enumerate(panels, start=1):
+        axes = figure.add_subplot(1, len(panels), place)
+        single = (data.hardness, data.penetration_site) if key == _SITES[0][0] else (data.stress, data.shear_site)
+        _panel(axes, rows[key], *single)
+        axes.set_xlabel(label)
+    mark_synthetic(data, axes)
+    caption = prose(
+        "Sites compared: mean (of H_V: geometric) with its 95 % interval, and the single experiments. Sites that share "
+        "a letter are not shown to differ (5 %, Holm’s correction for the number of pairs)."
+    )
+    alt = Message("Mean of each site with its interval, in the order of the means, with letters of groups.")
+    points = len(data.hardness) + len(data.stress)
+    return Drawing(name, caption, alt, figure, wide=len(panels) > 1, points=points)
+
+
+def _panel(axes: Axes, rows: list[Json], values: FloatArray, site: TextArray) -> None:
+    rows = sorted(rows, key=lambda row: row["mean"])
+    for place, row in enumerate(rows):
+        mine = values[(site == row["site"]) & (values > 0)]
+        spread = 0.4 * (np.arange(len(mine)) * _GOLDEN_SHARE % 1.0) - 0.2
+        axes.plot(mine, place + spread, ".", color=GREY, markersize=2.0, alpha=0.6, zorder=1)
+    places = np.arange(len(rows))
+    ends = pairs(rows, "interval")
+    axes.hlines(places, ends[:, 0], ends[:, 1], color=BLUE, linewidth=1.6, zorder=2)
+    axes.plot(numbers(rows, "mean"), places, "o", color=BLUE, markersize=4.0, zorder=3)
+    axes.set_yticks(places, [figure_text(row["site"]) for row in rows])
+    axes.set_ylim(-0.6, len(rows) - 0.4)
+    everything = np.concatenate((values[values > 0], ends[np.isfinite(ends)]))
+    if spans_a_decade(everything):
+        logarithmic(axes, "x", everything)
+    else:
+        axes.set_xlim(0.0, float(everything.max()) * 1.06)
+    for y, row in zip(places.tolist(), rows, strict=True):
+        axes.annotate(
+            row["letters"], (1.01, y), xycoords=("axes fraction", "data"), va="center", ha="left", annotation_clip=False
+        )
+
+
+MOST_DRAWN: Final = 24
+"""Recordings that stay legible in one figure; the first ones are drawn."""
+_PANELS: Final = (
+    ("force", Message("force (N)")),
+    ("snow_density", Message("density (kg/m³)")),
+    ("specific_surface_area", Message("specific surface area (m²/kg)")),
+)
+
+
+def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
+    """Force, density and surface area of each used recording against the depth below the snow surface."""
+    name, pen = "snow_profiles", data.analysis.snow_micro_pen
+    usable = [] if pen is None else [i for i, each in enumerate(pen.evaluated) if each.is_used]
+    if pen is None or not usable:
+        return LeftOut(name, "Profiles of the SnowMicroPen", Message("no recording is used"))
+    recordings, drawn = pen.recordings, usable[:MOST_DRAWN]
+    sites = sorted({recordings.site[index] for index in drawn})
+    colours = {site: COLOURS[place % len(COLOURS)] for place, site in enumerate(sites)}
+    found = [
+        (colours[recordings.site[index]],
+         depth_profile(recordings.profile(index), recordings.settings, pen.evaluated[index].surface))
+        for index in drawn
+    ]  # fmt: skip
+    panels = [(key, label) for key, label in _PANELS if any(np.isfinite(getattr(each, key)).any() for _, each in found)]
+    figure = new_figure(width_mm=60.0 * len(panels), height_mm=100.0)
+    every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    for axes, (key, label) in zip(every, panels, strict=True):
+        for colour, profile in found:
+            axes.plot(_shown(profile, key), profile.depth / MM, color=colour, linewidth=0.6, alpha=0.8)
+        axes.set_xlabel(label)
+    forces = np.concatenate([each.force for _, each in found])
+    if spans_a_decade(forces):
+        logarithmic(every[0], "x", forces)
+    every[0].set_ylabel(Message("depth below the snow surface (mm)"))
+    every[0].set_ylim(max(float(each.depth.max()) for _, each in found) / MM, 0.0)
+    legend_below(figure, [Line2D([], [], color=colours[site], label=figure_text(site)) for site in sites])
+    mark_synthetic(data, every[-1])
+    caption = prose(
+        "SnowMicroPen: force, density and specific surface area over the depth below the snow surface, by site, in "
+        "overlapping windows. Density and surface area by {relation}, which was fitted to ungroomed snow.",
+        relation=recordings.settings.relation,
+    )
+    alt = Message("Force, density and specific surface area against depth, one line for each recording.")
+    return Drawing(name, caption, alt, figure, wide=len(panels) > 1)
+
+
+def _shown(profile: DepthProfile, key: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Values of a panel; a force in the noise of the air has no place on a logarithmic axis."""
+    values = getattr(profile, key)
+    return np.where(values > 0.0, values, np.nan)
