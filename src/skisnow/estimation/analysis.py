@@ -259,8 +259,9 @@ def analyse(
 
     See Also
     --------
-    skisnow.read_campaign : the campaign to analyse. skisnow.write_report : the result as a page. skisnow.Analysis.snow
-    : the snow of a site for a turn.
+    skisnow.read_campaign : the campaign to analyse.
+    skisnow.write_report : the result as a page.
+    skisnow.Analysis.snow : the snow of a site for a turn.
 
     References
     ----------

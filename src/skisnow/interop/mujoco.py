@@ -202,8 +202,8 @@ class SnowForces:
     Notes
     -----
     Explicit: the force at the beginning of a step acts over the whole step, and MuJoCo's Euler method applies it to the
-    new velocity at once. docs/how-to/fmu.md gives the largest step. Other models of the process are not affected. A
-    reset of the time restores the snow to the state at construction.
+    new velocity at once. docs/how-to/other-programs.md gives the largest step. Other models of the process are not
+    affected. A reset of the time restores the snow to the state at construction.
     """
 
     def __init__(self, model: Any, contact: SnowContact, sites: Sequence[str]) -> None:

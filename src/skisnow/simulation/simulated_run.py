@@ -128,8 +128,9 @@ def simulate(
 
     See Also
     --------
-    skisnow.scenario : the parts of a run. skisnow.verify : accuracy of a run. skisnow.compare : the run next to a
-    measured track.
+    skisnow.scenario : the parts of a run.
+    skisnow.verify : accuracy of a run.
+    skisnow.compare : the run next to a measured track.
 
     Notes
     -----

@@ -53,7 +53,8 @@ def read_ski(name_or_path: str | Path) -> Ski:
 
     See Also
     --------
-    skisnow.ski_names : the skis of the catalogue. skisnow.carve : the ski in snow.
+    skisnow.ski_names : the skis of the catalogue.
+    skisnow.carve : the ski in snow.
 
     References
     ----------

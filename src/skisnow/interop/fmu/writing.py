@@ -24,7 +24,7 @@ DATA: Final = "skisnow.txt"
 FOLDERS: Final[dict[Version, str]] = {2: "linux64", 3: "x86_64-linux"}
 """Folder of the library within the FMU, by the version of the standard."""
 STEP: Final = {"contact": 2e-4, "sledge": 1e-2}
-"""Step (s) that the model description proposes (see the page docs/how-to/fmu.md)."""
+"""Step (s) that the model description proposes (see the page docs/how-to/other-programs.md)."""
 _DATE: Final = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip knows: the same FMU has the same bytes
 
 
@@ -56,7 +56,7 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
 
     References
     ----------
-    * The page docs/how-to/fmu.md.
+    * The page docs/how-to/other-programs.md.
     """
     _require(path, fmi)
     if skis not in (1, 2):
@@ -90,7 +90,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
 
     References
     ----------
-    * The page docs/how-to/fmu.md.
+    * The page docs/how-to/other-programs.md.
     """
     _require(path, fmi)
     return _write(sledge_model(scenario, step=STEP["sledge"]), Path(path), fmi)
