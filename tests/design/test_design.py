@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
 from pathlib import Path
@@ -14,8 +15,11 @@ import skisnow
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.design.evaluation import Evaluator
+from skisnow.design.front import design_front
 from skisnow.design.problem import Search
 from skisnow.design.task import design_task
+from skisnow.design.variables import designed_keys
+from skisnow.ski.ski_file import Sources, ski_of_keys
 from tests.coded import raises
 
 RACE: dict[str, Any] = {"H_V_N_per_mm3": 0.21, "S_f_N_per_mm2": 0.52, "unloading_ratio": 10, "load_N": 800}
@@ -152,3 +156,81 @@ target = 11.0
     assert skisnow.read_ski(tmp_path / "out" / "ski.toml").tip_width == pytest.approx(
         printed["keys"]["tip_width_mm"] / 1e3, rel=1e-9
     )
+
+
+def test_command_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = ['ski = "slalom"', "starts = 1", "variables = { sidecut_mm = [-8, 8] }"]
+    lines += ["[[conditions]]", *(f"{key} = {value}" for key, value in RACE.items()), "edge_angle_deg = [30, 60]"]
+    for number, wanted in ((1, 12.5), (2, 8.5)):
+        lines += ["[[goals]]", 'output = "turn_radius_boot_m"', f"target = {wanted}", f"conditions = [{number}]"]
+    (tmp_path / "two.toml").write_text("\n".join(lines), encoding="utf-8")
+    assert main(["design", str(tmp_path / "two.toml"), "--front", "2", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    rows = list(csv.DictReader((tmp_path / "front.csv").read_text(encoding="utf-8").splitlines()))
+    assert [float(row["sidecut_mm"]) for row in rows] == pytest.approx([row["values"]["sidecut_mm"] for row in printed])
+    assert float(rows[0]["second_percent"]) == pytest.approx(0.0, abs=1e-4) != float(rows[1]["second_percent"])
+
+
+def test_a_front_is_beaten_by_no_other_sidecut() -> None:
+    """With one variable all designs can be tried: 12.5 m at 30° against 8.5 m at 60°."""
+    targets = [{"output": "turn_radius_boot_m", "target": wanted, "conditions": [number]}
+               for number, wanted in ((1, 12.5), (2, 8.5))]  # fmt: skip
+    task = TWELVE | {
+        "variables": {"sidecut_mm": [-8, 8]},
+        "conditions": [{**RACE, "edge_angle_deg": [30, 60]}],
+        "goals": targets,
+    }
+    front = design_front(task, points=4)
+    assert len(front) == 4
+    evaluator = Evaluator(design_task(task))
+    tried = []
+    for share in np.linspace(0.0, 1.0, 41):
+        radii = [float(evaluator.goal_values(goal, np.array([share]))[0]) for goal in evaluator.task.goals]
+        tried.append([100.0 * abs(radius / wanted - 1.0) for radius, wanted in zip(radii, (12.5, 8.5), strict=True)])
+    for point in front:
+        beaten = [each for each in tried if each[0] < point.first_percent and each[1] < point.second_percent]
+        assert beaten == []
+        keys = designed_keys(evaluator.task.ski.keys or {}, evaluator.task.variables, list(point.values.values()))
+        radii = [skisnow.carve(ski_of_keys(keys), skisnow.SnowProperties(0.21e9, 0.52e6, source="test"),
+                               edge_angle=math.radians(angle), load=800.0, unloading_ratio=10.0).turn_radius_boot or 0.0
+                 for angle in (30.0, 60.0)]  # fmt: skip
+        assert [100.0 * abs(radii[0] / 12.5 - 1.0), 100.0 * abs(radii[1] / 8.5 - 1.0)] == pytest.approx(
+            [point.first_percent, point.second_percent], abs=1e-6
+        )
+    assert front[0].second_percent == pytest.approx(0.0, abs=1e-4)
+    assert front[-1].first_percent == pytest.approx(0.0, abs=1e-4)
+    assert np.diff([each.second_percent for each in front]) == pytest.approx(front[-1].second_percent / 3.0, rel=1e-3)
+    with raises(ParameterError, "out_of_range", targets=1):
+        design_front(TWELVE)
+
+
+def test_a_campaign_is_robust_over_its_intervals(tmp_path: Path) -> None:
+    """The worst deviation is at both ends of the interval of H_V, on either side of the target."""
+    snow = skisnow.SnowProperties(
+        0.21e9,
+        0.52e6,
+        source="test",
+        snow_hardness_interval=(0.05e9, 0.9e9),
+        failure_shear_stress_interval=(0.4e6, 0.6e6),
+    )
+    sources = Sources()
+    sources.take_snow(snow, results="results.json", site=None)
+    condition = {"results": "results.json", "unloading_ratio": 10, "load_N": 800, "edge_angle_deg": 45}
+    task = design_task(
+        TWELVE
+        | {
+            "variables": {"sidecut_mm": [-10, 10]},
+            "conditions": [{**condition, "intervals": True}],
+            "goals": [{"output": "turn_radius_boot_m", "target": 12.0, "over": "worst"}],
+        },
+        sources=sources,
+    )
+    assert [(each.H_V_N_per_mm3, each.S_f_N_per_mm2) for each in task.conditions[1:]] == [
+        pytest.approx(pair) for pair in ((0.05, 0.52), (0.9, 0.52), (0.21, 0.4), (0.21, 0.6))
+    ]
+    ski = skisnow.design_ski(task).write(tmp_path)[0]
+    radii = [carved(ski, hardness=each).turn_radius_boot or 0.0 for each in (0.05, 0.21, 0.9)]
+    assert radii[2] - 12.0 == pytest.approx(12.0 - radii[0], rel=1e-3)
+    assert radii[0] < radii[1] < radii[2]
+    with raises(ParameterError, "no_intervals"):
+        design_task(TWELVE | {"conditions": [{**RACE, "edge_angle_deg": 45, "intervals": True}]})

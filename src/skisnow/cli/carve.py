@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from .output import Progress, announced, list_fonts, print_json
 
 if TYPE_CHECKING:
     from ..carving.answer import CarveAnswer
-    from ..design import Design
+    from ..design import Design, DesignTask
 
 
 def add_carve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -175,6 +176,9 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--out", type=Path, metavar="FOLDER", help="folder for the files (default: that of DESIGN.toml)"
     )
+    parser.add_argument(
+        "--front", type=whole_number(2, 1000), metavar="N", help="front.csv instead: N designs between two targets"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
     parser.set_defaults(run=design_ski)
 
@@ -185,6 +189,8 @@ def design_ski(options: argparse.Namespace) -> int:
         from ..design import design_ski, read_design
 
         task = read_design(options.design)
+    if options.front is not None:
+        return _front(options, task)
     with Progress() as progress:
         design = design_ski(task, progress=lambda done, count: progress(f"{done} of {count} starts"))
     paths = design.write(options.out or options.design.parent)
@@ -194,6 +200,25 @@ def design_ski(options: argparse.Namespace) -> int:
         print(_summary(design))
         print("\n".join(f"written: {path}" for path in paths))
     return 0 if design.reached else 1
+
+
+def _front(options: argparse.Namespace, task: DesignTask) -> int:
+    """Write the Pareto front of two targets."""
+    from .._support.staging import write_file
+    from ..design import design_front
+
+    with announced("searching"):
+        front = design_front(task, points=options.front)
+    rows = [["first_percent", "second_percent", *front[0].values]]
+    rows += [[f"{n:.9g}" for n in (each.first_percent, each.second_percent, *each.values.values())] for each in front]
+    path = (options.out or options.design.parent) / "front.csv"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_file(path, "".join(f"{','.join(row)}\n" for row in rows))
+    if options.json:
+        print_json([asdict(each) for each in front])
+    else:
+        print(f"written: {path}")
+    return 0
 
 
 def _summary(design: Design) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .front import FrontPoint, design_front
 from .measured_ski import Measured, MeasuredSki, measured_ski
 from .result import Design, DesignRow
 from .search import design_ski
@@ -12,9 +13,11 @@ __all__ = [
     "Design",
     "DesignRow",
     "DesignTask",
+    "FrontPoint",
     "Mapped",
     "Measured",
     "MeasuredSki",
+    "design_front",
     "design_ski",
     "measured_ski",
     "read_design",

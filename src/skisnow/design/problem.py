@@ -12,7 +12,7 @@ from .evaluation import Evaluator
 from .variables import designed_keys, start_value
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from .task import Goal
 
@@ -29,11 +29,11 @@ _MOST_ITERATIONS: Final = 60
 class Search:
     """Objective and constraints of a task, in the variables from 0 to 1, and for worst-case goals one slack each."""
 
-    def __init__(self, evaluator: Evaluator) -> None:
+    def __init__(self, evaluator: Evaluator, goals: Sequence[Goal] | None = None) -> None:
         self.evaluator = evaluator
-        task = evaluator.task
-        self.targets = [goal for goal in task.goals if goal.target is not None]
-        self.limits = [goal for goal in task.goals if goal.target is None]
+        goals = evaluator.task.goals if goals is None else goals
+        self.targets = [goal for goal in goals if goal.target is not None]
+        self.limits = [goal for goal in goals if goal.target is None]
         self.worst = [goal for goal in self.targets if goal.over == "worst"]
 
     @property

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import SolverError
 from .evaluation import Evaluator
 from .problem import Search
@@ -56,14 +57,11 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     >>> design_ski({**task, "starts": 1}).reached
     True
     """
-    if not isinstance(task, DesignTask):
-        task = design_task(task) if isinstance(task, dict) else read_design(task)  # type: ignore[arg-type]
+    task = task_of(task)
     evaluator = Evaluator(task)
     search = Search(evaluator)
-    random = np.random.default_rng(task.seed)
-    begins = [evaluator.start, *random.uniform(0.0, 1.0, (task.starts - 1, search.count))]
     starts: list[Start] = []
-    for number, begin in enumerate(begins):
+    for number, begin in enumerate(begins_of(evaluator)):
         before = evaluator.equilibria
         try:
             z = search.run(begin)
@@ -80,3 +78,17 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
             count=task.starts,
         )
     return design_of(search, best.end, tuple(starts))
+
+
+def task_of(task: str | Path | Mapping[str, Any] | DesignTask) -> DesignTask:
+    """The checked task of a file, its contents, or a task."""
+    if isinstance(task, DesignTask):
+        return task
+    return design_task(task) if isinstance(task, Mapping) else read_design(task)
+
+
+def begins_of(evaluator: Evaluator) -> list[FloatArray]:
+    """Starts of a search: the ski itself, and random ones."""
+    task = evaluator.task
+    random = np.random.default_rng(task.seed)
+    return [evaluator.start, *random.uniform(0.0, 1.0, (task.starts - 1, len(task.variables)))]

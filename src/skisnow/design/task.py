@@ -5,13 +5,15 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.units import N_PER_MM2, N_PER_MM3
 from .._support.user_files import read_toml
+from ..carving.answer import asked_snow
 from ..carving.outputs import OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
 from ..parameters import Quantity, checked_table, made, nearest
@@ -23,6 +25,8 @@ from .variables import COMBINED, Variable, combined_names
 
 FEWEST_STARTS: Final = 8
 """Starts of the search: a worst case over contact with snow has several local optima."""
+INTERVALS: Final = "intervals"
+"""Key of a condition that also counts at the ends of its snow's intervals."""
 _LISTED: Final = ("edge_angle_deg", "load_N", "published")
 _WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest", *SKI_FACTORS)
 
@@ -122,7 +126,7 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
             "no_keys",
         )
     conditions = tuple(
-        itertools.chain.from_iterable(map(_conditions, values["conditions"], itertools.repeat(ski.name)))
+        itertools.chain.from_iterable(_conditions(table, ski.name, sources) for table in values["conditions"])
     )
     goals = tuple(_goal(n, table, len(conditions)) for n, table in enumerate(values["goals"], start=1))
     constraints = [_constraint(table) for table in values.get("constraints", ())]
@@ -198,18 +202,52 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _conditions(table: Mapping[str, Any], ski: str) -> list[CarveQuestion]:
+def _conditions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+    table = dict(table)
+    over_intervals = table.pop(INTERVALS, False)
+    if not isinstance(over_intervals, bool):
+        _refuse(Message("conditions: {name} is true or false.", name=INTERVALS), "wrong_kind")
     for name in table:
         if name not in CARVE_KEYS or name in _WITHOUT:
-            allowed = [key for key in CARVE_KEYS if key not in _WITHOUT]
+            allowed = [INTERVALS, *(key for key in CARVE_KEYS if key not in _WITHOUT)]
             _refuse(
                 Message("conditions: there is no {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
                 "unknown_name",
             )
     lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
-    return [
+    questions = [
         carve_question({**table, "ski": ski, **dict(zip(lists, combination, strict=True))})
         for combination in itertools.product(*lists.values())
+    ]
+    return (
+        [each for question in questions for each in _over_intervals(question, sources)] if over_intervals else questions
+    )
+
+
+def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQuestion]:
+    """The question, and those at the ends of the 95 % intervals of H_V and S_f, one after the other."""
+    snow = asked_snow(question, sources)
+    ends = [(end, snow.failure_shear_stress) for end in snow.snow_hardness_interval or ()]
+    ends += [(snow.snow_hardness, end) for end in snow.failure_shear_stress_interval or ()]
+    if not ends:
+        _refuse(
+            Message(
+                "conditions: the snow has no intervals. Give results of a campaign, or leave {name} out.",
+                name=INTERVALS,
+            ),
+            "no_intervals",
+        )
+    numbers = replace(question, published=None, results=None, site=None)
+    return [
+        question,
+        *(
+            replace(
+                numbers,
+                H_V_N_per_mm3=hardness / N_PER_MM3,
+                S_f_N_per_mm2=None if stress is None else stress / N_PER_MM2,
+            )
+            for hardness, stress in ends
+        ),
     ]
 
 

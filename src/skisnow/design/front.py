@@ -1,0 +1,110 @@
+"""Pareto front of two goals: the designs of which none comes nearer to one without going farther from the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._support.arrays import FloatArray
+from .._support.errors import ParameterError, SolverError
+from .evaluation import Evaluator
+from .problem import Search
+from .search import begins_of, task_of
+from .task import DesignTask, Goal
+
+
+@dataclass(frozen=True, slots=True)
+class FrontPoint:
+    """A design of the front: its largest relative deviations from both targets (%), and its variables."""
+
+    first_percent: float
+    second_percent: float
+    values: dict[str, float]
+
+
+def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: int = 9) -> tuple[FrontPoint, ...]:
+    """Pareto front of the two targets of a task; limits and constraints hold everywhere.
+
+    The second target may deviate by even steps, from the design for it alone to the design for the first alone; at
+    each step the design nearest to the first target is searched from the task's starts and from the design before.
+
+    Parameters
+    ----------
+    task
+        As of `skisnow.design_ski`, with exactly two goals that have a target.
+    points
+        Number of designs, 2 or more; fewer where both targets can be reached together.
+
+    Raises
+    ------
+    ParameterError
+        The task has another number of targets, or the number of points is below 2.
+    SolverError
+        No start led to a ski with an equilibrium.
+    """
+    task = task_of(task)
+    targets = [goal for goal in task.goals if goal.target is not None]
+    if len(targets) != 2 or points < 2:
+        raise ParameterError(
+            "a front needs two goals with a target and two points or more; there are {targets} and {points}.",
+            code="out_of_range",
+            targets=len(targets),
+            points=points,
+        )
+    first, second = targets
+    limits = [goal for goal in task.goals if goal.target is None]
+    evaluator = Evaluator(task)
+    begins = begins_of(evaluator)
+    ends = [_best(evaluator, [goal, *limits], begins) for goal in (first, second)]
+    low, high = (_deviation(evaluator, second, end) for end in reversed(ends))
+    found = [ends[1]]
+    for allowed in np.linspace(low, high, points)[1:-1]:
+        bounds = [_limit(second, allowed, 1.0), _limit(second, allowed, -1.0)]
+        found.append(_best(evaluator, [first, *limits, *bounds], [*begins, found[-1]]))
+    return _front(evaluator, first, second, [*found, ends[0]])
+
+
+def _limit(goal: Goal, allowed: float, side: float) -> Goal:
+    """The goal as a limit of its deviation on one side."""
+    limit = (goal.target or 1.0) * (1.0 + side * allowed)
+    most, least = (limit, None) if side > 0.0 else (None, limit)
+    return replace(goal, target=None, at_most=most, at_least=least)
+
+
+def _deviation(evaluator: Evaluator, goal: Goal, z: FloatArray) -> float:
+    return float(np.max(np.abs(evaluator.goal_values(goal, z) / (goal.target or 1.0) - 1.0)))
+
+
+def _best(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArray]) -> FloatArray:
+    search = Search(evaluator, goals)
+    found = []
+    for begin in begins:
+        try:
+            found.append(search.run(begin))
+        except SolverError:  # no ski or no equilibrium there: the start is lost
+            continue
+    if not found:
+        raise SolverError("no start led to a ski with an equilibrium. Narrow the bounds.", code="no_equilibrium")
+    return min(found, key=search.result)
+
+
+def _front(evaluator: Evaluator, first: Goal, second: Goal, designs: Sequence[FloatArray]) -> tuple[FrontPoint, ...]:
+    """The designs in the order of the second deviation, without those that another one beats in both."""
+    names = [variable.name for variable in evaluator.task.variables]
+    made = [
+        FrontPoint(
+            100.0 * _deviation(evaluator, first, z),
+            100.0 * _deviation(evaluator, second, z),
+            dict(zip(names, evaluator.values(z).tolist(), strict=True)),
+        )
+        for z in designs
+    ]
+    front: list[FrontPoint] = []
+    for point in sorted(made, key=lambda each: (each.second_percent, each.first_percent)):
+        if not front or point.first_percent < front[-1].first_percent - 1e-4:
+            front.append(point)
+    return tuple(front)
