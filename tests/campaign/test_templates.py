@@ -36,7 +36,7 @@ def test_a_new_campaign_is_sound_and_its_examples_count_nowhere(tmp_path: Path, 
 
 def test_tables_that_are_there_get_a_description_alone(tmp_path: Path) -> None:
     (tmp_path / "shear.csv").write_text("Versuch;Ort\n1;Hang\n", encoding="utf-8")
-    with pytest.raises(OutputError, match="holds a campaign already"):
+    with raises(OutputError, "holds_campaign_already", there=["shear.csv"]):
         write_new_campaign(tmp_path, xlsx=True)
     assert [path.name for path in write_new_campaign(tmp_path)] == ["campaign.toml"]
     assert (tmp_path / "shear.csv").read_text(encoding="utf-8") == "Versuch;Ort\n1;Hang\n"

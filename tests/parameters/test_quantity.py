@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from tests.coded import raises
+from tests.coded import coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import unit_of_name, without_unit
@@ -90,14 +90,14 @@ def test_label_of_an_axis() -> None:
 
 def test_a_table_is_checked_and_made() -> None:
     assert made(Range, checked_table(Range, {"from": 20, "n": 11}, "[grid]")) == Range(20.0, 11)
-    for table, told in (
-        ({"from": 1, "till": 2}, r"^\[grid\]: there is no 'till'\. Allowed: from, n\.$"),
-        ({"form": 1}, r"^\[grid\]: there is no 'form'\. Did you mean from\? Allowed: from, n\.$"),
-        ({"n": 2}, r"^\[grid\]: from is missing: its begin$"),
-        ({"from": 1, "n": 1}, r"^\[grid\]: n is 1; allowed is whole numbers 2 or more$"),
-        ({"from": "1"}, r"^\[grid\]: from is '1'; it must be a number$"),
+    for table, expected in (
+        ({"from": 1, "till": 2}, coded("unknown_name", place="[grid]", name="till", allowed="Allowed: from, n.")),
+        ({"form": 1}, coded("unknown_name", place="[grid]", name="form", similar="from")),
+        ({"n": 2}, coded("missing", place="[grid]", name="from")),
+        ({"from": 1, "n": 1}, coded("out_of_range", place="[grid]", name="n", value="1", low=2)),
+        ({"from": "1"}, coded("wrong_kind", place="[grid]", name="from", value="'1'")),
     ):
-        with pytest.raises(ParameterError, match=told):
+        with raises(ParameterError, expected):
             checked_table(Range, table, "[grid]")
 
 

@@ -89,7 +89,7 @@ class _Profile:
                 "snowProfileResultsOf",
                 "nothing",
                 Message("SnowProfileMeasurements"),
-                Message("The file holds no profile."),
+                Message("The file contains no profile."),
             )
         self._measured = measured
         self._is_version_6 = "v6" in root.namespace

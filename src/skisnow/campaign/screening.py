@@ -179,7 +179,9 @@ def find_implausible_unloading(campaign: Campaign, tests: PenetrationTests) -> d
 _UNFLAGGED_STATUS = Message("a blank status")
 _UNFLAGGED_ZERO = Message("a depth above 0 mm")
 _UNFLAGGED_LAYERED = Message("depths that grow with the load as F = H_V V has it")
-_UNFLAGGED_REBOUND = Message("a rebound that is large beside the step of the gauge and the scatter of the readings")
+_UNFLAGGED_REBOUND = Message(
+    "a rebound that is large compared with the step of the gauge and the scatter of the readings"
+)
 _UNFLAGGED_OUTLIER = Message("a logarithm of the hardness nearer to its site's median")
 _OF_UNLOADING = ("unloading_not_falling", "unloading_sinks", "rebound_unresolved")
 

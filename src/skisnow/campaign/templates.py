@@ -235,7 +235,7 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     there = _there(folder)
     if CAMPAIGN_FILE in there or (there and xlsx):
         raise OutputError(
-            "{folder} holds a campaign already ({there}); nothing was written. Choose another folder.",
+            "{folder} already contains a campaign ({there}); nothing was written. Choose another folder.",
             code="holds_campaign_already",
             folder=folder,
             there=list(there),

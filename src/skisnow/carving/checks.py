@@ -19,7 +19,7 @@ def require_kinds(ski: object, snow: object) -> None:
     """Reject arguments of another type than a ski and snow."""
     if not isinstance(ski, Ski):
         raise ParameterError(
-            "ski is {ski!r}; it must be a Ski: read_ski gives one, from a name or a file", code="wrong_kind", ski=ski
+            "ski is {ski!r}; it must be a Ski, as read_ski returns it for a name or a file", code="wrong_kind", ski=ski
         )
     if not isinstance(snow, SnowProperties):
         raise ParameterError(

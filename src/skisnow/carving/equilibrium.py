@@ -254,7 +254,7 @@ def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: ob
         return unloading_ratio_of(snow, stated)
     if stated is not None:
         raise ParameterError(
-            "unloading_ratio is {given} beside a penetration law, which says itself how the snow unloads: leave it out",
+            "unloading_ratio is {given}, but a penetration law defines the unloading itself: remove unloading_ratio",
             code="contradiction",
             given=stated,
         )

@@ -122,7 +122,7 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
         )
     if shear is not None and penetration is not None and penetration.along_base_normal:
         raise ParameterError(
-            "{kind} acts along the base's normal and so holds the edge across by itself; leave the shear law out",
+            "{kind} acts along the base's normal and so carries the side force itself; remove the shear law",
             code="contradiction",
             kind=type(penetration).__name__,
         )
@@ -160,7 +160,7 @@ def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
     degrees = math.degrees(edge_angle)
     if not (np.isfinite(stress).all() and np.all(stress > 0.0)):
         raise ParameterError(
-            "shear is {law!r}, which gives no finite strength above 0 at {degrees:.3g} degrees",
+            "shear is {law!r}, which returns no finite strength above 0 at {degrees:.3g} degrees",
             code="invalid_law",
             law=law,
             degrees=degrees,
@@ -168,10 +168,10 @@ def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
     share = float(np.max(np.abs(thrust / stress))) * math.tan(edge_angle)
     if share > 0.0:
         raise ParameterError(
-            "shear is {law!r}, which comes with a thrust. Drawn as its strength is, it would bear {share:.3g} of the "
-            "load by itself in a balanced turn at {degrees:.3g} degrees (of 1 on none is left for the base), and a "
-            "steady carve does not balance a thrust. Give the strength alone: ConstantShear({stress:.6g}), or a law "
-            "of yours without thrust_force. A simulated turn takes this one",
+            "shear is {law!r}, which has a thrust. At its strength it would bear {share:.3g} of the load in a "
+            "balanced turn at {degrees:.3g} degrees (from 1 on none is left for the base), and a steady carve does "
+            "not balance a thrust. Use the strength only: ConstantShear({stress:.6g}), or your own law without "
+            "thrust_force. A simulated turn accepts this law",
             code="contradiction",
             law=law,
             share=share,
@@ -209,7 +209,7 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
     hardness, deepest = float(force[at] / volume[at]), np.array([_DEPTHS[at]])
     if not (math.isfinite(hardness) and hardness > 0.0):
         raise ParameterError(
-            "penetration is {law!r}, which gives no finite pressure above 0 under this ski and load",
+            "penetration is {law!r}, which returns no finite pressure above 0 under this ski and load",
             code="invalid_law",
             law=law,
         )

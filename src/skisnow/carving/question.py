@@ -51,7 +51,7 @@ def require_known(names: Iterable[str]) -> None:
     for name in names:
         if name not in CARVE_KEYS:
             raise ParameterError(
-                "{name} is no input of a carved turn. {allowed}",
+                "unknown input of a carved turn: {name}. {allowed}",
                 code="unknown_name",
                 name=name,
                 allowed=nearest(name, CARVE_KEYS),
@@ -97,13 +97,13 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
         )
     if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in names and not rests:
         raise ParameterError(
-            "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. Give "
-            "it, or ask for the ski at rest",
+            "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. State "
+            "it, or compute the ski at rest",
             code="missing",
         )
     if "site" in names and ways != ["results"]:
         raise ParameterError(
-            "site goes with results: it names one site of an analysed campaign. Leave it out", code="contradiction"
+            "site names one site of an analysed campaign and needs results. Remove it", code="contradiction"
         )
 
 

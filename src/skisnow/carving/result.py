@@ -33,15 +33,15 @@ the cosine)."""
 REMEDIES: Final[dict[Outcome, str]] = {
     "equilibrium": "",
     "slips": Message(
-        "the snow cannot hold the side force: less edge angle or load, or stronger snow; the numbers are those of an "
-        "edge held by something else"
+        "the snow cannot hold the side force: reduce edge angle or load, or use stronger snow; the numbers are those "
+        "of an edge that is held artificially"
     ),
     "sinks": Message(
         "no balance above {sinking_depth:.0f} cm: the snow is too soft for this load", sinking_depth=SINKING_DEPTH * 1e2
     ),
     "bridges": Message(
-        "the ski stands on separate pieces, or not under the boot: softer snow, a softer ski, less camber or a shorter "
-        "clamp closes the gap"
+        "the ski touches the snow in separate pieces, or not under the boot: softer snow, a softer ski, less camber "
+        "or a shorter clamp closes the gap"
     ),
     "not_converged": Message(
         "no equilibrium was found: try a smaller unloading ratio, more elements or a lower edge angle"

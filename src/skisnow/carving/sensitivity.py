@@ -176,7 +176,7 @@ class CarveDerivatives:
             return values[parameter]
         if parameter.partition(".")[0] not in ("ski", "edit"):
             raise ParameterError(
-                "{name} is no parameter of a carve. {allowed}",
+                "unknown parameter of a carve: {name}. {allowed}",
                 code="unknown_name",
                 name=parameter,
                 allowed=nearest(parameter, self.parameters),
@@ -277,7 +277,7 @@ class CarveDerivatives:
     def _gradient(self, output: str) -> tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None:
         if output not in OUTPUTS:
             raise ParameterError(
-                "{name} is no output with derivatives. {allowed}",
+                "unknown output, or one without derivatives: {name}. {allowed}",
                 code="unknown_name",
                 name=output,
                 allowed=nearest(output, OUTPUTS),

@@ -203,7 +203,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
         from .._support.errors import ParameterError
 
         raise ParameterError(
-            "--workers counts processes of this computer; a scheduler has its own. Leave one of them out",
+            "--workers is the number of processes of this computer; a scheduler has its own number. Remove one of them",
             code="contradiction",
         )
     return checked_scheduler(scheduler)

@@ -91,8 +91,8 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     if track.axes == "east_north_up":
         if azimuth is None:
             raise ParameterError(
-                "{track} is in latitude and longitude: say with --fall-line-azimuth-deg in which compass "
-                "direction the slope falls",
+                "{track} is in latitude and longitude: state with --fall-line-azimuth-deg the compass direction in "
+                "which the slope falls",
                 code="missing",
                 track=options.track,
             )
@@ -100,7 +100,7 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
         track = in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=angle, missing_height="on_slope")
     elif azimuth is not None:
         raise ParameterError(
-            "{track} is in the axes of the slope already: leave the direction out",
+            "{track} is already in the axes of the slope: remove the direction",
             code="contradiction",
             track=options.track,
         )

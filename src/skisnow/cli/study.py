@@ -63,7 +63,7 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
         raise ParameterError(
-            "--figure draws maps of carved turns; for simulated runs leave it out and use the table",
+            "--figure draws maps of carved turns; remove it for simulated runs and use the table",
             code="not_supported",
         )
     executor = scheduler_of(options)

@@ -144,9 +144,8 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     answers = [motion for motion in solutions if math.isfinite(motion.rms)]
     if not answers:
         raise FitError(
-            "start and heading cannot be fitted: less than {share:g} % of the measured track then "
-            "has the simulated one beside it, or the steps do not settle. Look at both tracks "
-            "without a fit",
+            "start and heading cannot be fitted: less than {share:g} % of the measured track then overlaps the "
+            "simulated one, or the steps do not converge. Compare the tracks without a fit",
             code="no_alignment",
             share=100 * LEAST_SHARE,
         )

@@ -241,7 +241,7 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
 def _fit_time(simulated: Polyline, plain: Comparison) -> float:
     reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
     if reason:
-        raise ParameterError("{reason}; leave time out of the fit", code="no_times", reason=reason)
+        raise ParameterError("{reason}; remove time from the fit", code="no_times", reason=reason)
     return fit_time(simulated, plain.measured)
 
 

@@ -47,7 +47,7 @@ class AskedStrength:
         if bad.any():
             worst = float(np.degrees(edge_angle[bad][0]))
             self.refused = Message(
-                "{law!r} gives no finite strength at an edge angle of {edge_angle:.3g} degrees",
+                "{law!r} returns no finite strength at an edge angle of {edge_angle:.3g} degrees",
                 law=self.law,
                 edge_angle=worst,
             )
@@ -82,7 +82,7 @@ class AskedPressure:
         if bad.any():
             self.refuse(
                 Message(
-                    "{law!r} gives no finite answer at a depth of {depth:.4g} mm",
+                    "{law!r} returns no finite value at a depth of {depth:.4g} mm",
                     law=self.law,
                     depth=1e3 * depth[bad][0],
                 )

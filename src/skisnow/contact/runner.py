@@ -70,7 +70,9 @@ class Runner(Shown):
                     shape=str(array.shape),
                 )
             if not np.all(np.isfinite(array)):
-                raise ParameterError("Runner: {name} holds a number that is not finite", code="not_a_number", name=name)
+                raise ParameterError(
+                    "Runner: {name} contains a number that is not finite", code="not_a_number", name=name
+                )
         if np.any(np.diff(self.position) >= 0.0):
             raise ParameterError("Runner: positions must fall from tip to tail", code="not_falling")
         if self.half_width.min() <= 0.0:

@@ -287,7 +287,7 @@ class SnowContact(Shown):
         off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
         if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
             raise ParameterError(
-                "SnowContact: rotation is none, its columns are off by {off:.1e} from orthonormal",
+                "SnowContact: rotation is not a rotation: its columns are off by {off:.1e} from orthonormal",
                 code="not_a_rotation",
                 off=off,
             )
@@ -322,7 +322,7 @@ def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
             needed=str(shape),
         )
     if not np.all(np.isfinite(array)):
-        raise ParameterError("SnowContact: {name} holds a number that is not finite", code="not_a_number", name=name)
+        raise ParameterError("SnowContact: {name} contains a number that is not finite", code="not_a_number", name=name)
     return array
 
 

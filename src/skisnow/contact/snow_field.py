@@ -171,8 +171,8 @@ class SnowField(Shown):
             return
         if self.shear is not None or _maximum(self.failure_shear_stress) > 0.0:
             raise ParameterError(
-                "SnowField: {kind} acts along the base's normal and so carries the side force by itself; give it "
-                "failure_shear_stress 0 and no shear law",
+                "SnowField: {kind} acts along the base's normal and so carries the side force itself; set "
+                "failure_shear_stress to 0 and remove the shear law",
                 code="contradiction",
                 kind=type(law).__name__,
             )
@@ -188,7 +188,7 @@ class SnowField(Shown):
             )
         if shared and self.shear_in_python is not None:
             raise ParameterError(
-                "SnowField: strength_share does not act on {kind}, which the core does not know; leave it 1",
+                "SnowField: strength_share has no effect on {kind}, a law of your own; keep it at 1",
                 code="contradiction",
                 kind=type(self.shear).__name__,
             )
@@ -196,15 +196,15 @@ class SnowField(Shown):
     def _require_own_law_for_rate(self) -> None:
         if self.penetration is not None and self.shear_bearing != "whole-edge":
             raise ParameterError(
-                "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; leave it out, or give no "
-                "penetration law",
+                "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; remove it, or the penetration "
+                "law",
                 code="contradiction",
                 kind=type(self.penetration).__name__,
             )
         if self.penetration is not None and (self.damping > 0.0 or self.delayed_share > 0.0):
             raise ParameterError(
-                "SnowField: damping and delayed_share act beside H_V and k_u, not beside {kind}; leave them 0, or "
-                "give no penetration law",
+                "SnowField: damping and delayed_share act with H_V and k_u, not with {kind}; keep them at 0, or "
+                "remove the penetration law",
                 code="contradiction",
                 kind=type(self.penetration).__name__,
             )

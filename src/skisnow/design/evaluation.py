@@ -71,7 +71,7 @@ class Evaluator:
             try:
                 ski = ski_of_keys(self.keys(z))
             except ParameterError as error:
-                raise SolverError("there is no such ski: {reason}", code="no_ski", reason=error) from error
+                raise SolverError("this ski is impossible: {reason}", code="no_ski", reason=error) from error
             self._points[place] = tuple(
                 self._point(n, ski, condition) for n, condition in enumerate(self.task.conditions)
             )

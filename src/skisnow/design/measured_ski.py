@@ -244,11 +244,7 @@ class _Maker:
         """Distances from the tail (m)."""
         known = self._measured
         if known.stations_from is None:
-            raise _missing(
-                template(
-                    "Nothing says where the stations of the tables count from. Give --stations-from tip, tail or boot."
-                )
-            )
+            raise _missing(template("The origin of the stations is missing. Add --stations-from tip, tail or boot."))
         station = station_mm * MM
         if known.stations_from == "boot":
             return station + (known.boot if known.boot is not None else self._boot_of_tables())
@@ -264,7 +260,7 @@ class _Maker:
         column, tests = self._column(name), self._column(*test)
         if column is not None and tests is not None:
             raise ParameterError(
-                "{name} stands beside tests of it. Leave one of them out.", code="contradiction", name=name
+                "{name} is stated together with tests of it. Remove one of them.", code="contradiction", name=name
             )
         if column is not None:
             table = self._table(column, 1.0, layout)

@@ -160,7 +160,7 @@ def _number(path: Path, sheet: Sheet, row: int, place: int, mark: str) -> float:
     value = number(cell, "." if (row, place) in sheet.fractions else mark) if cell else np.nan
     if cell and not np.isfinite(value):
         raise ParameterError(
-            "{path}, {sheet}, cell {letters}{row}: {cell!r} is no number. Correct it or leave it blank.",
+            "{path}, {sheet}, cell {letters}{row}: {cell!r} is not a number. Correct it or leave it blank.",
             code="not_a_number",
             path=path,
             sheet=sheet.name,

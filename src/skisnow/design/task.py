@@ -109,7 +109,7 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
     keys = ("ski", "variables", "conditions", "goals", "constraints", "monotone", "starts", "seed")
     for name in values:
         if name not in keys:
-            _refuse(Message("there is no {name}. {allowed}", name=name, allowed=nearest(name, keys)), "unknown_name")
+            _refuse(Message("unknown: {name}. {allowed}", name=name, allowed=nearest(name, keys)), "unknown_name")
     for name in ("ski", "variables", "conditions", "goals"):
         if not values.get(name):
             _refuse(Message("{name} is missing. Add it, as on the page docs/files/ski.md.", name=name), "missing")
@@ -180,7 +180,7 @@ def _variable(ski: Ski, name: str, bounds: object) -> Variable:
     )
     if name not in allowed:
         _refuse(
-            Message("variables: there is no {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
+            Message("variables: unknown variable {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
             "unknown_name",
         )
     if (
@@ -211,7 +211,7 @@ def _conditions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[Ca
         if name not in CARVE_KEYS or name in _WITHOUT:
             allowed = [INTERVALS, *(key for key in CARVE_KEYS if key not in _WITHOUT)]
             _refuse(
-                Message("conditions: there is no {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
+                Message("conditions: unknown key {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
                 "unknown_name",
             )
     lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
@@ -256,7 +256,7 @@ def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     goal: Goal = made(Goal, checked_table(Goal, table, place))
     if goal.output not in OUTPUTS:
         raise ParameterError(
-            "{place}: there is no output {name}. {allowed}",
+            "{place}: unknown output {name}. {allowed}",
             code="unknown_name",
             place=place,
             name=goal.output,
@@ -302,7 +302,7 @@ def _monotone(ski: Ski, key: str) -> list[Constraint]:
     """A stiffness that rises from the tip to the largest row of the start, and falls behind it."""
     values = (ski.keys or {}).get(key)
     if key not in LISTS or not isinstance(values, list):
-        raise ParameterError("monotone: {key} is no list of stiffness of this ski.", code="unknown_name", key=key)
+        raise ParameterError("monotone: {key} is not a list of stiffness of this ski.", code="unknown_name", key=key)
     top = values.index(max(values))
     pairs = ((row, row + 1) if row < top else (row + 1, row) for row in range(len(values) - 1))
     return [

@@ -25,7 +25,7 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
             needed=str(shape),
         )
     if not np.all(np.isfinite(array)):
-        raise ParameterError("{name} holds a number that is not finite", code="not_a_number", name=name)
+        raise ParameterError("{name} contains a number that is not finite", code="not_a_number", name=name)
     return array
 
 
@@ -79,7 +79,7 @@ class FlexibleSki(ShownFields):
         if not np.array_equal(np.sort(free), np.arange(0, n, 3)) or n % 3:
             raise ParameterError(
                 "FlexibleSki: unknown gives {n_free} free nodes their first unknowns, the matrices have {n} rows; "
-                "each node needs three of its own",
+                "each node needs three separate ones",
                 code="wrong_shape",
                 n_free=len(free),
                 n=n,

@@ -282,8 +282,8 @@ def why_no_choice(readings: Readings) -> str:
     if readings.n_series >= FEWEST_SERIES and angles >= FEWEST_ANGLES:
         return ""
     return Message(
-        "No law of the penetration force is selected: that takes {fewest_series} series at {fewest_angles} edge "
-        "angles, and used are {n_series} at {angles}.",
+        "No law of the penetration force is selected: the choice needs {fewest_series} series at {fewest_angles} "
+        "edge angles; {n_series} at {angles} are used.",
         fewest_series=FEWEST_SERIES,
         fewest_angles=FEWEST_ANGLES,
         n_series=readings.n_series,

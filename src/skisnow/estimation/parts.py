@@ -266,7 +266,8 @@ def _alike(campaign: Campaign) -> Iterator[str]:
     for variants in sorted(sorted(variants) for variants in names.values() if len(variants) > 1):
         listed = [repr(name) for name in variants]
         yield Message(
-            "The sites {listed} differ by capitals or spaces alone; they count as different sites. Is one meant?",
+            "The names of the sites {listed} differ only by capitals or spaces; they count as different sites. Did "
+            "you mean one site?",
             listed=listed,
         )
 

@@ -133,7 +133,7 @@ assumption)."""
 POOR: Final = 0.5
 """A selected law whose rmse is above this share of the loads' rms leaves a quarter of their squares open (modelling
 assumption)."""
-_ACTION: Final = Message("Look for wrong units, depths or tools, and for snow that follows none of these laws.")
+_ACTION: Final = Message("Check for wrong units, depths or tools, and for snow that follows none of these laws.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,8 +182,8 @@ class Regression(ShownFields):
         if self.fit is None or self.predictor_values >= FEWEST_VALUES:
             return None
         return Message(
-            "the predictor takes {predictor_values} different values, fewer than {fewest_values}, and whatever else "
-            "differs between them would show as well",
+            "the predictor takes {predictor_values} different values, fewer than {fewest_values}; other differences "
+            "between them would have the same effect",
             predictor_values=self.predictor_values,
             fewest_values=FEWEST_VALUES,
         )

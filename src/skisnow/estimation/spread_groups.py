@@ -153,7 +153,7 @@ def scatter_warning(model: CampaignModel, experiment: Sequence[str]) -> tuple[Me
     return (
         Message(
             "{n} of {total} series scatter {factor:.2g} times as much as the others, at the same sites and with the "
-            "same tools ({first}): they have wider intervals. Look for another observer, gauge or tool.",
+            "same tools ({first}): they have wider intervals. Check for another observer, gauge or tool.",
             n=len(noisier),
             total=int(model.counts.sum()),
             factor=larger / quieter,

@@ -54,7 +54,9 @@ class Grid(ShownFields):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
             if not np.all(np.isfinite(array)):
-                raise ParameterError("Grid: {name} holds a number that is not finite", code="not_a_number", name=name)
+                raise ParameterError(
+                    "Grid: {name} contains a number that is not finite", code="not_a_number", name=name
+                )
         for name, places in (("x", self.x), ("y", self.y)):
             _require_even(name, places)
         if self.values.shape != (len(self.x), len(self.y)):

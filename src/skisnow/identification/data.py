@@ -61,7 +61,9 @@ def read_data(path: str | Path) -> Data:
     """
     path = Path(path)
     if not is_file(path):
-        raise ParameterError("{path} cannot be read: there is no such file. Check the path", code="no_file", path=path)
+        raise ParameterError(
+            "{path} cannot be read: the file does not exist. Check the path", code="no_file", path=path
+        )
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
@@ -258,7 +260,7 @@ def _run_starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float
     for run, entries in table.items():
         if run not in runs:
             raise ParameterError(
-                '[identify.runs."{run}"]: there is no such run. {allowed}',
+                '[identify.runs."{run}"]: unknown run. {allowed}',
                 code="unknown_name",
                 run=run,
                 allowed=nearest(run, runs),
@@ -310,7 +312,7 @@ def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str
         for key in values:
             if key in keys and not key.startswith(START):
                 raise ParameterError(
-                    '[identify.runs."{run}"] gives {key}, but one value of {key} is free for all runs. Free '
+                    '[identify.runs."{run}"] states {key}, but one value of {key} is free for all runs. Free '
                     "{key}@{each} instead, or remove it from the table",
                     code="value_of_free_key",
                     run=run,

@@ -71,7 +71,8 @@ class TableFile:
         missing = [name for name in columns if name not in self.columns]
         if missing:
             raise ParameterError(
-                "{name}, row {header_row}: there is no column {missing} among {columns}; needed are {needed}",
+                "{name}, row {header_row}: the column {missing} is missing; the columns are {columns}; required are "
+                "{needed}",
                 code="missing_column",
                 name=self.name,
                 header_row=self.header_row,
@@ -211,7 +212,7 @@ class PhotoCellRun(ShownFields):
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
                     "run {name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise from cell to "
-                    "cell. Sort the rows of the run, and look for a clock that was set back",
+                    "cell. Sort the rows of the run, and check for a clock that was set back",
                     code=f"{what}_not_rising",
                     name=self.name,
                     what=_MEASURED[what],
@@ -325,7 +326,7 @@ class MeasuredGrooves(ShownFields):
             for place in np.flatnonzero(np.isfinite(values)):
                 if values[place] <= 0.0:
                     raise ParameterError(
-                        "{name}: {what} of place {place} is {value:g} m; above 0 is allowed",
+                        "{name}: {what} of place {place} is {value:g} m; it must be above 0",
                         code="out_of_range",
                         name=self.name,
                         what=_MEASURED[what],
@@ -391,8 +392,8 @@ def _column(table: TableFile, quantity: Quantity) -> FloatArray:
 def _scatter(file: str, name: str, values: FloatArray) -> float:
     if len(values) < FEWEST_FOR_SCATTER:
         raise ParameterError(
-            "{file}: {name} has no standard deviation ({column}), and {count} places are too few for their scatter "
-            "to say it; give it, or {fewest} places",
+            "{file}: {name} has no standard deviation ({column}), and {count} places are too few to estimate it; "
+            "state it, or measure {fewest} places",
             code="no_deviation",
             file=file,
             name=name,

@@ -68,8 +68,8 @@ class PhotoCellTimes:
         for run in self.cells.runs:
             if run.station[-1] > self._line.length:
                 raise ParameterError(
-                    "{name}, run {run}: station {station:g} m lies beyond the end of the profile, which goes on for "
-                    "{length:.4g} m from the start. Is it the right slope?",
+                    "{name}, run {run}: station {station:g} m is beyond the end of the profile, {length:.4g} m from "
+                    "the start. Is it the right slope?",
                     code="out_of_range",
                     name=self.cells.name,
                     run=run.name,

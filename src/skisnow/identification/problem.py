@@ -214,7 +214,7 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
         own, at, run = key.partition("@")
         if at and run != EACH and run not in runs:
             raise ParameterError(
-                "--free: {key}: there is no run {run!r}. {allowed}",
+                "--free: {key}: unknown run {run!r}. {allowed}",
                 code="unknown_run",
                 key=key,
                 run=run,

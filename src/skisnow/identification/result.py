@@ -31,7 +31,7 @@ REASONS: dict[Outcome, str] = {
         "parameters."
     ),
     "not_identifiable": Message(
-        "The data do not determine every parameter; the warnings say which, and what would help."
+        "The data do not determine every parameter; the warnings name them, and the data that would help."
     ),
     "too_few_points": Message("There are too few points for these parameters; nothing was identified."),
     "interrupted": Message("The search was stopped; the values are the best that were seen until then."),

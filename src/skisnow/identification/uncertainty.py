@@ -24,15 +24,15 @@ REPORTED_PAIR_CORRELATION: Final = 0.9
 """Correlation above which two parameters get a warning."""
 _HELPS: Final = {
     frozenset({"friction.mu_0", "drag.drag_area_m2"}): Message(
-        "both brake; only drag grows with the speed. Runs on slopes of different inclination, slow parts and fast "
-        "ones, and a known start speed tell them apart"
+        "both brake; only drag grows with the speed. Runs on slopes of different inclination, slow and fast parts, "
+        "and a known start speed distinguish them"
     ),
     frozenset({"friction.mu_0", "friction.mu_1_s_per_m"}): Message(
-        "they differ only where the speed does. A wider range of speeds tells them apart, or fix mu_1"
+        "they differ only where the speed does. A wider range of speeds distinguishes them, or fix mu_1"
     ),
     frozenset({"friction.mu_1_s_per_m", "drag.drag_area_m2"}): Message(
-        "both grow with the speed, one with its square. A wider range of speeds on different inclinations tells them "
-        "apart, or a drag area from a wind tunnel as a prior"
+        "both grow with the speed, one with its square. A wider range of speeds on different inclinations "
+        "distinguishes them, or a drag area from a wind tunnel as a prior"
     ),
     frozenset({"friction.mu_0", "slope.angle_deg"}): Message(
         "a steeper slope drives as less friction does. Measure the slope's inclination and fix it"
@@ -51,29 +51,29 @@ _HELPS: Final = {
         "test, give H_V"
     ),
     frozenset({"snow.S_f_N_per_mm2", "snow.shear_displacement_mm"}): Message(
-        "an edge that holds gives way in proportion to u_y over S_f. A run that slips, or a shear test with its "
-        "turning angle, tells them apart"
+        "an edge that holds yields in proportion to u_y over S_f. A run that slips, or a shear test with its turning "
+        "angle, distinguishes them"
     ),
     frozenset({"snow.H_V_N_per_mm3", "sledge.edge_angle_deg"}): Message(
         "a ski that cuts deeper bends more and turns tighter, as one on a larger edge angle does. Measure the edge "
         "angle, or the depth of the groove"
     ),
     frozenset({"start.heading_deg", "sledge.edge_angle_deg"}): Message(
-        "a turn begun further round looks like a tighter one. A longer track tells them apart"
+        "a turn that begins later looks like a tighter one. A longer track distinguishes them"
     ),
 }
 _ALONE: Final = {
     "snow.S_f_N_per_mm2": Message(
-        "S_f shows only where the edge side-slips; an edge with grip bounds it from below. A run that skids, a tighter "
-        "turn or a shear test tells it"
+        "S_f has an effect only where the edge side-slips; an edge with grip bounds it from below. A run that skids, "
+        "a tighter turn or a shear test determines it"
     ),
     "snow.H_V_N_per_mm3": Message(
         "The path hardly depends on the depth of the groove. Depth and width of the groove, or a penetration test, "
-        "tell it"
+        "determine it"
     ),
-    "drag.drag_area_m2": Message("At these speeds drag is too small. A faster run tells it"),
+    "drag.drag_area_m2": Message("At these speeds drag is too small. A faster run determines it"),
     "snow.shear_displacement_mm": Message(
-        "An edge that hardly gives way shows no u_y. A tighter turn tells it, or a shear test with its turning angle"
+        "An edge that hardly yields shows no u_y. A tighter turn determines it, or a shear test with its turning angle"
     ),
     "snow.unloading_ratio": Message("The path hardly depends on how the groove springs back. Fix it"),
 }
@@ -238,8 +238,8 @@ def few_points_warning(points: int, parameters: int) -> str | None:
 def noise_warning(ratio: float) -> str:
     """Warning of residuals that are larger than the stated accuracy allows."""
     return Message(
-        "the residuals are {ratio:.2g} times what the data's stated accuracy allows: the accuracy is too good to be "
-        "true, or the model misses something. Intervals are widened by that factor",
+        "the residuals are {ratio:.2g} times the stated accuracy of the data: the accuracy is too optimistic, or the "
+        "model is incomplete. Intervals are widened by that factor",
         ratio=ratio,
     )
 

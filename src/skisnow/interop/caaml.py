@@ -215,7 +215,7 @@ def _number(value: float) -> str:
 def _require(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
     if value not in allowed:
         raise ParameterError(
-            "{field}: {value!r} cannot be written: CAAML knows {allowed}",
+            "{field}: {value!r} cannot be written: CAAML allows {allowed}",
             code="cannot_write",
             field=what,
             value=value,

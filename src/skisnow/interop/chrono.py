@@ -39,11 +39,11 @@ def chrono_soil(scenario: Scenario) -> dict[str, Any]:
     hardness, stress = contact.snow.snow_hardness, contact.snow.failure_shear_stress
     if contact.snow_map is not None or stress is None:
         raise ParameterError(
-            "Chrono's file holds one H_V and one S_f; the scenario's snow varies, or has no S_f", code="no_data"
+            "Chrono's file has one H_V and one S_f; the scenario's snow varies, or has no S_f", code="no_data"
         )
     if contact.unloading_ratio <= 1.0:
         raise ParameterError(
-            "Chrono asks for unloading stiffer than loading; unloading_ratio is {unloading_ratio:g}",
+            "Chrono requires unloading stiffer than loading; unloading_ratio is {unloading_ratio:g}",
             code="out_of_range",
             unloading_ratio=contact.unloading_ratio,
         )
@@ -102,7 +102,7 @@ def write_chrono_terrain(
     """
     if not isinstance(scenario.slope, Plane):
         raise ParameterError(
-            "Chrono's patch is level; take a scenario on a plane, and tilt gravity there", code="not_level"
+            "Chrono's patch is level; use a scenario on a plane, and tilt gravity there", code="not_level"
         )
     if not all(length > 0.0 for length in (*size, spacing)):
         raise ParameterError(

@@ -105,7 +105,7 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     options = options or ConvertOptions()
     if options.forces is not None and kinds[1] != ENDINGS[".c3d"]:
         raise ParameterError(
-            "forces go into a .c3d file with its markers; {target} is not one. Leave --forces out",
+            "forces are written to a .c3d file with its markers; {target} is not one. Remove --forces",
             code="wrong_ending",
             target=target,
         )
@@ -122,7 +122,7 @@ def _kind(path: Path) -> str:
         return CAMPAIGN
     ending = path.suffix.lower()
     if ending not in ENDINGS:
-        problem = Message("the ending of {path} tells no format; a folder is a campaign.", path=path)
+        problem = Message("the ending of {path} states no format; a folder is a campaign.", path=path)
         raise ParameterError(joined([problem, nearest(ending, ENDINGS)]), code="wrong_ending")
     return ENDINGS[ending]
 

@@ -223,7 +223,7 @@ class SnowForces:
             raise ParameterError("SnowForces: a site has no beam; its runner has to be rigid", code="no_data")
         if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
             raise ParameterError(
-                "SnowForces: RK4 asks for forces at times that are not accepted; take Euler", code="not_supported"
+                "SnowForces: RK4 requires forces at times that are not accepted; use Euler", code="not_supported"
             )
         self._sites = [self._site(model, name) for name in sites]
         self.model, self.contact = model, contact
@@ -238,7 +238,7 @@ class SnowForces:
         if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))
             raise ParameterError(
-                "SnowForces: there is no site {name}; there are {known}",
+                "SnowForces: unknown site {name}; the sites are {known}",
                 code="unknown_name",
                 name=name,
                 known=names or "-",

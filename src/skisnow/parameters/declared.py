@@ -355,7 +355,7 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
     for name in table:
         if name not in keys:
             raise ParameterError(
-                "{place}: there is no {name!r}. {allowed}",
+                "{place}: unknown name {name!r}. {allowed}",
                 code="unknown_name",
                 place=place,
                 name=name,

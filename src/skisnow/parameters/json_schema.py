@@ -124,7 +124,7 @@ _CELLS: Final[dict[str, Callable[[Quantity], str]]] = {
     "usual size": _size,
     "bounds": _bounds,
     "where default or range comes from": lambda quantity: quantity.origin,
-    "left out": lambda quantity: quantity.origin,
+    "excluded": lambda quantity: quantity.origin,
     "instead of": lambda quantity: quantity.origin,
     "meaning": lambda quantity: quantity.meaning,
 }

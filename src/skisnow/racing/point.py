@@ -81,7 +81,7 @@ class PointRacer:
         """
         if not isinstance(scenario.slope, Plane):
             raise ParameterError(
-                "a point races on a plane; the scenario has a profile or a grid. Take the skier", code="not_supported"
+                "a point races on a plane; the scenario has a profile or a grid. Use the skier", code="not_supported"
             )
         ski, air, contact = scenario.ski, scenario.air, scenario.contact
         return cls(

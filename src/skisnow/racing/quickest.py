@@ -202,7 +202,7 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
     line = follower_line(scenario) if start is None else start
     if start is not None and len(start.turns) != len(course.gates) and gates is None:
         raise ParameterError(
-            "the line to begin from has {n_turns} turns and the course {n_gates} gates; say gates=",
+            "the start line has {n_turns} turns and the course {n_gates} gates; state gates=",
             code="wrong_shape",
             n_turns=len(start.turns),
             n_gates=len(course.gates),

@@ -77,8 +77,8 @@ class Evaluations:
             row = self.kept.row(number)
             if row["place"] != place.tolist():
                 raise ParameterError(
-                    "a kept evaluation has another place than this search asks for: its numbers are of another "
-                    "machine or library. Remove the file to start again",
+                    "a stored evaluation has another point than this search: it comes from another machine or "
+                    "library. Remove the file to start again",
                     code="different_versions",
                 )
             self.done.append(Evaluated(number, tuple(place.tolist()), row))

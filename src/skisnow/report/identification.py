@@ -230,7 +230,7 @@ def parameters_table(result: Identification) -> Table:
     """Table of the identified parameters: values, intervals, bounds, priors."""
     return Table(
         "identified",
-        Message("Identified parameters with 95 % intervals; a dash: not asked for, or open."),
+        Message("Identified parameters with 95 % intervals; a dash: not requested, or undetermined."),
         (
             Column("key", Message("Key"), "text"),
             Column("value", Message("Value"), digits=4),

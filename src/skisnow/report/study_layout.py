@@ -103,9 +103,7 @@ def drawn_table(table: StudyTable) -> StudyTable:
     """
     rows = table.answers()
     if not rows:
-        raise ParameterError(
-            "the map has nothing to draw: not one point of this table could be asked", code="nothing_to_draw"
-        )
+        raise ParameterError("the map is empty: no point of this table could be computed", code="nothing_to_draw")
     pairs = {(row.get("ski"), row.get("ski_name")) for row in rows}
     names = {name for _, name in pairs}
     if None not in names and len(names) == len(pairs):

@@ -258,7 +258,7 @@ def _below(table: Table) -> Markup:
     if cut > 0:
         sentences.append(
             prose(
-                "The first {shown} of {all} rows; {file} holds them all.",
+                "The first {shown} of {all} rows; {file} contains all of them.",
                 shown=formatting.whole(table.rows_in_html),
                 all=formatting.whole(len(table.rows)),
                 file=Markup("<code>tables/{}.csv</code>").format(table.file_stem),

@@ -128,7 +128,8 @@ class Boots(Shown):
         require_choice("boots: over", self.over, get_args(Over))
         if self.frame == "slope" and self.over == "distance":
             raise ParameterError(
-                "boots in the slope's frame go over time: the distance run is what they make it", code="contradiction"
+                "boots in the slope's frame are given over time: the distance follows from their motion",
+                code="contradiction",
             )
 
     def _require_shapes(self) -> None:
@@ -147,7 +148,9 @@ class Boots(Shown):
     def _require_numbers(self) -> None:
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
-                raise ParameterError("boots: {name} holds a number that is not finite", code="not_a_number", name=name)
+                raise ParameterError(
+                    "boots: {name} contains a number that is not finite", code="not_a_number", name=name
+                )
             if np.abs(getattr(self, name)).max() > LARGEST:
                 raise ParameterError(
                     "boots: {name} has a number beyond ±{largest:g}. Correct it.",
@@ -272,13 +275,13 @@ def _rows(path: Path, text: str) -> list[Row]:
             path=path,
         )
     if not rows:
-        raise ParameterError("{path}: there is no row with the names of columns", code="unknown_name", path=path)
+        raise ParameterError("{path}: the row with the names of columns is missing", code="unknown_name", path=path)
     names = rows[0][1]
     require_whole(path, said, rows=len(rows) - 1, columns=len(names))
     if degrees_stated(path, said) is False and any(name.endswith(ANGLES) for name in names):
         raise ParameterError(
-            "{path}: the head says inDegrees=no, and angles of boots are in degrees; multiply them by 57.29578 and "
-            "write inDegrees=yes",
+            "{path}: the header states inDegrees=no, but angles of boots are in degrees; multiply them by 57.29578 "
+            "and write inDegrees=yes",
             code="in_degrees",
             path=path,
         )
@@ -328,7 +331,7 @@ def _require_columns(path: Path, head: list[str]) -> None:
     for name in head:
         if _is_read(name) and name not in motion_columns:
             raise ParameterError(
-                "{path}: there is no column {name}. {allowed}",
+                "{path}: unknown column {name}. {allowed}",
                 code="missing",
                 path=path,
                 name=name,
@@ -336,7 +339,7 @@ def _require_columns(path: Path, head: list[str]) -> None:
             )
         if counts[name] > 1:
             raise ParameterError(
-                "{path}: the column {name} is there twice; leave one out", code="repeated", path=path, name=name
+                "{path}: the column {name} occurs twice; remove one", code="repeated", path=path, name=name
             )
     clocks = [name for name in CLOCKS if name in head]
     if len(clocks) != 1:
@@ -428,8 +431,8 @@ def _cell(path: Path, line: int, column: str, text: str) -> float:
         )
     if column.endswith(_EDGE) and abs(value) > _ON_ITS_SIDE:
         raise ParameterError(
-            "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its side; put the row "
-            "right or leave it out",
+            "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its side; correct or "
+            "remove the row",
             code="out_of_range",
             value=value,
             on_its_side=_ON_ITS_SIDE,

@@ -107,7 +107,7 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
     if name is None and file is None:
         if options:
             raise ParameterError(
-                "course.{key} is there without a course; give course.file, or leave it out",
+                "course.{key} is stated without a course; add course.file, or remove it",
                 code="contradiction",
                 key=next(iter(options)),
             )
@@ -168,7 +168,7 @@ def _snow(resolution: Resolution) -> SnowProperties:
     values, snow, snow_map = dict(resolution.values), resolution.snow, resolution.snow_map
     if "snow.site" in values and "snow.results" not in values:
         raise ParameterError(
-            "snow.site goes with snow.results: it names one site of a campaign. Leave it out", code="contradiction"
+            "snow.site names one site of a campaign and needs snow.results. Remove it", code="contradiction"
         )
     if snow is None:
         if snow_map is not None:
@@ -285,7 +285,7 @@ def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> No
     for name in numbers:
         if snow_map is not None and mapped.get(name) is not None:
             raise ParameterError(
-                "{name} is given over the place by snow.map_file, {source}. snow_map=None takes the map away",
+                "{name} is given by a map, snow.map_file, {source}. Remove the map with snow_map=None",
                 code="contradiction",
                 name=name,
                 source=snow_map.source,
@@ -293,7 +293,7 @@ def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> No
     for name in numbers.keys() - values_of(scenario).keys():
         part = name.partition(".")[0]
         raise ParameterError(
-            "{name} plays no part in this scenario, whose {part} is of another kind. Leave it out, or give the part "
+            "{name} has no effect in this scenario, whose {part} is of another kind. Remove it, or replace the part "
             "itself: {part}=",
             code="wrong_kind",
             name=name,

@@ -56,7 +56,7 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
             degrees=math.degrees(sledge.edge_angle),
         )
     if has_boots:
-        raise ParameterError("boots.file and [skier] both move the boots; leave one of them out", code="contradiction")
+        raise ParameterError("boots.file and [skier] both move the boots; remove one of them", code="contradiction")
     if skier.steers == "gates" and not has_course:
         raise ParameterError(
             'skier.steers is "gates" without a course; give course.name or course.file', code="contradiction"
@@ -109,7 +109,7 @@ def _together(
         least = math.degrees(shear.least_edge_angle)
         yield Message(
             "the edge angle is {edge_angle:.3g}°; machining needs {least:.3g}° or more, β + 2 "
-            "shear.least_shear_plane_deg: edge more, or take another shear.law",
+            "shear.least_shear_plane_deg: use a larger edge angle or another shear.law",
             edge_angle=math.degrees(abs(sledge.edge_angle)),
             least=least,
         )

@@ -63,8 +63,8 @@ class Contact:
         float,
         Quantity(
             "snow.unloading_ratio",
-            'k_u/H_V: 1 is elastic snow, 1000 all but rigid-plastic; left out or 1 with penetration = "elastic", left '
-            "out where the results measured it",
+            'k_u/H_V: 1 is elastic snow, 1000 nearly rigid-plastic; omit it or use 1 with penetration = "elastic"; '
+            "omit it if the results contain it",
             label=Message("unloading ratio"),
             symbol="$k_u/H_V$",
             lowest=1.0,
@@ -95,7 +95,8 @@ class Contact:
         float,
         Quantity(
             "snow.shear_displacement_mm",
-            "u_y, the way of an edge across until the snow holds it with all of S_f; left out where results have it",
+            "u_y, the sideways displacement of an edge at which the snow reaches S_f; omit it if the results contain "
+            "it",
             label=Message("shear displacement"),
             symbol="$u_y$",
             lowest=0.01,  # below, a step's corrections are as large
@@ -170,7 +171,7 @@ class Contact:
         float,
         Quantity(
             "snow.retardation_time_ms",
-            "time in which 63 % of the delayed depth has come; without effect if there is no delayed depth",
+            "time in which 63 % of the delayed depth is reached; without effect if there is no delayed depth",
             label=Message("retardation time"),
             symbol="$c_2/H_2$",
             lowest=1.0,
@@ -259,13 +260,13 @@ class Contact:
             return
         if self.snow_map is not None and self.snow_map.hardness is not None:
             raise ParameterError(
-                "snow.map_file gives H_V over the place, and the snow has layers: H_V then has one value. Leave the "
-                "layers out, or the map's column H_V_N_per_mm3",
+                "snow.map_file gives H_V as a map, and layers need one value of H_V. Remove the layers, or the map's "
+                "column H_V_N_per_mm3",
                 code="contradiction",
             )
         if self.damping > 0.0 or self.delayed_share > 0.0:
             raise ParameterError(
-                "layers of snow do not go with snow.damping_N_s_per_mm3 or snow.delayed_share. Leave one out",
+                "layers of snow cannot be combined with snow.damping_N_s_per_mm3 or snow.delayed_share. Remove one",
                 code="contradiction",
             )
 

@@ -66,7 +66,7 @@ def require_known(section: Mapping[str, Any]) -> None:
     for name in _table(section, "site"):
         if name not in SITE:
             raise ParameterError(
-                "[identify.site]: there is no {name!r}. {allowed}",
+                "[identify.site]: unknown name {name!r}. {allowed}",
                 code="unknown_name",
                 name=name,
                 allowed=nearest(name, SITE),

@@ -71,7 +71,7 @@ def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
     for section, table in sections.items():
         if section not in SECTIONS:
             raise ParameterError(
-                "there is no section [{section}]. {allowed}",
+                "unknown section [{section}]. {allowed}",
                 code="missing",
                 section=section,
                 allowed=nearest(section, SECTIONS),
@@ -220,7 +220,7 @@ def free_key(word: str) -> str:
         return usable[0]
     if meant:
         raise ParameterError(
-            "{key} cannot be looked for: {reason}. There are {keys}",
+            "{key} cannot be identified: {reason}. Allowed: {keys}",
             code="not_free",
             key=meant[0],
             reason=_why_not(meant[0]),
@@ -265,7 +265,7 @@ def _key_of_run(word: str) -> str:
 
 def _why_not(key: str) -> Message:
     if key.startswith(_HOW_IT_IS_COMPUTED):
-        return Message("it is how the run is computed, not what it follows from")
+        return Message("it is a setting of the computation, not of the run")
     return _NOT_ONE_NUMBER[SCENARIO_KEYS[key].kind]
 
 

@@ -134,8 +134,8 @@ def model_limits(ski: Ski) -> dict[str, Message]:
     limits = {}
     if ski.edge_radius > 0.0:
         limits["edge_radius_unmeasured"] = Message(
-            "edge_radius_mm of ski {name} is {radius:.3g}: no measurement relates the radius of an edge to its hold; "
-            "skisnow takes the depth that the rounding loses",
+            "edge_radius_mm of ski {name} is {radius:.3g}: no measurement relates the radius of an edge to its grip; "
+            "skisnow subtracts the depth that the rounding removes",
             name=ski.name,
             radius=ski.edge_radius / MM,
         )

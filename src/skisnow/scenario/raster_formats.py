@@ -36,7 +36,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     """
     if not is_file(path):
         raise ParameterError(
-            "{path} cannot be read: there is no such file. Check the path.", code="cannot_read", path=path
+            "{path} cannot be read: the file does not exist. Check the path.", code="cannot_read", path=path
         )
     rasterio = _rasterio(path)
     try:
@@ -144,7 +144,7 @@ def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None
         )
     if system is None and (transform.a, transform.c, transform.e, transform.f) == (1.0, 0.0, 1.0, 0.0):
         raise ParameterError(
-            "{path}: The file does not say where it lies and how large its cells are. Export it again.",
+            "{path}: The position and the size of the cells are missing. Export it again.",
             code="missing",
             path=path,
         )
@@ -366,7 +366,7 @@ def _even(
                 step=step,
             ),
             code="uneven_places",
-            action=Message("Interpolate onto evenly spaced places, or add what is missing."),
+            action=Message("Interpolate onto evenly spaced places, or add the missing ones."),
         )
     return distinct[0] + step * np.arange(len(distinct)), number
 

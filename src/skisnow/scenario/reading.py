@@ -131,7 +131,7 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
-            "there is no scenario named {word!r}. {allowed} Any other scenario is read from a file ending in .toml",
+            "unknown scenario {word!r}. {allowed} Any other scenario is read from a file ending in .toml",
             code="unknown_name",
             word=word,
             allowed=nearest(word, scenario_names()),
@@ -275,7 +275,7 @@ def scenario_text(name: str) -> str:
     """
     if name not in scenario_names():
         raise ParameterError(
-            "there is no built-in scenario {name!r}. {allowed}",
+            "unknown built-in scenario {name!r}. {allowed}",
             code="unknown_name",
             name=name,
             allowed=nearest(name, scenario_names()),

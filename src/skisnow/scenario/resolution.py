@@ -285,7 +285,7 @@ def _strongest(quantity: str, names: list[str], layer: Layer) -> str:
         raise ContradictionError(
             (first, second),
             Message(
-                '{name} is {ratio:g} beside snow.penetration = "elastic", which is 1. Leave one out',
+                '{name} is {ratio:g}, but snow.penetration = "elastic" means 1. Remove one',
                 name=UNLOADING,
                 ratio=ratio,
             ),

@@ -88,7 +88,7 @@ class Stop:
         float | None,
         Quantity(
             "run.duration_s",
-            "simulated time; with length_m beside it, whichever comes first",
+            "simulated time; the run ends at this or at length_m, whichever comes first",
             label=Message("ends after"),
             lowest=0.0,
             highest=3600.0,
@@ -130,7 +130,7 @@ class Solver:
         Method,
         Quantity(
             "solver.method",
-            "how exact: fast holds the error of a step to ten times the tolerance",
+            "accuracy: fast allows ten times the tolerance as error of a step",
             label=Message("method"),
             origin="choice: the more exact one",
         ),

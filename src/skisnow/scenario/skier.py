@@ -120,7 +120,7 @@ class Skier:
         float,
         Quantity(
             "skier.pole_clearance_m",
-            "how far beside a turning pole the middle of the boots is to pass",
+            "distance at which the middle of the boots passes a turning pole",
             label=Message("clearance from the pole"),
             lowest=0.0,
             highest=10.0,
@@ -321,7 +321,7 @@ class Skier:
         float,
         Quantity(
             "skier.leg_yielding_per_s",
-            "speed aside at which legs give way, over how far the centre of pressure is from where it is asked for",
+            "sideways speed at which the legs yield, per distance of the centre of pressure from its target",
             label=Message("yielding of the legs"),
             lowest=0.0,
             highest=100.0,

@@ -76,7 +76,7 @@ class RigidSledge:
         ),
         Quantity(
             "sledge.centre_of_mass_forward_m",
-            "how far the centre of mass lies before the boots",
+            "distance of the centre of mass before the boots",
             label=Message("centre of mass ahead of the boots"),
             lowest=-1.0,
             highest=1.0,
@@ -230,7 +230,7 @@ class Shear:
         float | None,
         Quantity(
             "shear.snow_density_kg_per_m3",
-            'density of law = "by-density", whose S_f (Eqn 14) then counts instead of the snow\'s',
+            'density for law = "by-density", whose S_f (Eqn 14) replaces the snow\'s',
             label=Message("density of the snow"),
             symbol="ρ",
             lowest=151.7,  # below, Eqn 14 gives none
@@ -300,8 +300,8 @@ class Shear:
         Bearing,
         Quantity(
             "shear.bearing",
-            "an edge that moves inwards holds with its whole height, or with that of the base that bears",
-            label=Message("height that holds"),
+            "an edge that moves inwards holds with its whole height, or with the height of the bearing base",
+            label=Message("height that resists"),
             origin="choice: the paper's depth of the edge; no measurement decides",
         ),
     ] = "whole-edge"

@@ -116,7 +116,7 @@ class Profile(Shown):
         Gap,
         Quantity(
             "slope.profile_gap",
-            "what to do where points of the profile are more than 5 m apart",
+            "action if points of the profile are more than 5 m apart",
             label=Message("gaps in the profile"),
             origin="choice: there are no measurements in between",
             condition=Condition("slope.kind", "profile"),

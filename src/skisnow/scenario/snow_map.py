@@ -66,7 +66,7 @@ class SnowMap(Shown):
         grids = (("H_V", self.hardness), ("S_f", self.failure_shear_stress), ("mu_share", self.friction_share))
         if all(grid is None for _, grid in grids):
             raise ParameterError(
-                "a snow map holds neither H_V nor S_f nor friction; give one of them, or more", code="missing"
+                "a snow map has neither H_V nor S_f nor friction; add at least one of them", code="missing"
             )
         for name, grid in grids:
             if grid is not None:

@@ -240,7 +240,7 @@ def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
             )
         if scenario.skier is not None and not _balances(boots):
             raise ParameterError(
-                "boots: the scenario has a skier, whose control moves the boots. Give the scenario without it, "
+                "boots: the scenario has a skier, whose control moves the boots. Use the scenario without it, "
                 "scenario.with_(skier=None), or a BalancedSkier.",
                 code="contradiction",
             )

@@ -54,34 +54,34 @@ REMEDIES: Final[dict[Outcome, str]] = {
     ),
     "tipped_over": Message(
         "The sledge leant more than 60° from the snow's normal, or more than 40° ahead or back: it has tipped over. "
-        "Lower its centre of mass, widen the stance, or take less edge or speed."
+        "Lower its centre of mass, widen the stance, or reduce edge angle or speed."
     ),
     "fell": Message(
-        "The skier leant more than 60° from the snow's normal: it fell. Take less speed, a gentler slope or shorter "
-        "turns; figures/balance shows where the lean left what would be in balance."
+        "The skier leant more than 60° from the snow's normal: it fell. Reduce the speed, or use a gentler slope or "
+        "longer turns; figures/balance shows where the lean left the balance."
     ),
     "airborne": Message(
-        "Both skis were off the snow for 0.3 s. Flight is not what this model is for: take less speed, or a smoother "
+        "Both skis were off the snow for 0.3 s. The model does not cover flight: reduce the speed, or use a smoother "
         "slope."
     ),
     "sunk": Message(
-        "The boots went more than half a metre below the surface, or would: this snow does not carry the sledge. Take "
+        "The boots sank more than half a metre below the surface, or would: this snow does not carry the sledge. Use "
         "harder snow, less mass or a wider ski."
     ),
-    "missed_gate": Message("Change line or start, or the course; gates.csv says of each gate what became of it."),
+    "missed_gate": Message("Change line or start, or the course; gates.csv lists the result at each gate."),
     "straddled": "By the rules this is not a passage. Change line or start, or the course; gates.csv says of each gate "
     "what became of it.",
     "energy_open": Message(
-        "The energy residual is more than 0.5 % of the energy exchanged: do not rely on these numbers. Take smaller "
+        "The energy residual is more than 0.5 % of the energy exchanged: the numbers are not reliable. Use smaller "
         "steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
         "smaller tolerance."
     ),
     "step_too_small": Message(
-        "The error control asked for steps below 0.1 µs: the motion is too stiff or too rough. Loosen the tolerance, "
-        "or take a smaller k_u/H_V."
+        "The error control required steps below 0.1 µs: the motion is too stiff or too rough. Increase the "
+        "tolerance, or reduce k_u/H_V."
     ),
-    "not_finite": Message("The numbers diverged. Take a smaller step, or leave the error control on."),
-    "interrupted": Message("The run was stopped; what had been computed is kept."),
+    "not_finite": Message("The numbers diverged. Use a smaller step, or the error control."),
+    "interrupted": Message("The run was stopped; the results so far are kept."),
 }
 
 

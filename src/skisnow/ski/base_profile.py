@@ -173,8 +173,8 @@ class _End:
     def rise(self, distance: FloatArray) -> FloatArray:
         if self.rocker_height > 0 and not self.rocker_length > 0:
             raise ParameterError(
-                "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. Give its length "
-                "or leave the height out.",
+                "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. State its length "
+                "or remove the height.",
                 code="contradiction",
                 name=self.name,
                 rocker_height=self.rocker_height * 1e3,
@@ -192,7 +192,7 @@ class _End:
             if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
                 raise ParameterError(
                     "the {name} height is {given_height:.1f} mm, but the running length ends where the ski does. "
-                    "Give the {name} a length or leave its height out.",
+                    "State the length of the {name} or remove its height.",
                     code="contradiction",
                     name=self.name,
                     given_height=self.given_height * 1e3,

@@ -255,7 +255,7 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
         raise ParameterError("elements is {elements}; a ski needs 4 or more", code="out_of_range", elements=elements)
     if footprint_stiffness is not None and not footprint_stiffness > 0.0:
         raise ParameterError(
-            "footprint_stiffness is {footprint_stiffness} N/m²; it must be above 0, or left out: rigid",
+            "footprint_stiffness is {footprint_stiffness} N/m²; it must be above 0, or absent (rigid)",
             code="out_of_range",
             footprint_stiffness=footprint_stiffness,
         )

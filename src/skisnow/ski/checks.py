@@ -186,7 +186,7 @@ def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
     largest = width * math.tan(0.5 * (side + bevel))
     if not 0.0 <= radius <= largest:
         problem = Message(
-            "edge_radius is {radius!r} m; it must be 0 to {largest:.6f} m, so that the round lies within edge_width",
+            "edge_radius is {radius!r} m; it must be 0 to {largest:.6f} m, so that the rounding is within edge_width",
             radius=radius,
             largest=largest,
         )

@@ -222,7 +222,7 @@ def shape_value(ski: Ski, name: str) -> float:
     if name not in allowed:
         if ski.keys is None and name.startswith("ski."):
             raise ParameterError(
-                "{name}: the ski {ski} was not read from a file of keys alone, or was changed since. Take one of "
+                "{name}: the ski {ski} was not read from a file with keys only, or was changed since. Use one of "
                 "{allowed}.",
                 code="no_keys",
                 name=name,

@@ -57,7 +57,7 @@ class FileParts:
         values = self.values
         if self.table.keys() >= set(STIFFNESSES):
             values.refuse_together(
-                ["stiffness_station_mm"], Message("a table with both stiffnesses"), Message("Leave it out.")
+                ["stiffness_station_mm"], Message("a table with both stiffnesses"), Message("Remove it.")
             )
         layout, width, name = self._shaped() if "shape" in values else self._laid_out()
         said = values.said
@@ -87,7 +87,7 @@ class FileParts:
     def _shaped(self) -> tuple[Layout, StationFunction, str]:
         values = self.values
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
-        values.refuse_together(outlined, "shape", Message("Leave one of them out."))
+        values.refuse_together(outlined, "shape", Message("Remove one of them."))
         file = values.beside("shape") or values.file
         shape = monkeycam_shape(file, running_length=values.said.running_length)
         return shape.outline.layout, shape.outline.width_at, shape.name
@@ -97,7 +97,7 @@ class FileParts:
         layout = self._layout_of_table() if self.table else self._layout_of_keys()
         if "width_mm" in self.table:
             column = Message("the column {column}", column="width_mm")
-            values.refuse_together((*WIDTHS, TIP_END), column, Message("Leave one of them out."))
+            values.refuse_together((*WIDTHS, TIP_END), column, Message("Remove one of them."))
             return layout, width_of_table(self.table["width_mm"], layout), values.file.stem
         tip, waist, tail = (values.needed(key) for key in WIDTHS)
         for key, width in (("tip_width_mm", tip), ("tail_width_mm", tail)):
@@ -137,7 +137,7 @@ class FileParts:
     def _layout_of_table(self) -> Layout:
         values = self.values
         values.refuse_together(
-            ["tail_overhang_mm"], Message("a table, which reaches from tip to tail"), Message("Leave it out.")
+            ["tail_overhang_mm"], Message("a table, which reaches from tip to tail"), Message("Remove it.")
         )
         station = self.table["station_m"].station
         length, reach = values.said.length, float(station[0] - station[-1])
@@ -156,7 +156,7 @@ class FileParts:
         values = self.values
         if "base_height_mm" in self.table:
             values.refuse_together(
-                BASE, Message("the column {column}", column="base_height_mm"), Message("Leave one of them out.")
+                BASE, Message("the column {column}", column="base_height_mm"), Message("Remove one of them.")
             )
             return self.table["base_height_mm"].at
         return values.said.base
@@ -164,16 +164,16 @@ class FileParts:
     def _stiffness(self, key: str, layout: Layout) -> StationFunction:
         values = self.values
         if values.said.rigid:
-            values.refuse_together(LISTS, "rigid", Message("Leave one of them out."))
+            values.refuse_together(LISTS, "rigid", Message("Remove one of them."))
             if key in self.table:
                 raise ParameterError(
-                    "the column {key} cannot stand beside rigid = true. Leave one of them out.",
+                    "the column {key} contradicts rigid = true. Remove one of them.",
                     code="contradiction",
                     key=key,
                 )
             return lambda station: np.full(np.shape(station), RIGID)
         if key in self.table:
-            values.refuse_together([key], Message("the column {column}", column=key), Message("Leave one of them out."))
+            values.refuse_together([key], Message("the column {column}", column=key), Message("Remove one of them."))
             return self.table[key].at
         stiffness = values.numbers(key)
         station = values.numbers("stiffness_station_mm") if "stiffness_station_mm" in values else None
@@ -188,7 +188,7 @@ class FileParts:
         mass = self.values.said.mass
         if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
             allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)
-            self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or leave mass_kg out."))
+            self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or remove mass_kg."))
 
     def _warn_of_lengths(self, ski: Ski) -> None:
         for key, length in (("running_length_mm", ski.running_length), ("sidecut_length_mm", ski.sidecut_length)):

@@ -91,7 +91,7 @@ class FileValues:
         for key in keys:
             if key in self.values:
                 raise ParameterError(
-                    "{file}: {key} = {value} cannot stand beside {other}, which says the same. {action}",
+                    "{file}: {key} = {value} is stated together with {other} for the same quantity. {action}",
                     code="contradiction",
                     file=self.file,
                     key=key,
@@ -168,12 +168,12 @@ def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity)
     fields = {"file": file, "place": place, "value": value, "low": quantity.usual[0], "high": quantity.usual[1]}
     text = (
         Message(
-            "{file}: {place} is {value:g} (and {count} more); usual is {low:g} to {high:g}. It is used as it stands.",
+            "{file}: {place} is {value:g} (and {count} more); usual is {low:g} to {high:g}. The value is used.",
             **fields,
             count=len(unusual) - 1,
         )
         if len(unusual) > 1
-        else Message("{file}: {place} is {value:g}; usual is {low:g} to {high:g}. It is used as it stands.", **fields)
+        else Message("{file}: {place} is {value:g}; usual is {low:g} to {high:g}. The value is used.", **fields)
     )
     unit = _likely_unit(value, quantity)
     warnings.warn(RangeWarning(joined([text, unit]) if unit else text, code="unusual"), stacklevel=2)

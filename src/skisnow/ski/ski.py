@@ -164,11 +164,11 @@ class Ski(Shown):
         if self.base is None or self.base.camber == 0.0:
             problem = (
                 Message(
-                    "the ski {name} has given heights of its base, so that no camber is rounded. Leave it out",
+                    "the ski {name} has stated heights of its base, so that its camber is not rounded. Remove it",
                     name=self.name,
                 )
                 if self.base is None
-                else Message("the ski {name} has no camber, so that no camber is rounded. Leave it out", name=self.name)
+                else Message("the ski {name} has no camber to round. Remove it", name=self.name)
             )
             raise ParameterError(problem, code="no_camber")
         base = replace(self.base, camber_rounding=length)

@@ -123,7 +123,7 @@ def ski_names() -> tuple[str, ...]:
 
 def _no_such_ski(name: str) -> ParameterError:
     return ParameterError(
-        "there is no ski named {name!r}. {allowed} Any other ski is read from a file ending in .toml.",
+        "unknown ski {name!r}. {allowed} Any other ski is read from a file ending in .toml.",
         code="unknown_name",
         name=name,
         allowed=nearest(name, ski_names()),

@@ -62,7 +62,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
             )
         if name in header[:place]:
             raise ParameterError(
-                "{path}, line {line}: the column {name} stands there twice. Remove one.",
+                "{path}, line {line}: the column {name} occurs twice. Remove one.",
                 code="repeated",
                 path=path,
                 line=first,
@@ -93,7 +93,7 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
         text = decoded(plain_bytes(path, most_bytes=MOST_BYTES)).text
     except NoTextError as error:
         raise ParameterError(
-            "{path} is no text ({place} is no {encoding}). Save it as UTF-8.",
+            "{path} is not text ({place} is not {encoding}). Save it as UTF-8.",
             code="not_text",
             path=path,
             place=error.place,
@@ -107,7 +107,10 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
         lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
     except csv.Error as error:
         raise ParameterError(
-            "{path} is no table of cells ({error}). Is a quote never closed?", code="not_csv", path=path, error=error
+            "{path} is not a table of cells ({error}). Check for a quote that is never closed.",
+            code="not_csv",
+            path=path,
+            error=error,
         ) from error
     lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
     if len(lines) < 3:
@@ -120,7 +123,7 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
 def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
     if len(cells) != len(header):
         raise ParameterError(
-            "{path}, line {line}: {n_cells} cells stand under {n_header} columns. Correct it.",
+            "{path}, line {line}: {n_cells} cells for {n_header} columns. Correct it.",
             code="wrong_number_of_cells",
             path=path,
             line=line,
@@ -172,7 +175,7 @@ class StationTable:
     def __post_init__(self) -> None:
         if self.station.shape != self.value.shape or self.station.ndim != 1 or not self.station.size:
             raise ParameterError(
-                "{size} values stand at {size_2} stations. Give as many values as stations.",
+                "{size} values for {size_2} stations. Give one value for each station.",
                 code="wrong_shape",
                 size=self.value.size,
                 size_2=self.station.size,

@@ -179,8 +179,8 @@ def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:
         raise ParameterError(
-            "the snow ({source}) has no interval of {quantity}; it takes two used experiments of each kind. Choose a "
-            "site that has them",
+            "the snow ({source}) has no interval of {quantity}, which needs two used experiments of each kind. "
+            "Choose a site that has them",
             code="no_data",
             source=snow.source,
             quantity="H_V" if hardness is None else "S_f",

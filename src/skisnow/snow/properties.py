@@ -86,9 +86,9 @@ class SnowProperties(Shown):
     ]
     source: Annotated[
         str,
-        Word("results", "results.json of an analysed campaign, in place of H_V and S_f", names_file=True),
+        Word("results", "results.json of an analysed campaign, instead of H_V and S_f", names_file=True),
         Word("site", "one site of those results; default: all of them"),
-        Word("published", "name of a published snow, in place of H_V and S_f"),
+        Word("published", "name of a published snow, instead of H_V and S_f"),
     ]
     snow_hardness_interval: Interval | None = None
     failure_shear_stress_interval: Interval | None = None
@@ -145,15 +145,15 @@ def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves:
     """
     if S_f_N_per_mm2 is not None and snow.failure_shear_stress is not None:
         raise ParameterError(
-            "S_f_N_per_mm2 cannot stand beside this snow ({source}), which has its own S_f. Leave one out, or give "
-            "H_V_N_per_mm3 and S_f_N_per_mm2 as numbers",
+            "S_f_N_per_mm2 conflicts with this snow ({source}), which has an S_f. Remove one, or give H_V_N_per_mm3 "
+            "and S_f_N_per_mm2 as numbers",
             code="contradiction",
             source=snow.source,
         )
     if carves and S_f_N_per_mm2 is None and snow.failure_shear_stress is None:
         raise ParameterError(
-            "this snow ({source}) has no failure shear stress S_f, which a carved turn needs. Give one beside it, "
-            "S_f_N_per_mm2 (--S-f-N-per-mm2), or ask for the ski at rest (--at-rest)",
+            "this snow ({source}) has no failure shear stress S_f, which a carved turn needs. Add S_f_N_per_mm2 "
+            "(--S-f-N-per-mm2), or compute the ski at rest (--at-rest)",
             code="no_data",
             source=snow.source,
         )

@@ -182,7 +182,9 @@ def _lengths(A: FloatArray) -> FloatArray:
 def _require_few(p: int) -> None:
     if not 1 <= p <= MOST_COEFFICIENTS:
         raise ParameterError(
-            "{p} coefficients; every set of bounds is tried, which is meant for 1 to 6 of them", code="too_many", p=p
+            "{p} coefficients; every set of bounds is tried, which is practical for 1 to 6 of them",
+            code="too_many",
+            p=p,
         )
 
 

@@ -107,7 +107,7 @@ def require_finite(name: str, values: FloatArray) -> None:
     if np.any(bad):
         place = tuple(int(i) for i in np.argwhere(bad)[0])
         raise ParameterError(
-            "{name}{place} is {value}; only finite numbers can be fitted: leave such rows out",
+            "{name}{place} is {value}; only finite numbers can be fitted: remove such rows",
             code="not_a_number",
             name=name,
             place=place,
@@ -240,7 +240,7 @@ def spread(coefficients: FloatArray, residuals: FloatArray, design: Factorisatio
 def _dependence(names: Sequence[str], dependent: list[int], rank: int) -> Message:
     return Message(
         "the data determine only {rank} of {count} coefficients: {names} does not vary or follows from the other "
-        "columns; leave it out, or measure at more settings of it",
+        "columns; remove it, or measure at more settings of it",
         rank=rank,
         count=len(names),
         names=[names[j] for j in sorted(dependent)],

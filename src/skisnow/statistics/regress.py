@@ -107,7 +107,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     response, design = _checked(y, X)
     whole = ~(np.isnan(response) | np.any(np.isnan(design), axis=1))
     if not np.any(whole):
-        raise FitError("no row of y and X is without NaN; there is nothing to fit", code="no_data")
+        raise FitError("every row of y and X contains NaN; nothing can be fitted", code="no_data")
     fit = _factorised(design[whole])
     b, residuals = fit.solve(response[whole])
     _warn_without_constant(fit)

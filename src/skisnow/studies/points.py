@@ -273,7 +273,7 @@ class Axis:
         repeated = next((value for place, value in enumerate(checked) if value in checked[:place]), None)
         if repeated is not None:
             raise ParameterError(
-                "{name} holds {repeated!r} twice; write each value once",
+                "{name} contains {repeated!r} twice; write each value once",
                 code="repeated",
                 name=key.name,
                 repeated=repeated,
@@ -331,7 +331,7 @@ class Axis:
             return Column(index, self.values)
         if self.n is not None:
             raise ParameterError(
-                "{name}: n stands once in [latin_hypercube], not in a range", code="contradiction", name=self.key.name
+                "{name}: n belongs in [latin_hypercube], not in a range", code="contradiction", name=self.key.name
             )
         numbers = self._at(share)
         whole = self.key.kind == "whole number"
@@ -364,7 +364,7 @@ def require_count(n: int) -> None:
     """Reject a study with more points than can be computed."""
     if n > MOST_POINTS:
         raise ParameterError(
-            "the study has {n} points; at most {most_points} are allowed. Take fewer values",
+            "the study has {n} points; at most {most_points} are allowed. Use fewer values",
             code="out_of_range",
             n=n,
             most_points=MOST_POINTS,

@@ -172,9 +172,9 @@ def _merged(out: Path, parts: _Parts) -> StudyTable:
     return written(out, parts, parts.fingerprint, parts.keys, previous=before)
 
 
-_OF_ANOTHER_STUDY: Final = template("{path} is a part of another study than {other}. Leave one of them out")
+_OF_ANOTHER_STUDY: Final = template("{path} is a part of another study than {other}. Remove one of them")
 _OF_ANOTHER_CORE: Final = template(
-    "{path} is a part of this study, computed by another core than {other}. Leave one of them out"
+    "{path} is a part of this study, computed by another core than {other}. Remove one of them"
 )
 
 

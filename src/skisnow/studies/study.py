@@ -197,7 +197,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     axes = [_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError(
-            "[{form}] holds no input that varies; write one, such as edge_angle_deg = [30, 45, 60]",
+            "[{form}] contains no varied input; write one, such as edge_angle_deg = [30, 45, 60]",
             code="missing",
             form=form,
         )

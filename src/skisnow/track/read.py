@@ -91,7 +91,7 @@ def read_track(
             raise ParameterError("{name} is {value:g}; it must be above 0", code="out_of_range", name=name, value=value)
     if kind is not None and kind not in get_args(TrackFormat):
         raise ParameterError(
-            "there is no track format {kind!r}; there are {allowed}",
+            "unknown track format {kind!r}; allowed are {allowed}",
             code="unknown_name",
             kind=kind,
             allowed=list(get_args(TrackFormat)),

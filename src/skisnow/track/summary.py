@@ -119,7 +119,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     motion = track_motion(track, window=window, place_noise=place_noise)
     if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
         raise ParameterError(
-            "{name}: no window of {window:g} s holds six usable points. Give a longer window",
+            "{name}: no window of {window:g} s contains six usable points. Use a longer window",
             code="too_few_points",
             name=track.name,
             window=motion.smoothed.resolution.window,

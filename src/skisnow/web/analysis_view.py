@@ -117,7 +117,7 @@ class AnalysisView:
         if not refusal.errors:
             self._status.set_text(self._page.refused)
             return
-        self._status.set_text(Message("This campaign cannot be analysed yet. What is wrong in its files:"))
+        self._status.set_text(Message("This campaign cannot be analysed yet. Errors in its files:"))
         with self._results:
             _list_errors(refusal.errors)
             if self._page.kind == "kept":

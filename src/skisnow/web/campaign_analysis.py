@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from .settings import Lab
     from .subprocesses import Worker
 
-LEFT_OUT: Final = Message("left out by choice in the lab")
+LEFT_OUT: Final = Message("excluded by choice in the lab")
 N_FIGURES: Final = len(DRAWERS)
 SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetration_experiments", "shear_experiments")
 

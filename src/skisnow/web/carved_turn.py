@@ -319,7 +319,7 @@ def _radius(answer: dict[str, Any]) -> str:
     fields = {"name": name, "radius": significant(radius)}
     if answer["holds"]:
         return Message("{name}: carved radius {radius} m", **fields)
-    return Message("{name}: carved radius {radius} m, were the snow to hold it", **fields)
+    return Message("{name}: carved radius {radius} m, if the snow held it", **fields)
 
 
 def _in_words(answer: dict[str, Any]) -> Message:

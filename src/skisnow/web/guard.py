@@ -270,7 +270,7 @@ def _network(address: str) -> str:
 
 
 def token_page(
-    scope: Scope, status: int, sentence: str = Message("The lab asks for the token that it was started with.")
+    scope: Scope, status: int, sentence: str = Message("The lab requires the token that it was started with.")
 ) -> Response:
     """Page with the form for the token and a sentence above it, in the language of the request."""
     language = language_of_request(Request(scope))

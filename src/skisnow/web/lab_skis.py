@@ -328,7 +328,7 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
         _require_own_files(place, names)
     elif not files and not designs and names:
         raise ParameterError(
-            "a table alone tells neither length nor mass of a ski; choose it together with a .toml file that names "
+            "a table alone states neither length nor mass of a ski; choose it together with a .toml file that names "
             "it (table = '{table}'): “Download the file” on the page gives one to begin with",
             code="table_alone",
             table=names[0],

@@ -97,7 +97,7 @@ class TrackFolders:
         _require_allowed(placing)
         if len(self.names()) >= MOST_TRACKS:
             raise ParameterError(
-                "{most} tracks are kept already; take some out of the folder {folder} of the lab",
+                "{most} tracks are stored already; remove some from the folder {folder} of the lab",
                 code="too_many_files",
                 most=MOST_TRACKS,
                 folder=TRACKS_FOLDER,
@@ -188,7 +188,7 @@ def _require_allowed(placing: Placing) -> None:
 def _require_few_points(track: Track) -> None:
     if len(track.time) > MOST_POINTS:
         raise ParameterError(
-            "{track} has {points} points; at most {most} are drawn beside a run. Cut the turn out",
+            "{track} has {points} points; at most {most} are drawn next to a run. Cut the turn out",
             code="too_many_points",
             track=track.name,
             points=len(track.time),
@@ -229,14 +229,14 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
     if azimuth is None:
         if track.axes == "east_north_up":
             raise ParameterError(
-                "{track} is in latitude and longitude: say in which compass direction the slope falls",
+                "{track} is in latitude and longitude: state the compass direction in which the slope falls",
                 code="no_direction",
                 track=placing.called,
             )
         return track
     if track.axes == "slope":
         raise ParameterError(
-            "{track} is in the axes of the slope already: leave the direction out",
+            "{track} is already in the axes of the slope: remove the direction",
             code="needless_direction",
             track=placing.called,
         )
@@ -309,7 +309,7 @@ class LabCourses:
             )
         if len(self.kept()) >= MOST_COURSES:
             raise ParameterError(
-                "{most} courses are kept already; take some out of the folder {folder} of the lab",
+                "{most} courses are stored already; remove some from the folder {folder} of the lab",
                 code="too_many_files",
                 most=MOST_COURSES,
                 folder=COURSES_FOLDER,

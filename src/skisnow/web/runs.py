@@ -219,11 +219,11 @@ class Runs:
         if job is not None and job.state == "waiting":
             self._keep(replace(job, state="cancelled", said="It had not begun."))
         elif job is not None and name == self._running:
-            self._cancelling, self.progress = name, Message("being cancelled; what was computed is written")
+            self._cancelling, self.progress = name, Message("being cancelled; the results so far are written")
             if self._process is not None:
                 self._process.terminate()
         else:
-            raise ParameterError("this run is over already; there is nothing to cancel", code="run_is_over")
+            raise ParameterError("this run is over already; it cannot be cancelled", code="run_is_over")
 
     async def work(self) -> None:
         """Run the jobs of the queue until `end`."""
@@ -293,7 +293,7 @@ class Runs:
         summary = self.folder / job.name / "summary.json"
         with in_language(job.language):
             if not summary.is_file():
-                said = str(Message("Nothing was computed yet.")) if cancelled else last
+                said = str(Message("Nothing has been computed yet.")) if cancelled else last
                 return replace(job, state="cancelled" if cancelled else "failed", said=said)
             try:
                 finished = read_record(summary, FinishedRun, only_known=False)

@@ -39,13 +39,11 @@ def require_allowed(host: str, token: str | None) -> None:
         The host is not this machine's loopback address and there is no token, or the token is blank.
     """
     if token is not None and not token.strip():
-        raise ParameterError(
-            "the token is blank; give one that is hard to guess, or leave --token out", code="blank_token"
-        )
+        raise ParameterError("the token is blank; use one that is hard to guess, or remove --token", code="blank_token")
     if token is None and not is_loopback(host):
         raise ParameterError(
-            "on {host} other machines could open the lab; add --token with a word that is hard to guess, or leave "
-            "--host out",
+            "on {host} other machines could open the lab; add --token with a word that is hard to guess, or remove "
+            "--host",
             code="no_token",
             host=host,
         )

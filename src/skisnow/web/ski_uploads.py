@@ -117,8 +117,8 @@ def _file_form() -> None:
     """Form for the files of a ski."""
     sentence(
         Message(
-            "The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, "
-            "which knows neither mass nor stiffness: type those beside it."
+            "The .toml file of a ski and the table that it names; or the ski-def.json of MonkeyCAM, which has "
+            "neither mass nor stiffness: type those next to it."
         ),
         "quiet",
     )

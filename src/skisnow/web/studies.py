@@ -139,9 +139,7 @@ class Studies(Runs):
         """
         job = next((job for job in self.study_jobs() if job.name == name), None)
         if job is None or job.state not in ("cancelled", "failed"):
-            raise ParameterError(
-                "this study waits, is computed or is done; there is nothing to go on with", code="not_stopped"
-            )
+            raise ParameterError("this study waits, is running or is done; it cannot be continued", code="not_stopped")
         self._keep(replace(job, state="waiting", said="", workers=self.workers))
 
     def file(self, name: str, file: str) -> Path:
@@ -288,7 +286,7 @@ def estimate_words(studies: Studies, runs: Path, jobs: list[Job], *, points: int
             elsewhere=studies.elsewhere,
         )
     return Message(
-        "{points} points. Will take about {duration_words}.",
+        "{points} points. Takes about {duration_words}.",
         points=points,
         duration_words=duration_words(seconds / studies.workers + AROUND_S),
     )

@@ -150,8 +150,8 @@ def require_few_points(points: int) -> None:
     """
     if points > MOST_POINTS:
         raise ParameterError(
-            "the study has {points} points; the lab takes at most {most}. Take fewer values, or the command skisnow "
-            "study, which takes a million",
+            "the study has {points} points; the lab accepts at most {most}. Use fewer values, or the command skisnow "
+            "study, which accepts a million",
             code="too_many_points",
             points=points,
             most=MOST_POINTS,

@@ -18,7 +18,7 @@ from skisnow.report.figures.course import edge_angles
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate
 from skisnow.track.course import course_names
-from tests.coded import raises
+from tests.coded import coded, raises
 
 STRAIGHT = {
     "start.heading_deg": 0.0, "sledge.edge_angle_deg": 0.0, "friction.mu_0": 0.0, "drag.drag_area_m2": 0.0,
@@ -114,12 +114,12 @@ def test_a_course_of_the_catalogue_or_of_a_file_is_read_with_the_scenario(tmp_pa
 
 
 def test_refusals_of_a_course() -> None:
-    for changes, said in (
-        ({"course.name": "slalom-21"}, "no course of the catalogue. Did you mean slalom-20-gates"),
-        ({"course.discipline": "slalom"}, "course.discipline is there without a course"),
-        ({"course.file": "none.csv"}, "none.csv cannot be read"),
+    for changes, expected in (
+        ({"course.name": "slalom-21"}, coded("unknown_name", name="slalom-21", similar="slalom-20-gates")),
+        ({"course.discipline": "slalom"}, coded("contradiction", key="discipline")),
+        ({"course.file": "none.csv"}, coded("cannot_read", path=Path("none.csv"))),
     ):
-        with pytest.raises(ParameterError, match=said):
+        with raises(ParameterError, expected):
             load_scenario("carved-46m", changes=changes)
 
 

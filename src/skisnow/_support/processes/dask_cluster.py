@@ -188,7 +188,7 @@ def _of_batch_system(system: str, entries: object, wait: float, tls: Mapping[str
     for name in ("cores", "memory"):
         if name not in options:
             raise ParameterError(
-                '{system}.{name} is missing. It is what one job has, such as cores = 16, memory = "32GB".',
+                '{system}.{name} is missing. It is the size of one job, such as cores = 16, memory = "32GB".',
                 code="missing_key",
                 system=system,
                 name=name,
@@ -341,7 +341,7 @@ class _DaskCrew(GivenCrew):
         """Explanation of an error of Dask."""
         if isinstance(error, ImportError) or any(word in str(error) for word in _NOT_LOADED):
             return Message(
-                "A worker cannot load what it is to compute ({error}). Install the same skisnow there.", error=error
+                "A worker cannot load the computation ({error}). Install the same skisnow there.", error=error
             )
         if type(error).__module__.startswith("distributed"):
             return Message("Dask gave up: {kind}: {error}.", kind=type(error).__name__, error=error)

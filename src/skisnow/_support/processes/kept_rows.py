@@ -108,7 +108,7 @@ class KeptRows:
         """
         if not path.is_file():
             raise ParameterError(
-                "{path} cannot be read: there is no such file. Check the path.", code="cannot_read", path=path
+                "{path} cannot be read: the file does not exist. Check the path.", code="cannot_read", path=path
             )
         with _errors(path):
             rows = cls(path)
@@ -296,8 +296,8 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
 
 def _another(path: Path) -> ParameterError:
     return ParameterError(
-        "{path} holds the finished points of another study, or of this one before its inputs, one of its files or "
-        "skisnow changed. Undo the change to go on with them, or remove that file to begin again.",
+        "{path} contains the finished points of another study, or of this one before its inputs, one of its files or "
+        "skisnow changed. Undo the change to continue them, or remove that file to start again.",
         code="another_study",
         path=path,
     )

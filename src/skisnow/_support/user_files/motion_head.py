@@ -39,7 +39,7 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
         return None
     if word.lower() not in _WORDS:
         raise ParameterError(
-            "{path}: the head says inDegrees={word}. Allowed: yes, no. Correct the line.",
+            "{path}: the header states inDegrees={word}. Allowed: yes, no. Correct the line.",
             code="head_says_indegrees",
             path=path,
             word=word,
@@ -58,8 +58,8 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
     stated = degrees_stated(path, head)
     if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
         raise ParameterError(
-            "{path}: the head says neither whether angles are in degrees nor a version. Add the line inDegrees=yes "
-            "or inDegrees=no before endheader.",
+            "{path}: the header states neither the unit of angles nor a version. Add the line inDegrees=yes or "
+            "inDegrees=no before endheader.",
             code="head_says_neither_whether",
             path=path,
         )
@@ -73,7 +73,8 @@ def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, colum
         word = said.get(key.lower(), "")
         if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
             raise ParameterError(
-                "{path}: the head says {key}={word}, there are {there}; it is cut or joined, or its head wrong",
+                "{path}: the header states {key}={word}, but the file has {there}; it is truncated or joined, or its "
+                "header is wrong",
                 code="head_says",
                 path=path,
                 key=key,

@@ -204,7 +204,7 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
 def too_deep(line: int | None = None) -> GivenError:
     """The error for brackets within brackets within brackets."""
     return GivenError(
-        Message("brackets are nested more than {deepest} deep. Take some out.", deepest=DEEPEST),
+        Message("brackets are nested more than {deepest} deep. Remove some.", deepest=DEEPEST),
         line=line,
         code="nested_too_deep",
     )

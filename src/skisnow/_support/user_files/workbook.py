@@ -156,7 +156,7 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
                 raise GivenError(
                     Message(
                         "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
-                        "Remove what is not needed.",
+                        "Remove the unused ones.",
                         row=len(rows) + 1,
                         sheet=sheet.title,
                         count=len(texts),

@@ -171,7 +171,7 @@ def _repeated(tables: Sequence[ImportedTable]) -> list[Problem]:
             table.section.key,
             value=other.section.key,
             allowed=Message("each measurement once"),
-            action=Message('Leave one out with --table "{key}=-".', key=table.section.key),
+            action=Message('Exclude one with --table "{key}=-".', key=table.section.key),
         )
         for table, own in zip(tables, contents, strict=True)
         for other, others in zip(tables, contents, strict=True)

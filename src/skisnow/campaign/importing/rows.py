@@ -151,7 +151,7 @@ def _number(sheet: Sheet, row: int, choice: ColumnChoice, text: str, mark: str, 
                 value=text,
                 allowed=Message("a number with the decimal mark {mark}", mark=written),
                 action=Message(
-                    "Correct the cell, or leave it out with --ignore {place}.",
+                    "Correct the cell, or exclude it with --ignore {place}.",
                     place=f"{sheet.name}!{column_letters(choice.place)}{row + 1}",
                 ),
             )
@@ -224,6 +224,6 @@ def _strays(section: Section, rows: Sequence[int], ignored: Ignored) -> Iterator
                     column=column_letters(right),
                     value=text,
                     allowed=Message("cells below a heading"),
-                    action=Message("Add a heading, or leave the column out with --ignore {place}.", place=place),
+                    action=Message("Add a heading, or exclude the column with --ignore {place}.", place=place),
                 )
             right += 1

@@ -197,7 +197,7 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
         return _read(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
         action = Message(
-            "Name the folder that holds campaign.toml and the tables, or a workbook (.xlsx) with all of it."
+            "Name the folder of campaign.toml and the tables, or a workbook (.xlsx) that contains all of them."
         )
         if folder.is_file() and folder.suffix.lower() == ".toml":
             used = Message("A ski or a scenario is checked where it is used: by carve --ski FILE, by simulate FILE.")

@@ -199,7 +199,7 @@ def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None
     before = len(files.problems)
     data = files.read(name)
     if data is None and len(files.problems) == before:
-        action = Message("Lay the file beside the tables, correct its name, or take the row out.")
+        action = Message("Put the file next to the tables, correct its name, or remove the row.")
         allowed = Message("a file of this name in the campaign's folder")
         files.problems.append(table.error(row, "unreadable_file", "file", table.names["file"][row], allowed, action))
     if data is None:
@@ -222,7 +222,7 @@ def _repeated_names(table: Table, column: str) -> list[Problem]:
         reference = first.setdefault(name, row)
         if name and reference != row and len(problems) < MOST_LISTED:
             allowed = Message("each {column} once; row {row} has it, too", column=column, row=int(table.row[reference]))
-            action = Message("Correct the cell, or take one of the rows out.")
+            action = Message("Correct the cell, or remove one of the rows.")
             problems.append(table.error(row, "mixed_experiment", column, table.names[column][row], allowed, action))
     return problems
 
@@ -271,7 +271,7 @@ def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeat
 
 
 def _refuse_weather_file(files: RawFiles, name: str, allowed: str) -> None:
-    action = Message("Lay the file beside campaign.toml, or correct its name.")
+    action = Message("Put the file next to campaign.toml, or correct its name.")
     files.problems.append(
         error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)
     )

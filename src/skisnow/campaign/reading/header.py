@@ -154,9 +154,8 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
     meant = as_written[near[0]] if near else likely.get(name)
     action = (
         Message(
-            "Is the column {similar!r} meant? Rename it, or map it under [columns] in campaign.toml; the unit "
-            "belongs to "
-            "the name.",
+            "Did you mean {similar!r}? Rename the column, or map it under [columns] in campaign.toml; the unit is "
+            "part of the name.",
             similar=meant,
         )
         if meant
@@ -170,7 +169,7 @@ def _unknown(form: TableForm, name: str, header: Header) -> Problem:
     free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
     action = (
-        Message("The column is kept as text and not interpreted. Rename it if {similar!r} is meant.", similar=near[0])
+        Message("The column is kept as text and not interpreted. Rename it if you meant {similar!r}.", similar=near[0])
         if near
         else Message("The column is kept as text and not interpreted; no action is needed.")
     )

@@ -105,10 +105,10 @@ def check_steepness(table: Table, blocks: Blocks) -> Iterator[Problem]:
     steep = table.numbers[COLUMN] > STEEPEST_MEASURED_DEG
     for row in _once_per_block(steep, blocks):
         allowed = Message(
-            "penetration at up to {steepest_measured_deg:g} degrees is what was measured before",
+            "penetration was measured up to {steepest_measured_deg:g} degrees so far",
             steepest_measured_deg=STEEPEST_MEASURED_DEG,
         )
-        action = Message("It is computed all the same; make sure that the angle is meant.")
+        action = Message("The computation continues; check the angle.")
         yield table.warning(
             row, "angle_above_60", COLUMN, f"{table.numbers[COLUMN][row]:g}", allowed=allowed, action=action
         )

@@ -236,9 +236,7 @@ class _TableReading:
 
     def _surplus(self, line: int, cell: str, width: int) -> Problem:
         allowed = Message("{width} cells, one below each column name", width=width)
-        action = Message(
-            "Name the column in the header, or put the cell that holds a separator or decimal comma in quotes."
-        )
+        action = Message("Name the column in the header, or put the cell with a separator or decimal comma in quotes.")
         return error("unreadable_file", self._form.file, row=line, value=cell, allowed=allowed, action=action)
 
     def finish(self) -> None:

@@ -161,7 +161,7 @@ def _require_size(lines: list[int], rows: list[list[str]]) -> None:
             row=line,
             value=f"{count} cells",
             allowed=Message("at most {most_columns} columns", most_columns=MOST_COLUMNS),
-            action=Message("Take out the columns that are not needed."),
+            action=Message("Remove the unused columns."),
         )
     if max(map(len, chain.from_iterable(rows)), default=0) > LONGEST_CELL:
         line, cell = next(

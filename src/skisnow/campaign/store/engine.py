@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ..._support.sqlite_file import Mode
     from .server import StorePlace
 
-_DAMAGED: Final = Message("the file is damaged; put a backup in its place, or export what can still be exported")
+_DAMAGED: Final = Message("the file is damaged; restore a backup, or export the readable part")
 _NO_STORE: Final = Message("this file is not a store; name another file")
 _NOT_ALLOWED: Final = Message("access is not allowed; change the permissions or name another place")
 _NO_TEXT: Final = "Could not decode to UTF-8"
@@ -56,7 +56,7 @@ _FAILURES: Final = {
     "could not be read": (template("{place} could not be read: {reason}."), "not_read"),
     "could not be written": (template("{place} could not be written: {reason}."), "not_written"),
     "could not be synchronised": (template("{place} could not be synchronised: {reason}."), "not_synchronised"),
-    "could not take the campaign in": (template("{place} could not take the campaign in: {reason}."), "not_stored"),
+    "could not take the campaign in": (template("{place} could not store the campaign: {reason}."), "not_stored"),
     "cannot be used": (template("{place} cannot be used: {reason}."), "not_usable"),
     "cannot be used as a store": (template("{place} cannot be used as a store: {reason}."), "not_usable"),
 }
@@ -254,7 +254,7 @@ def _revision(connection: Connection, path: Path) -> str | None:
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1 or not isinstance(versions[0], str):
         raise StoreError(
-            "{path} is damaged: it does not say what version it is. Put a backup in its place.",
+            "{path} is damaged: its version is missing. Restore a backup.",
             code="damaged",
             path=path,
         )
@@ -280,7 +280,7 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
                 raise StoreError(
-                    "{path} holds rows that point nowhere; it was left as it is. Put a backup in its place.",
+                    "{path} contains rows with invalid references; it was not changed. Restore a backup.",
                     code="damaged",
                     path=path,
                 )

@@ -123,9 +123,8 @@ def _records(data: bytes) -> list[list[str]]:
         return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:
         raise StoreError(
-            "The {file} that came with the campaign cannot be read, so that no rows can follow: "
-            "{allowed} is wanted. `skisnow store export --as-added` gives the files without later "
-            "corrections.",
+            "The file {file} of the campaign cannot be read, so that no rows can be appended: {allowed} is required. "
+            "`skisnow store export --as-added` exports the files without later corrections.",
             code="unreadable_corrections",
             file=CORRECTIONS.file,
             allowed=error.allowed,

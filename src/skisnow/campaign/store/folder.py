@@ -100,8 +100,8 @@ def list_files(folder: Path) -> dict[str, FileState]:
                 refused.append(path)
     if refused:
         raise StoreError(
-            "{folder} holds what is neither file nor folder (links, pipes, …): {paths}; put the "
-            "files themselves in their place, or take them out.",
+            "{folder} contains links, pipes or other special files: {paths}; replace them by the files themselves, "
+            "or remove them.",
             code="not_a_file",
             folder=folder,
             paths=list(map(_printable, refused)),
@@ -193,7 +193,7 @@ def new_folder(out: Path) -> Iterator[Path]:
     out = out.resolve()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise StoreError(
-            "{out} is there already and not an empty folder; name a folder that does not exist yet.",
+            "{out} exists and is not an empty folder; name a folder that does not exist yet.",
             code="not_empty",
             out=out,
         )
@@ -231,8 +231,8 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
             os.fsync(stream.fileno())
     except FileExistsError as error:
         raise StoreError(
-            "{path} and another file of the campaign have the same name on this file system; export "
-            "to one that tells upper from lower case.",
+            "{path} and another file of the campaign have the same name on this file system; export to one that "
+            "distinguishes upper and lower case.",
             code="same_name",
             path=file.path,
         ) from error

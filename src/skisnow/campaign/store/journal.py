@@ -248,8 +248,8 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
     if row is not None:
         subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
         raise OvertakenError(
-            "Nothing was stored: {who} wrote about {subject} meanwhile ({at}). Look at it as it is "
-            "now, then enter again what is still missing.",
+            "Nothing was stored: {who} changed {subject} meanwhile ({at}). Check its present state, then enter the "
+            "missing values again.",
             code="overtaken",
             who=row["who"] or Message("somebody"),
             subject=subject,

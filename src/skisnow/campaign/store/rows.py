@@ -129,7 +129,7 @@ def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequ
             candidates=_candidates(matching),
         )
     return StoreError(
-        "No campaign begins with {beginning}; the store holds {candidates}.",
+        "No campaign begins with {beginning}; the store contains {candidates}.",
         code="unknown_id",
         beginning=beginning,
         candidates=_candidates(stored),
@@ -153,7 +153,7 @@ def stored_hashes(connection: Connection) -> set[str]:
 def damage_error(what: str) -> StoreError:
     """Error for damaged rows."""
     return StoreError(
-        "{what} is damaged in the store; `skisnow store verify` lists all damage. Put a backup in its place.",
+        "{what} is damaged in the store; `skisnow store verify` lists all damage. Restore a backup.",
         code="damaged",
         what=what,
     )

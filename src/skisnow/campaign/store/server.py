@@ -40,7 +40,7 @@ _CONNECTION: Final = {
 
 _STATES: Final = {
     "55P03": Message("another program has kept it locked for too long; wait until that one is done and try again"),
-    "53100": Message("there is no room left on the server's disk; its administrator must make some"),
+    "53100": Message("the server's disk is full; its administrator must free space"),
     "53300": Message("the server has too many connections; wait a little and try again"),
     "42501": Message("this user is not allowed to do that; the owner of the database can grant it"),
     "25006": Message("it is read-only; ask the server's administrator, or name another place"),
@@ -57,14 +57,14 @@ _CONNECTING: Final = (
         "no pg_hba.conf entry",
         Message("the server lets this user not in from this machine; a line of its pg_hba.conf would"),
     ),
-    ("failed to resolve host", Message("there is no host of that name; check the address")),
-    ("could not translate host name", Message("there is no host of that name; check the address")),
+    ("failed to resolve host", Message("the host is unknown; check the address")),
+    ("could not translate host name", Message("the host is unknown; check the address")),
     (
         "does not support SSL",
-        Message("the server speaks no TLS; its administrator sets ssl = on, or leave sslmode out"),
+        Message("the server does not support TLS; its administrator sets ssl = on, or remove sslmode"),
     ),
     ("certificate", Message("the server's certificate was refused; check sslmode and sslrootcert in the address")),
-    ("role ", Message("the server knows no user of that name")),
+    ("role ", Message("the server has no user of that name")),
     ("does not exist", Message("the server has no database of that name; its administrator makes one with createdb")),
     ("Connection refused", Message("no server answers there; check that it runs, the host's name and the port")),
     ("No such file or directory", Message("no server answers there; check that it runs, and the address")),
@@ -178,8 +178,8 @@ def _require_unicode(connection: Connection, address: ServerAddress) -> None:
     encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
     if encoding != "UTF8":
         raise StoreError(
-            "The database {address} holds texts as {encoding}, which has not every letter; make one "
-            "with: createdb --encoding=UTF8 --template=template0 NAME",
+            "The database {address} stores texts as {encoding}, which lacks letters; create one with: createdb "
+            "--encoding=UTF8 --template=template0 NAME",
             code="wrong_encoding",
             address=address,
             encoding=encoding,
@@ -197,14 +197,14 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
         return None
     if tables.get("campaign") != MARK or "alembic_version" not in tables:
         raise StoreError(
-            "{address} holds tables of another program, not a store; create a separate database for the store.",
+            "{address} contains tables of another program, not a store; create a separate database for the store.",
             code="other_database",
             address=address,
         )
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1:
         raise StoreError(
-            "{address} is damaged: it does not say what version it is. Put a backup in its place.",
+            "{address} is damaged: its version is missing. Restore a backup.",
             code="damaged",
             address=address,
         )
@@ -225,8 +225,8 @@ def needs_migration(revision: str | None, place: object) -> bool:
 
     if revision is not None and not is_known(revision):
         raise StoreError(
-            "{place} has schema {revision}, which this version of skisnow does not know; it reads "
-            "{known}. Update skisnow, or name another store.",
+            "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
+            "skisnow, or name another store.",
             code="unknown_schema",
             place=place,
             revision=revision,

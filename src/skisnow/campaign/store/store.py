@@ -195,7 +195,7 @@ class Store(Shown):
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
             raise StoreError(
-                "{folder} is not a folder; name the folder that holds the campaign's files.",
+                "{folder} is not a folder; name the folder with the campaign's files.",
                 code="no_folder",
                 folder=folder,
             )
@@ -209,7 +209,7 @@ class Store(Shown):
         files = list_files(folder)
         if not files:
             raise StoreError(
-                "{folder} holds no file; name the folder that holds the campaign's files.",
+                "{folder} contains no file; name the folder with the campaign's files.",
                 code="no_files",
                 folder=folder,
             )

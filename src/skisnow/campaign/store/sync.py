@@ -177,8 +177,8 @@ class _Sync:
             open_ = {divergence.id: divergence for divergence in self._open(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
                 raise StoreError(
-                    "No open conflict is called {names}: one of its sides may have changed. Nothing was "
-                    "settled; synchronise without a choice to see what is open.",
+                    "There is no open conflict {names}: one of its sides may have changed. Nothing was settled; "
+                    "synchronise without a choice to list the open conflicts.",
                     code="unknown_conflict",
                     names=list(unknown),
                 )

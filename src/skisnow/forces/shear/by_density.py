@@ -53,8 +53,8 @@ class DensityShear(ShearLaw):
         if not minimum < self.snow_density <= ICE_DENSITY:
             raise ParameterError(
                 "DensityShear: snow_density is {snow_density!r} kg/m³; Eqn 14 gives no strength at or below "
-                "{minimum:.1f} kg/m³, and no snow is denser than {ice_density:g} kg/m³; it was measured for "
-                "{lowest:g} to {highest:g} kg/m³",
+                "{minimum:.1f} kg/m³, and ice has {ice_density:g} kg/m³; the equation was measured for {lowest:g} to "
+                "{highest:g} kg/m³",
                 code="out_of_range",
                 snow_density=self.snow_density,
                 minimum=minimum,

@@ -80,11 +80,11 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     """The sledge of a scenario on its flexible skis."""
     if scenario.boots is not None:
         raise ParameterError(
-            "boots.file: an FMU's boots stay where the sledge has them; leave boots.file out", code="not_supported"
+            "boots.file: the boots of an FMU are fixed to the sledge; remove boots.file", code="not_supported"
         )
     if scenario.skier is not None:
         raise ParameterError(
-            "skier: an FMU holds a sledge, whose boots stay where they are; take a scenario without one",
+            "skier: an FMU contains a sledge with fixed boots; use a scenario without a skier",
             code="not_supported",
         )
     setup = laid_out(scenario)
@@ -122,7 +122,7 @@ def _starts(variables: tuple[Variable, ...]) -> FloatArray:
 def _require_own_laws(snow: SnowField) -> None:
     if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
         raise ParameterError(
-            "an FMU has no Python in it: it takes the laws that the core knows, not a user-defined one", code="no_data"
+            "an FMU contains no Python: it accepts the built-in laws, not a user-defined one", code="no_data"
         )
 
 

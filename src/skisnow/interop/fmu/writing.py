@@ -100,7 +100,7 @@ def _require(path: str | Path, fmi: int) -> None:
     """Raise errors of the inputs before the work."""
     if Path(path).suffix.lower() != ENDING:
         raise ParameterError(
-            "{path} does not end in {ending}, by which programs know an FMU; name it so",
+            "{path} does not end in {ending}, as other programs expect of an FMU; rename it",
             code="wrong_ending",
             path=path,
             ending=ENDING,
@@ -111,7 +111,7 @@ def _require(path: str | Path, fmi: int) -> None:
         )
     if not sys.platform.startswith("linux") or platform.machine() != "x86_64":
         raise ParameterError(
-            "FMUs are written on Linux on x86-64, for which alone their library is built", code="not_supported"
+            "FMUs are written on Linux on x86-64, the only platform of their library", code="not_supported"
         )
 
 

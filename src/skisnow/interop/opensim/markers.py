@@ -85,7 +85,7 @@ class Markers(Shown):
         """
         if name not in self.names:
             raise ParameterError(
-                "there is no marker {name}; there are {names}", code="unknown_name", name=name, names=list(self.names)
+                "unknown marker {name}; the markers are {names}", code="unknown_name", name=name, names=list(self.names)
             )
         return self.place[:, self.names.index(name)]
 

@@ -102,7 +102,7 @@ export function laidOut(root, parts, run) {
       made("div", { className: "replay-row" }, field(said("Groove depth"), parts.relief, parts.deepened),
         field(said("Bending and twist"), parts.exaggeration, parts.exaggerated), field(said("Export"), ...takeAway)),
       parts.message,
-      made("details", {}, made("summary", { textContent: said("Drawing, keys, and what this run is") }),
+      made("details", {}, made("summary", { textContent: said("Drawing, keys, and description of this run") }),
         field(said("Drawing"), parts.drawing), keys, facts),
     ),
   );

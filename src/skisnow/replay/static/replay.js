@@ -47,7 +47,7 @@ class Player {
     try {
       this.stage = new Stage(this.parts.canvas, run, ghost);
     } catch (error) {
-      this.say(said("This browser shows no WebGL picture. Switch hardware acceleration on, or take another browser."));
+      this.say(said("This browser shows no WebGL picture. Switch hardware acceleration on, or use another browser."));
       throw error;
     }
     this.#fill();

@@ -138,7 +138,7 @@ def seating_findings(data: ReportData) -> list[Markup]:
     half_widths = np.diff(pairs(rows, "interval_mm"), axis=1) / 2.0
     sentences = [
         prose(
-            "{shown} of {all} used series have an offset whose 95 % interval leaves out zero; the median half-width of "
+            "{shown} of {all} used series have an offset whose 95 % interval excludes zero; the median half-width of "
             "the intervals is {half} mm. {file} lists every offset.",
             shown=whole(count_resolved_offsets(rows)),
             all=whole(len(rows)),
@@ -244,7 +244,7 @@ def _by_site(row: Json) -> list[Markup]:
     if contains_zero and row["p"] < SIGNIFICANT:
         return [
             prose(
-                "With sites as clusters the interval is {ends}: it contains zero, so what looks significant may be a "
+                "With sites as clusters the interval is {ends}: it contains zero, so the apparent effect may be a "
                 "difference between a few sites.",
                 ends=ends,
             )

@@ -262,7 +262,7 @@ def _significance(row: Json) -> str:
         return f" ({p})"
     pair = row["interval_by_site"][1]
     if pair is None:
-        return Message(" ({p}; the sites are too few or too alike to tell)", p=p)
+        return Message(" ({p}; the sites are too few or too similar to decide)", p=p)
     return f" ({p})" if pair[0] > 0 or pair[1] < 0 else Message(" ({p}; not with sites as clusters)", p=p)
 
 

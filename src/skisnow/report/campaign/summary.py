@@ -223,7 +223,10 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
     drawers = {drawer.__name__: drawer for drawer in (*DRAWERS, *recordings)}
     if what not in drawers:
         raise ParameterError(
-            "No figure {what!r} of an analysis. {names}", code="unknown_figure", what=what, names=nearest(what, drawers)
+            "Unknown figure {what!r} of an analysis. {names}",
+            code="unknown_figure",
+            what=what,
+            names=nearest(what, drawers),
         )
     data = ReportData(analysis)
     with journal_style():

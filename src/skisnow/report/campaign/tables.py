@@ -122,7 +122,7 @@ def group_comparison_table(data: ReportData) -> Table:
         columns,
         [row | {"by": _GROUPS[row["by"]]} for row in data.results["group_comparisons"]],
         note=Message(
-            "Intervals and p are those of a pair by itself. The corrected p accounts for the number of pairs of the "
+            "Intervals and p are those of a single pair. The corrected p accounts for the number of pairs of the "
             "same kind (Holm). Tools, observers and days are compared at their common sites. Last column: tests in "
             "each group that would find a difference of {difference_percent:.3g} % with a power of 80 %.",
             difference_percent=data.results["provenance"]["options"]["difference_percent"],
@@ -150,7 +150,7 @@ def published_table(data: ReportData) -> Table:
         Column("own_over_published", Message("own / published")),
     )
     caption = Message(
-        "Published values beside this campaign's own: mean (H_V: geometric) with 95 % interval, and range over the "
+        "Published values next to this campaign's own: mean (H_V: geometric) with 95 % interval, and range over the "
         "used experiments."
     )
     return record_table("comparisons", caption, columns, records)
@@ -325,7 +325,7 @@ def quality_flags_table(data: ReportData) -> Table:
         ),
         (
             Column("code", Message("Code"), "text"),
-            Column("sentence", Message("What it says"), "words"),
+            Column("sentence", Message("Statement"), "words"),
             Column("excludes", Message("excludes"), "yes"),
             Column("penetration_n", Message("penetration"), "count"),
             Column("penetration_experiments", Message("penetration experiments"), "codes"),

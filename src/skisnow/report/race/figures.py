@@ -120,7 +120,7 @@ def gate_gaps_drawing(gaps: Sequence[GateGap], names: tuple[str, str]) -> Drawin
     return Drawing(
         "gate_gaps",
         prose(
-            "(a) Gap of {own} to {other} at each gate, both from their starts. (b) What was lost since the gate before "
+            "(a) Gap of {own} to {other} at each gate, both from their starts. (b) Time lost since the gate before "
             "that both crossed. Above 0 {own} is behind or loses.",
             own=names[0], other=names[1],
         ),

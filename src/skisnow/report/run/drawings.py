@@ -88,8 +88,8 @@ def _motion(run: Run) -> Drawing:
     return Drawing(
         "motion",
         prose(
-            "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The radius "
-            "is left out where it is more than three times its median."
+            "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The "
+            "radius is not drawn where it is more than three times its median."
         )
         + _carved_radius(run),
         Message("Speed, heading and turn radius over time."),
@@ -208,14 +208,14 @@ def run_figure(run: Run, what: str) -> Figure:
     """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
     if what not in _FIGURES:
         raise ParameterError(
-            "there is no figure {figure!r} of a run. {nearest}",
+            "unknown figure {figure!r} of a run. {nearest}",
             code="unknown_figure",
             figure=what,
             nearest=nearest(what, _FIGURES),
         )
     if len(run.time) < 2:
         raise ParameterError(
-            "the run ended before its first step ({outcome}); there is nothing to draw",
+            "the run ended before its first step ({outcome}); no figure can be drawn",
             code="nothing_to_draw",
             outcome=run.outcome,
         )

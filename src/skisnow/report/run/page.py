@@ -295,7 +295,7 @@ def _balance(run: Run) -> list[Markup]:
 
 
 def _no_step() -> Markup:
-    return prose("The run ended before its first step; there is nothing to draw.")
+    return prose("The run ended before its first step; no figure can be drawn.")
 
 
 def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:

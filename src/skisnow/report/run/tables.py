@@ -40,7 +40,7 @@ _LOST: Final = (
     ("lost_snow_damping_J", Message("lost to damping and delayed depth of the snow")),
 )
 _GIVEN: Final = (
-    ("given_boots_J", Message("given by what moves the boots")),
+    ("given_boots_J", Message("from the motion of the boots")),
     ("given_push_J", Message("given by a push")),
 )
 

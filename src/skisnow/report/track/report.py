@@ -146,8 +146,8 @@ def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> 
     yield Drawing(
         "along",
         prose(
-            "Speed, height and turn radius along {name}. The axis of the radius is even in 1/radius: straight lies in "
-            "the middle. The smoothing leaves half of a swing of the curvature that takes {half:.2g} s.",
+            "Speed, height and turn radius along {name}. The axis of the radius is even in 1/radius: straight is in "
+            "the middle. The smoothing keeps half of an oscillation of the curvature with a period of {half:.2g} s.",
             name=name,
             half=summary.motion.smoothed.resolution.half_period,
         )

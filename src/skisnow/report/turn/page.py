@@ -118,8 +118,8 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
     yield Drawing(
         "band",
         prose(
-            "The turn ({name}) over what is not known of snow, friction and ski: tracks from above, and below how far "
-            "each run is beside and ahead of the nominal one at the same time.",
+            "The turn ({name}) with the unknown inputs of snow, friction and ski varied: tracks from above, and "
+            "below the distance of each run beside and ahead of the nominal one at the same time.",
             name=html(name),
         ),
         Message("Band of tracks from above, and offsets over time."),
@@ -160,9 +160,9 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
         ratio=html(_ratio_in_words(chain)),
     )
     drawn = prose(
-        "{count} runs with all that the table below names drawn at random (Latin hypercube, seed {seed}). The measured "
-        "intervals are those of the site's means: the snow's change from place to place would widen the band. What the "
-        "table does not name is taken as known.",
+        "{count} runs with all inputs of the table below drawn at random (Latin hypercube, seed {seed}). The "
+        "measured intervals are those of the site's means: the variation of the snow from place to place would widen "
+        "the band. All other inputs count as known.",
         count=len(chain.ensemble),
         seed=chain.seed,
     )
@@ -183,13 +183,13 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
         ),
         Section(
             "ensemble",
-            Message("Over what is not known"),
+            Message("With the unknown inputs varied"),
             words=[drawn, *ensemble_accuracy(chain)],
             pictures=[by_name["band"]],
             tables=[shares_table(chain), ensemble_table(chain.ensemble)],
             after=[ensemble_sentence(chain)],
         ),
-        Section("meaning", Message("What it means"), words=meaning(chain)),
+        Section("meaning", Message("Meaning"), words=meaning(chain)),
         Section("scenario", Message("Scenario"), tables=[scenario_table(scenario_values(nominal.scenario))]),
         Section("provenance", Message("Provenance"), words=[_provenance(chain)]),
     ]
@@ -335,8 +335,8 @@ def shares_table(chain: TurnChain) -> Table:
         [*_inputs(chain, shares), *_unexplained(shares)],
         note=Message(
             "Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
-            "intervals. What is left over does not follow any input in proportion: curvature, thresholds such as an "
-            "edge that loses its grip, and the interplay of inputs."
+            "intervals. The rest is proportional to no input: curvature, thresholds such as an edge that loses its "
+            "grip, and the interaction of inputs."
         ),
     )
 

@@ -38,7 +38,7 @@ _INPUTS: Final = {
     "snow.unloading_ratio": ("k_u / H_V", Message("depths read while the discs are taken off one by one, for k_u")),
     "snow.shear_displacement_mm": (
         Message("the shear displacement u_y"),
-        Message("the turning angle read beside the moment of the shear device, for u_y"),
+        Message("the turning angle at each moment of the shear device, for u_y"),
     ),
     "friction.mu_0": (Message("the friction μ_0"), Message("a straight glide past photo cells, for μ_0")),
     "ski.stiffness_factor": (
@@ -329,16 +329,16 @@ def meaning(chain: TurnChain) -> list[Markup]:
     aside, _ = _widths(chain)
     far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
     contacts = prose(
-        "The choice of the contact moves the track by up to {far} m, all that is not known of the turn by {aside} m "
-        "(width of the band that holds 90 % at the end).",
+        "The choice of the contact moves the track by up to {far} m, the unknown inputs of the turn move it by "
+        "{aside} m (width of the band with 90 % of the runs at the end).",
         far=significant(far, 2),
         aside=significant(aside, 2),
     )
     grip = prose("The grip holds while the side force stays below the shear capacity: S_f times depth times length.")
     if any((used_grip(run)[1] or 0.0) > HELD for run in (reference, *others)):
         grip += prose(
-            " Hard snow lets an edge in little and so offers little to hold on to: here the skis side-slip, and a "
-            "slower start, a gentler slope or softer snow brings them back on their edges."
+            " An edge enters hard snow only a little and has little to hold: here the skis side-slip. A slower "
+            "start, a gentler slope or softer snow brings them back on their edges."
         )
     return [Markup(" ").join([contacts, *_best_measurement(chain)]), grip]
 

@@ -38,12 +38,12 @@ class GateLine(NamedTuple):
 
 _WRONG_SIDE: Final = {
     "left": template(
-        "gate {name}: seen down the course the outer pole stands to the right of the turning pole, and side is "
-        '"left". Change the side, or exchange the poles'
+        'gate {name}: seen down the course the outer pole is to the right of the turning pole, and side is "left". '
+        "Change the side, or exchange the poles"
     ),
     "right": template(
-        "gate {name}: seen down the course the outer pole stands to the left of the turning pole, and side is "
-        '"right". Change the side, or exchange the poles'
+        'gate {name}: seen down the course the outer pole is to the left of the turning pole, and side is "right". '
+        "Change the side, or exchange the poles"
     ),
 }
 _NOT_FINITE: Final = {
@@ -295,7 +295,7 @@ class Gate(ShownFields):
                 raise ParameterError(_NOT_FINITE[pole], code="not_a_number", name=self.name, place=place)
         if self.outer is not None and not self.width > 0.0:
             raise ParameterError(
-                "gate {name}: both poles are at {turning}; move one, or leave the outer out",
+                "gate {name}: both poles are at {turning}; move one, or remove the outer pole",
                 code="same_place",
                 name=self.name,
                 turning=self.turning,

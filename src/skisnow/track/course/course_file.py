@@ -128,7 +128,7 @@ def _geodetic_course(
     waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, options: dict[str, Any]
 ) -> Course:
     if not waypoints:
-        raise ParameterError("there is no waypoint; write one for each gate, in their order", code="no_waypoint")
+        raise ParameterError("there is no waypoint; write one for each gate, in order", code="no_waypoint")
     first = waypoints[0]
     latitude = first.latitude_deg if latitude_deg is None else latitude_deg
     longitude = first.longitude_deg if longitude_deg is None else longitude_deg
@@ -141,8 +141,8 @@ def _geodetic_course(
         side = waypoint.side or bend
         if side is None:
             raise ParameterError(
-                "waypoint {row}, {name!r}, does not say on which side it is passed, and the gates lie so straight "
-                "there that their line does not tell either. Write left or right into its type",
+                "waypoint {row}, {name!r}, states no side, and the gates are so straight there that their line does "
+                "not determine it either. Write left or right into its type",
                 code="no_side",
                 row=waypoint.row,
                 name=waypoint.name,

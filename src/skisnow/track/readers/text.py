@@ -116,7 +116,7 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
                 place=f"row {line}",
                 value=f"{len(row)} cells",
                 allowed=f"at most {MOST_COLUMNS} columns",
-                action="Take out the columns that are not needed.",
+                action="Remove the unused columns.",
             )
         if max(map(len, row)) > LONGEST_CELL:
             raise track_error(

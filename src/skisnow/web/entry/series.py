@@ -177,7 +177,7 @@ class SeriesForm:
         if missing:
             loads = [step.words for step in missing]
             self._view.say(
-                Message("Not stored yet: {loads}. Put it right or empty the field, then go on.", loads=loads), "bad"
+                Message("Not stored yet: {loads}. Correct it or empty the field, then continue.", loads=loads), "bad"
             )
             first = self._readings[missing[0]].depth
             first.run_method("focus")
@@ -188,7 +188,7 @@ class SeriesForm:
         if self._waiting is not None and self._waiting.unstored:
             loads = [Message("{load} N after waiting", load=number_said(load)) for load in self._waiting.unstored]
             self._view.say(
-                Message("Not stored yet: {loads}. Store it or empty the field, then go on.", loads=loads), "bad"
+                Message("Not stored yet: {loads}. Store it or empty the field, then continue.", loads=loads), "bad"
             )
             self._waiting.focus()
             return False

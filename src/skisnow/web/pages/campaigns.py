@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 PATH: Final = "/"
 TITLE: Final = Message("Campaigns")
 WHAT_THIS_IS: Final = Message(
-    "Here what was measured on a slope becomes snow hardness and shear stress, and these "
-    "become turns of a ski: enter tests, analyse them, carve and simulate."
+    "skisnow turns measurements on a slope into snow hardness and shear stress, and these into turns of a ski: enter "
+    "tests, analyse them, carve and simulate."
 )
 SAMPLE_SEED: Final = 1
 CARDS: Final = (

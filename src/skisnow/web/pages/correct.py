@@ -28,10 +28,7 @@ if TYPE_CHECKING:
     from ..settings import Lab
 
 HERE = "/"
-UNREAD = Message(
-    "no table of this campaign can be read; what is wrong in its files is listed under Analysis in the list of "
-    "campaigns"
-)
+UNREAD = Message("no table of this campaign can be read; its errors are listed under Analysis in the list of campaigns")
 
 
 def add_page(lab: Lab) -> None:

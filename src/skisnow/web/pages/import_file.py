@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 PATH: Final = "/import/{id_}"
 HERE: Final = "/"
 NONE: Final = "-"
-LEFT_OUT: Final = Message("left out")
+LEFT_OUT: Final = Message("excluded")
 TEXT: Final = Message("kept as text")
 _SHOWN_ROWS: Final = 4
 QUESTIONS: Final = {

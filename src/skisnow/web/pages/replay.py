@@ -92,7 +92,7 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
         _select("run", Message("Run"), titles, names[0])
         other = names[1] if len(names) > 1 and not track else NONE
         _select("ghost", Message("Laid over it, translucent"), {NONE: NONE, **titles}, other)
-        _select("track", Message("Measured track beside it"), {name: name for name in (NONE, *tracks)}, track or NONE)
+        _select("track", Message("Measured track next to it"), {name: name for name in (NONE, *tracks)}, track or NONE)
         submit_button(Message("Watch together"), kind="main")
         submit_button(Message("Compare times at gates"), address=GATES)
 

@@ -95,7 +95,7 @@ def add_page(lab: Lab) -> None:
                 _Form(lab, runs, course)
                 _course_form()
             with ui.element("section"):
-                JobList(runs, _Card, Message("Nothing was simulated yet."))
+                JobList(runs, _Card, Message("Nothing has been simulated yet."))
 
 
 class _Form:
@@ -188,9 +188,7 @@ class _Form:
         values["solver.method"] = self._fields["solver.method"].text
         seconds = estimated_s(self._runs.folder, self._runs.jobs(), values)
         self._estimate.set_text(
-            ""
-            if seconds is None
-            else Message("Will take about {duration_words}.", duration_words=duration_words(seconds))
+            "" if seconds is None else Message("Takes about {duration_words}.", duration_words=duration_words(seconds))
         )
 
     async def ask(self) -> None:

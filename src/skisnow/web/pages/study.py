@@ -55,7 +55,7 @@ def add_page(lab: Lab) -> None:
     def study() -> None:
         with framed(Message("Study"), here=PATH):
             _Form(lab, studies)
-            JobList(studies, _Card, Message("Nothing was studied yet."))
+            JobList(studies, _Card, Message("Nothing has been studied yet."))
 
 
 class _CarveField(ScenarioField):
@@ -226,7 +226,7 @@ class _Form:
         for name in varied:
             if from_snow.get(name):
                 raise ParameterError(
-                    "{input} varies and the chosen snow gives it; choose the numbers below as the snow",
+                    "{input} varies, but the chosen snow fixes it; choose the numbers below as the snow",
                     code="given_by_snow",
                     input=called(study_keys(str(self._of.value))[name]),
                 )
