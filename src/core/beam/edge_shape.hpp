@@ -12,7 +12,7 @@ namespace skisnow {
 // A strip of the base along each edge is ground up by the base bevel, and the corner of base and side is rounded: its
 // chord replaces the round. Both raise the base near the edge in proportion to the way from their inner end, a hinge.
 //
-// Equations: docs/methods/edges.md.
+// Equations: docs/methods/ski.md.
 class EdgeShape {
  public:
   static constexpr double SQUARE = 0.5 * std::numbers::pi;  // a side at right angles to the base (rad)

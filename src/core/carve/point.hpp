@@ -1,6 +1,6 @@
 // An equilibrium of a carving ski, refined, and the derivatives of its outputs by everything that it depends on.
 //
-// Equations: docs/methods/carve-derivatives.md.
+// Equations: docs/methods/carved-turn.md.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // The equations of a carving ski on any kind of number: with derivatives in some directions (`Slopes`), or in more
 // digits (long double). Groove along the edge, snow of the core's law.
 //
-// Equations: docs/methods/carve-derivatives.md.
+// Equations: docs/methods/carved-turn.md.
 #pragma once
 
 #include <cmath>

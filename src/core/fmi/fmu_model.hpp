@@ -1,6 +1,6 @@
 // Model of an FMU: variables by their numbers, and steps from one time to another.
 //
-// Equations: docs/how-to/fmu.md; skisnow.interop, which writes the FMU, has the names of the variables.
+// Equations: docs/how-to/other-programs.md; skisnow.interop, which writes the FMU, has the names of the variables.
 #pragma once
 
 #include <memory>
