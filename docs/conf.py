@@ -11,9 +11,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parent))
+from api_reference import write_reference
+from benchmarks.constants.page import write_page as write_constants
 from key_tables import write_schemas, write_tables
-from write_gallery import write_pages
+from write_gallery import write_pages as write_gallery
 
 _PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -113,7 +116,9 @@ def setup(app: Sphinx) -> None:
     """Write tables of keys, schemas and the gallery; register what reads and renders parts of pages."""
     write_tables()
     write_schemas()
-    write_pages()
+    write_gallery()
+    write_reference()
+    write_constants()
     app.connect("autodoc-process-docstring", _bars)
     app.connect("doctree-read", _align_numbers)
     app.connect("html-page-context", _levels, priority=900)  # behind the theme's own

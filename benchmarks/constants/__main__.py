@@ -1,7 +1,7 @@
-"""python -m benchmarks.constants: vary the constants that were not varied yet, and write the page anew.
+"""python -m benchmarks.constants: vary the constants that were not varied yet.
 
-``--page`` writes the page alone, ``--only KEY ...`` varies these. Results are kept row by row in moved.csv, so the run
-can be stopped and goes on where it was. It needs cmake, ninja, nanobind and a compiler.
+``--only KEY ...`` varies these. Results are kept row by row in moved.csv, from which the build of the docs writes the
+page; a run that was stopped continues. It needs cmake, ninja, nanobind and a compiler.
 """
 
 from __future__ import annotations
@@ -10,22 +10,18 @@ import argparse
 import tempfile
 from pathlib import Path
 
-from .collecting import constants
-from .page import PAGE, REASONS, page, reasons_by_key
+from .page import REASONS, reasons_by_key
 from .results import Moved, read_moved, store_moved
 from .varying import FACTORS, TunableBuild, varied_constants
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.constants")
-    parser.add_argument("--page", action="store_true", help="only write the page")
     parser.add_argument("--only", nargs="*", metavar="KEY", help="vary these constants again")
     parser.add_argument("--folder", type=Path, help="of the build; left out: a new one each time")
     options = parser.parse_args()
-    if not options.page:
-        with tempfile.TemporaryDirectory() as folder:
-            vary(TunableBuild(options.folder or Path(folder)), options.only)
-    PAGE.write_text(page(constants(), read_moved(), REASONS), encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        vary(TunableBuild(options.folder or Path(folder)), options.only)
 
 
 def vary(build: TunableBuild, only: list[str] | None) -> None:

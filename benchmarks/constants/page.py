@@ -1,4 +1,4 @@
-"""docs/methods/contact-constants.md from the constants, what they move, and the reasons of the others."""
+"""Text of docs/methods/contact-constants.md from the constants, what they move, and the reasons of the others."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from .collecting import ROOT, Constant
-from .results import Moved
+from .collecting import ROOT, Constant, constants
+from .results import Moved, read_moved
 from .varying import CASES, FACTORS
 
-PAGE: Final = ROOT / "docs" / "methods" / "contact-constants.md"
+INCLUDED: Final = ROOT / "docs" / "_generated" / "contact-constants.md"
+"""File that the page includes; the build of the docs writes it."""
 Reasons = Mapping[str, Sequence[str]]
 
 
@@ -41,7 +42,7 @@ def reasons_by_key(reasons: Reasons) -> dict[str, str]:
 
 
 def page(found: Sequence[Constant], moved: Sequence[Moved], reasons: Reasons) -> str:
-    """The text of the page."""
+    """The text of the page below its title."""
     known = {each.key for each in found}
     rows = [each for each in moved if each.key in known]
     varied = len({each.key for each in rows})
@@ -49,12 +50,10 @@ def page(found: Sequence[Constant], moved: Sequence[Moved], reasons: Reasons) ->
 
 
 def _head(count: int, varied: int) -> Iterator[str]:
-    yield "# Effect of the constants"
-    yield ""
     yield "A script collects the constants of the sources: `constexpr` numbers of the compiled core, and numbers in"
     yield "capitals of the Python packages contact, dynamics, carving, ski, simulation, skier and forces. In one build"
     yield f"they are read at the start; each is halved and doubled. Of {count} constants {varied} were varied."
-    yield "*`python -m benchmarks.constants` computes this page.*"
+    yield "*`python -m benchmarks.constants` varies those that are new.*"
     yield ""
     yield "| case | run |\n| --- | --- |"
     for case, (name, changes) in CASES.items():
@@ -105,3 +104,9 @@ def _others(reasons: Reasons) -> Iterable[str]:
     yield "| reason | constants |\n| --- | ---: |"
     for reason, keys in reasons.items():
         yield f"| {reason} | {len(keys)} |"
+
+
+def write_page() -> None:
+    """Write the text of the page from the sources and the kept rows."""
+    INCLUDED.parent.mkdir(exist_ok=True)
+    INCLUDED.write_text(page(constants(), read_moved(), REASONS), encoding="utf-8")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from benchmarks.constants import collecting
 from benchmarks.constants.collecting import constants, in_cpp, in_python
-from benchmarks.constants.page import PAGE, REASONS, page
+from benchmarks.constants.page import REASONS, page
 from benchmarks.constants.results import Moved, read_moved
 from benchmarks.constants.varying import CASES, rewritten
 
@@ -22,8 +22,10 @@ def test_every_constant_was_varied_or_has_a_reason() -> None:
     assert len(reasons) == len(set(reasons))
 
 
-def test_the_page_is_written_from_them() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(constants(), read_moved(), REASONS)
+def test_the_page_has_a_row_for_each_that_was_varied() -> None:
+    rows = page(constants(), read_moved(), REASONS).splitlines()
+    keys = {row.split("`")[1] for row in rows if row.count("|") == 3 + len(CASES) and row.startswith("| `")}
+    assert keys == {each.key for each in read_moved()}
 
 
 def test_values_that_were_varied_are_those_of_the_sources() -> None:

@@ -1,5 +1,6 @@
 """The page on force laws has a row for each law and shows the figures that its script draws."""
 
+import importlib
 import importlib.util
 from pathlib import Path
 from types import ModuleType
@@ -18,7 +19,7 @@ from ..versions import SAME_PIXELS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = (DOCS / "methods" / "forces.md").read_text(encoding="utf-8")
-REFERENCE = (DOCS / "api.md").read_text(encoding="utf-8")
+REFERENCE: str = importlib.import_module("api_reference").reference()
 LAWS = (*penetration.LAWS, *penetration.POINT_LAWS, *shear.LAWS, *friction.LAWS)
 LIMIT = 60_000
 """Bytes of a figure: a page of the docs stays light."""
