@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from benchmarks.page_tables import write_tables
 from skisnow.campaign import reference_campaign
-from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
+from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load, shear_stress
 from skisnow.estimation.readings import readings_of
 from skisnow.estimation.regressions import (
     Regression,
@@ -21,7 +21,6 @@ from skisnow.estimation.regressions import (
     spot_observations,
 )
 from skisnow.estimation.screening import screened_penetration, screened_shear
-from skisnow.estimation.shear import shear_stress
 
 LEVELS = (0.05, 0.01)
 """The usual one, and the paper's: it prints p < 0.01 for Eqns 13 and 14."""

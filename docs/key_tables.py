@@ -15,7 +15,7 @@ from skisnow.cli import build_parser
 from skisnow.cli.schema import NAMES, json_schema
 from skisnow.parameters import own_quantities
 from skisnow.parameters.json_schema import page_table, schema_text
-from skisnow.report.run.variables import RUN_VARIABLES, SKIER_VARIABLES, RunVariable
+from skisnow.report.run.file import RUN_VARIABLES, SKIER_VARIABLES, RunVariable
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
 

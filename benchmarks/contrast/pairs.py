@@ -14,7 +14,7 @@ from skisnow._support.errors import SkisnowError
 from skisnow._support.user_files.json_text import json_number
 from skisnow.comparison.nearest_place import distance_from_path
 from skisnow.parameters import Quantity
-from skisnow.report.turn.numbers import afterbody_depth_ratio, median_radius, used_grip
+from skisnow.report.turn.chain import afterbody_depth_ratio, median_radius, used_grip
 from skisnow.scenario import Scenario, load_scenario
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_setup import laid_out

@@ -14,7 +14,7 @@ import skisnow
 from skisnow.campaign import Campaign
 from skisnow.estimation import results_dict
 from skisnow.estimation.comparisons import site_values
-from skisnow.estimation.shear import shear_displacement, shear_stress
+from skisnow.estimation.hardness import shear_displacement, shear_stress
 
 from .conftest import MakeCampaign
 

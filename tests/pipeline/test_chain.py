@@ -25,7 +25,7 @@ from skisnow.cli.schema import json_schema
 from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
 from skisnow.parameters import values_of
 from skisnow.pipeline import MEASURED, PRIORS, inputs_with
-from skisnow.report.turn.numbers import turn_dict
+from skisnow.report.turn.chain import turn_dict
 from skisnow.scenario.identify_section import prior_of
 from skisnow.ski import write_ski
 from skisnow.snow import SnowProperties

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from scipy.io import netcdf_file
 
-from skisnow.report.run.file import MISSING, write_run_file
-from skisnow.report.run.variables import RUN_VARIABLES
+from skisnow.report.run.file import MISSING, RUN_VARIABLES, write_run_file
 from skisnow.simulation.run import LOST, STORED, Run
 
 from ..docs.page_text import page_text

@@ -12,9 +12,9 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
-from skisnow.report.turn.chain import EnsembleRun, TurnChain
-from skisnow.report.turn.figures import TimedTrack
-from skisnow.report.turn.numbers import (
+from skisnow.report.turn.chain import (
+    EnsembleRun,
+    TurnChain,
     afterbody_depth_ratio,
     band_shares,
     band_width,
@@ -23,6 +23,7 @@ from skisnow.report.turn.numbers import (
     middle_track,
     used_grip,
 )
+from skisnow.report.turn.figures import TimedTrack
 from skisnow.report.turn.page import (
     FIGURES,
     contacts_table,

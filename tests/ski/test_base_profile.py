@@ -5,8 +5,7 @@ import pytest
 from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import ParameterError
-from skisnow.ski.base_profile import BaseShape
-from skisnow.ski.layout import layout_of_lengths
+from skisnow.ski.layout import BaseShape, layout_of_lengths
 
 LAYOUT = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
 FRONT, REAR = LAYOUT.contact_points

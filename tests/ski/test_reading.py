@@ -11,8 +11,8 @@ from tests.coded import Coded, coded, raises, warns
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.ski import read_ski, ski_named, ski_names
-from skisnow.ski.base_profile import BaseShape
 from skisnow.ski.file_keys import BASE, COLUMNS, RIGID, SKI_KEYS, SkiFile
+from skisnow.ski.layout import BaseShape
 from skisnow.ski.ski_file import Sources
 from skisnow.snow import published_snow
 

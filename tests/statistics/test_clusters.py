@@ -10,7 +10,7 @@ import pytest
 from tests.coded import raises
 
 from skisnow._support.errors import FitError, ParameterError
-from skisnow.statistics import cluster_intervals, linear_fit, two_groups
+from skisnow.statistics import cluster_intervals, f_tests, linear_fit
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -158,7 +158,7 @@ def test_bad_input() -> None:
 # Groups: numbers of tests against statsmodels, and letters
 
 
-needed = two_groups.tests_per_group  # under its own name pytest would take it for a test
+needed = f_tests.tests_per_group  # under its own name pytest would take it for a test
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -166,14 +166,14 @@ def test_groups_share_a_letter_exactly_where_they_do_not_differ(seed: int) -> No
     rng = np.random.default_rng(seed)
     upper = np.triu(rng.random((7, 7)) < rng.random(), 1)
     differ = upper | upper.T
-    letters = two_groups.compact_letters(differ)
+    letters = f_tests.compact_letters(differ)
     for a in range(7):
         for b in range(7):
             assert bool(set(letters[a]) & set(letters[b])) == (a == b or not differ[a, b])
 
 
 def test_many_different_groups_have_letters_with_a_number() -> None:
-    letters = two_groups.compact_letters(~np.eye(28, dtype=bool))
+    letters = f_tests.compact_letters(~np.eye(28, dtype=bool))
     assert letters[:2] == ["a", "b"]
     assert letters[26:] == ["a1", "b1"]
 

@@ -11,7 +11,7 @@ import pytest
 
 import skisnow
 from skisnow import SnowProperties, Track
-from skisnow._support.display import Facts, Shown, field_facts
+from skisnow._support.units import Facts, Shown, field_facts
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
 from skisnow.identification import Identified, Parameter

@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.track.flags import FLAGS, point_flags
-from skisnow.track.track import Track
+from skisnow.track.track import FLAGS, Track, point_flags
 
 FloatArray = npt.NDArray[np.float64]
 N = 40

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from .._support.display import Facts, Shown, amount, ends
-from .._support.units import DEGREE, MM
+from .._support.units import DEGREE, MM, Facts, Shown, amount, ends
 from .problems import AppliedCorrection
 
 if TYPE_CHECKING:

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Annotated, Final, NoReturn
 
 import numpy as np
 
-from .._support.display import Facts, Shown
 from .._support.errors import FieldDataError
 from .._support.messages import Message
+from .._support.units import Facts, Shown
 from .._support.user_files import GivenError, plain_bytes
 from ..parameters import Quantity, require_declared
 from ..parameters.quantity import LARGEST

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 import numpy as np
 
-from .._support.display import Facts, Shown, amount
-from .._support.units import MM
+from .._support.units import MM, Facts, Shown, amount
 from ..parameters import Quantity, require_declared
 from .snow_micro_pen import SnowMicroPenProfile, parse_snow_micro_pen
 

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.display import Facts, Shown, amount
 from .._support.errors import FieldDataError
 from .._support.messages import Message
-from .._support.units import CM, ICE_DENSITY
+from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
 from ..parameters import Quantity
 from .problems import error
 from .reading.campaign_files import FilesOfFolder, RawFiles

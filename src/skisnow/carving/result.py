@@ -10,10 +10,9 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray
-from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM
+from .._support.units import MM, Facts, Shown, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine

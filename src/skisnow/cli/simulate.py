@@ -263,7 +263,7 @@ def simulate_turn(options: argparse.Namespace) -> int:
         )
         page = None if options.out is None else chain.report(options.out, language=options.language)
     if options.json:
-        from ..report.turn.numbers import turn_dict
+        from ..report.turn.chain import turn_dict
 
         print_json(turn_dict(chain))
     else:

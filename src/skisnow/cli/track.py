@@ -83,7 +83,7 @@ def summarise(options: argparse.Namespace) -> int:
         print_json(values)
     else:
         from ..report.track.summary import track_text
-        from ..track.flags import FLAGS
+        from ..track.track import FLAGS
 
         print(track_text(values, flag_sentences={code: flag.sentence for code, flag in FLAGS.items()}), flush=True)
         if result is not None:

@@ -9,12 +9,10 @@ from typing import Final, get_args
 
 import numpy as np
 
-from .._support.display import amount
 from .._support.errors import ParameterError
-from .._support.units import DEGREE
-from ..track.flags import inexact_sentence
+from .._support.units import DEGREE, amount
 from ..track.slope_frame import STEEPEST, LaidTracks, lay_for_fit
-from ..track.track import Track
+from ..track.track import Track, inexact_sentence
 from .alignment import OFFSETS, Motion, fit_motion, require_offsets
 from .distances import (
     OffsetSeries,

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.units import ShownFields
 from ..track.track import Track
 from .nearest_place import NearestPlaces, Path
 

@@ -9,10 +9,9 @@ from typing import Any, Final, Literal, TypeAlias
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from .._support.display import Facts, Shown, amount
 from .._support.errors import FitError
 from .._support.messages import Message
-from .._support.units import DEGREE
+from .._support.units import DEGREE, Facts, Shown, amount
 from ..track.track import Axes, Track
 from .alignment import LEAST_SHARE, PLACES, Motion
 from .distances import DistanceStatistics, OffsetSeries, Polyline

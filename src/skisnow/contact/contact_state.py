@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
+from .._support.units import Facts, Shown
 from ..compiled import core
 
 

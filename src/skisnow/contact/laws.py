@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .._support.display import Facts, Shown, name_with_values
+from .._support.units import Facts, Shown, name_with_values
 
 if TYPE_CHECKING:
     from ..forces.friction import FrictionLaw

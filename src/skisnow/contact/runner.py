@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
-from .._support.units import MM
+from .._support.units import MM, Facts, Shown, amount, ends
 from ..compiled import core
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
+from .._support.units import Facts, Shown, field_facts
 from ..compiled import core
 from .asked_laws import AskedFriction, AskedPressure, AskedStrength
 from .contact_state import ContactState

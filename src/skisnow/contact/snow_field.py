@@ -8,10 +8,9 @@ from typing import Final, get_args
 
 import numpy as np
 
-from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import N_PER_MM2, N_PER_MM3
+from .._support.units import N_PER_MM2, N_PER_MM3, Facts, Shown, amount
 from ..compiled import core
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.friction.load import ActsOn, Direction

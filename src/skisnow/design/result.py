@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown
 from .._support.messages import Message
 from .._support.staging import write_file
+from .._support.units import Facts, Shown
 from ..carving.outputs import OUTPUTS
 from ..ski import Ski
 from ..ski.ski_file import keys_text, ski_of_keys

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.units import ShownFields
 from ..compiled import core
 
 

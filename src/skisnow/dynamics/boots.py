@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, ShownFields, amount
 from .._support.errors import ParameterError
-from .._support.units import DEGREE
+from .._support.units import DEGREE, Facts, Shown, ShownFields, amount
 from ..geometry.boot_axes import angles_of, axes_of
 from .body import shaped
 

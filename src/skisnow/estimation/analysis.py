@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
+from .._support.units import Facts, Shown, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean, site_values
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness, volume_factor
 from .group_comparisons import DIFFERENCE, GroupComparison, compare_campaign
+from .hardness import shear_displacement, shear_stress
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
@@ -37,7 +38,6 @@ from .regressions import (
     spot_observations,
 )
 from .screening import reading_uncertainty, screened_penetration, screened_shear
-from .shear import shear_displacement, shear_stress
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .spread_groups import scatter_warning
 from .unloading import site_unloading

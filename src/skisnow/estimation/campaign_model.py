@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from .._support.display import ShownFields
-from .._support.units import CONFIDENCE
+from .._support.units import CONFIDENCE, ShownFields
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from .campaign_fit import Freedom, Priors, SeriesFit, Spreads
 

@@ -32,8 +32,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.display import ShownFields
-from .._support.units import CONFIDENCE
+from .._support.units import CONFIDENCE, ShownFields
 from ..statistics.bounded import condensed, non_negative_fits
 from ..statistics.combined_uncertainty import expanded_factor
 from .campaign_model import CONTACT_STEPS

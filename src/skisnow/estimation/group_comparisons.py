@@ -25,8 +25,8 @@ from scipy.special import stdtr
 from .._support.arrays import index_names
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
-from ..statistics.two_groups import compact_letters, holm_corrected, tests_per_group
-from .shear import shear_stress
+from ..statistics.f_tests import compact_letters, holm_corrected, tests_per_group
+from .hardness import shear_stress
 from .spread_groups import bartlett
 
 if TYPE_CHECKING:

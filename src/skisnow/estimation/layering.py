@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.display import ShownFields
-from .._support.units import CONFIDENCE, MM
+from .._support.units import CONFIDENCE, MM, ShownFields
 from ..statistics.combined_uncertainty import expanded_factor
 from .comparisons import SiteValue, site_values
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import BoolArray
-from .._support.display import ShownFields
 from .._support.messages import Message
+from .._support.units import ShownFields
 from ..statistics.bounded import Condensed, condensed
 from .hardness import DEFINITIONS
 

@@ -14,9 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray, index_names
-from .._support.display import Facts, Shown, ShownFields, amount, field_facts
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, ShownFields, amount, field_facts
 from ..snow import SnowProperties
 from ..snow.mean_snow import (
     mean_snow,
@@ -30,13 +29,12 @@ from .campaign_model import CampaignModel
 from .comparisons import OwnValue, SiteValue, own_mean
 from .errors_in_depth import FittedHardness, VolumeFactor
 from .group_comparisons import letters_of_groups
-from .hardness import Hardness
+from .hardness import Hardness, ShearDisplacement, ShearStress
 from .layering import GrowingHardness
 from .model_choice import NestedRows
 from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
-from .shear import ShearDisplacement, ShearStress
 from .unloading import SiteUnloading, Unloading
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .._support.display import ShownFields
+from .._support.units import ShownFields
 from ..campaign.screening import reading_at_largest_load
 from ..geometry import in_form
 

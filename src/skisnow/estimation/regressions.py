@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray, IntArray, index_names
-from .._support.display import ShownFields
 from .._support.errors import FitError
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, ShownFields
 from ..statistics.clusters import cluster_intervals
 from ..statistics.linear import LinearFit, linear_fit
 

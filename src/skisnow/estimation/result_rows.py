@@ -9,22 +9,21 @@ import numpy as np
 
 from .._support.messages import Message
 from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
-from .hardness import DEFINITIONS, hardness_at_largest_load
+from .hardness import DEFINITIONS, hardness_at_largest_load, shear_displacement, shear_stress
 from .models import MODELS
 from .readings import readings_of
 from .screening import screened_both
-from .shear import shear_displacement, shear_stress
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..geometry import GeometryForm
     from .campaign_model import CampaignModel
+    from .hardness import ShearDisplacement, ShearStress
     from .model_choice import NestedRows
     from .models import Model, ModelFit
     from .parts import ModelTable, PenetrationAnalysis
     from .screening import Screened, SeriesEstimates
-    from .shear import ShearDisplacement, ShearStress
     from .unloading import Unloading
 
 Json: TypeAlias = dict[str, Any]

@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .._support.arrays import index_names
-from .._support.display import ShownFields
-from .._support.units import N_PER_MM3
+from .._support.units import N_PER_MM3, ShownFields
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
 from .campaign_model import DEFAULT_PRIORS, CampaignModel
-from .hardness import DEFINITIONS, Hardness, hardness, hardness_at_largest_load
+from .hardness import DEFINITIONS, Hardness, hardness, hardness_at_largest_load, shear_stress
 from .layering import layered
 from .readings import ReadingUncertainty, readings_of
-from .shear import shear_stress
 from .spread_groups import fit_in_groups
 from .unloading import NOT_FALLING, Unloading, unloading
 

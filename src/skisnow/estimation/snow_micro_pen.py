@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from .._support.display import Facts, Shown
-from .._support.units import MM
+from .._support.units import MM, Facts, Shown
 from ..campaign.snow_micro_pen_records import SnowSurface, snow_surface
 from ..parameters import values_of
 from ..snow.measured_range import PENETROMETER_RELATIONS

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .._support.display import ShownFields
+from .._support.units import ShownFields
 from ..statistics.combined_uncertainty import random_effects_mean
 from .comparisons import own_mean
 from .readings import Readings

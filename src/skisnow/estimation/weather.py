@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 import numpy as np
 
 from .._support.arrays import index_names
-from .._support.display import Facts, Shown
-from .._support.units import HOUR, PERCENT, ZERO_CELSIUS
+from .._support.units import HOUR, PERCENT, ZERO_CELSIUS, Facts, Shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.units import ShownFields
 
 EVEN = 1e-9
 """Share of the spacing by which places of a grid may lie unevenly: rounding."""

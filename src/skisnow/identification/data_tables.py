@@ -11,10 +11,10 @@ from typing import Annotated, Final
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.spreadsheet_text import MOST_CSV_BYTES, number
+from .._support.units import ShownFields
 from .._support.user_files import plain_bytes
 from ..parameters import Quantity, own_quantities
 from ..track.readers.text import decimal_mark_of, decode_text, require_width, split_cells

@@ -9,8 +9,8 @@ from typing import Final, Literal, Protocol, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.units import ShownFields
 from ..parameters import nearest
 from ..scenario.keys import EACH
 from .parameter import Parameter, values_of

@@ -13,8 +13,8 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, amount, ends, span
 from .._support.messages import Message
+from .._support.units import Facts, Shown, amount, ends, span
 from .._support.user_files.json_text import json_number
 from .parameter import Parameter
 from .problem import Fit

@@ -13,8 +13,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.processes.kept_rows import Row
-from ..track.flags import inexact_sentence
-from ..track.track import Track
+from ..track.track import Track, inexact_sentence
 from .problem import Fit, Kind, Values, run_values
 from .simulations import RunTask, grip_limit_sentences, perturbed_tasks
 

@@ -17,9 +17,8 @@ from ..estimation import Analysis, analyse
 from ..estimation.parts import site_of_campaign
 from ..parameters import values_of
 from ..report.campaign.data import is_synthetic
-from ..report.turn.chain import EnsembleRun, TurnChain
+from ..report.turn.chain import EnsembleRun, TurnChain, used_grip
 from ..report.turn.figures import FEWEST, TimedTrack
-from ..report.turn.numbers import used_grip
 from ..scenario import Scenario, load_scenario
 from ..scenario.contact import ELASTIC
 from ..scenario.identify_section import Measured, Prior, measured_of

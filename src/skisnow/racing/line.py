@@ -12,11 +12,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-from .._support.display import Facts, Shown, ShownFields, amount
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
 from .._support.staging import write_file
+from .._support.units import Facts, Shown, ShownFields, amount
 from ..scenario import Scenario, Skier
 from ..skier import BalancedSkier
 from ..track.course import Course

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import get_args
 
 from .._support.arrays import content_bytes
-from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
 from .._support.processes.batch import ExecutorLike, Pool, require_executor, workers_in_force
 from .._support.processes.kept_rows import KeptRows
+from .._support.units import Facts, Shown, amount
 from ..scenario import Scenario
 from .line import RacingLine, course_of, first_gates, follower_line
 from .point import Racer, RacerModel, ScoredLine, score_in, turns_in

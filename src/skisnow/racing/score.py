@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
-from .._support.display import ShownFields
+from .._support.units import ShownFields
 from ..track.course import CourseResult, Passage
 
 NOT_PASSED: Final = 1000.0

@@ -13,10 +13,10 @@ import numpy as np
 from scipy.stats import qmc
 
 from .._support.arrays import FloatArray, content_bytes
-from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError, require_choice
 from .._support.processes.batch import ExecutorLike, run_batch
 from .._support.processes.kept_rows import KeptRows
+from .._support.units import Facts, Shown, amount
 from ..scenario import Scenario
 from ..ski import Ski
 from ..snow import SnowProperties

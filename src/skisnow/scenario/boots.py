@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias, get_args
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError, require_choice
 from .._support.messages import Message
 from .._support.spreadsheet_text import column_names, decimal_mark, most_frequent_separator, with_decimal_point
-from .._support.units import DEGREE
+from .._support.units import DEGREE, Facts, Shown, ends
 from .._support.user_files import plain_text
 from .._support.user_files.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
 from ..geometry.boot_axes import axes_of

@@ -13,9 +13,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from .._support.display import ShownFields
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
+from .._support.units import ShownFields
 from .._support.user_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
 from ..parameters import nearest
 from ..ski.ski_file import Sources

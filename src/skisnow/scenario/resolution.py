@@ -18,9 +18,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.units import ShownFields
 from ..parameters import InputValue
 from ..ski.ski_file import Sources
 from ..snow import SnowProperties

@@ -8,10 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
-from .._support.display import Facts, Shown, amount
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import DEGREE, STANDARD_GRAVITY
+from .._support.units import DEGREE, STANDARD_GRAVITY, Facts, Shown, amount
 from ..parameters import Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
 from ..ski.beam import CLAMP_LENGTH

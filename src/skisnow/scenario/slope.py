@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
+from .._support.units import Facts, Shown, ends
 from ..parameters import Condition, Quantity, Search, Word, declared_text, require_declared
 from .raster import number_within, profile_limits
 

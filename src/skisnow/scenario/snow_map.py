@@ -11,11 +11,10 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, span
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
-from .._support.units import N_PER_MM2, N_PER_MM3
+from .._support.units import N_PER_MM2, N_PER_MM3, Facts, Shown, span
 from ..geometry.surfaces import Grid
 from ..snow import SnowProperties
 from .raster import number_within

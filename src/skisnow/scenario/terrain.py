@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray, cross
-from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.units import Facts, Shown, amount, ends
 from ..geometry import surfaces
 from ..geometry.surfaces import Grid, smoothed
 from ..parameters import Condition, Quantity, Word, require_declared

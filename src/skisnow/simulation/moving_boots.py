@@ -9,8 +9,8 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, amount, field_facts, name_with_values
 from .._support.errors import ParameterError
+from .._support.units import Facts, Shown, amount, field_facts, name_with_values
 from ..contact import SnowField
 from ..dynamics import BootMotion, BootPose, Dynamics
 from ..geometry.boot_axes import angles_of

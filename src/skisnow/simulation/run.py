@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, amount, field_facts, name_with_values, span
-from .._support.units import DEGREE, MM
+from .._support.units import DEGREE, MM, Facts, Shown, amount, field_facts, name_with_values, span
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
 from .run_forces import node_lengths

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown, field_facts
 from .._support.errors import ParameterError
+from .._support.units import Facts, Shown, field_facts
 from ..forces.shear import ShearLaw
 from ..scenario import Plane
 from ..scenario.terrain import down_and_left, normals_of

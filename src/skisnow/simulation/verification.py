@@ -10,8 +10,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from .._support.display import Facts, Shown, amount
-from .._support.units import CM
+from .._support.units import CM, Facts, Shown, amount
 from .._support.user_files.json_text import json_number
 from ..parameters import values_of
 from ..scenario import Scenario, Solver

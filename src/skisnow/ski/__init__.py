@@ -1,8 +1,7 @@
 """Skis: their shape, stiffness and mass, their files and a catalogue. Knows no snow."""
 
 from .assembling import arc_ski
-from .base_profile import BaseShape
-from .layout import Layout, SkiSections, layout_of_lengths
+from .layout import BaseShape, Layout, SkiSections, layout_of_lengths
 from .monkeycam import read_monkeycam
 from .ski import Ski
 from .ski_file import read_ski, ski_named, ski_names, write_ski

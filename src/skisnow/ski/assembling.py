@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .base_profile import BaseShape
 from .checks import GREATEST_SPACING
+from .layout import BaseShape
 from .outline import ArcOutline
 from .ski import Ski
 from .table_file import StationTable, evenly_spread

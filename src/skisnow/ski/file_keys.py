@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Final
 
 from ..parameters import Quantity, quantities
-from .base_profile import BaseShape, ski_quantity
-from .layout import TAIL_OVERHANG
+from .layout import TAIL_OVERHANG, BaseShape, ski_quantity
 
 RIGID: Final = 1e6
 """EI and GJ of a rigid ski (N m²). Modelling assumption: 200 mm of it, held in the middle, bend by 0.03 micrometre

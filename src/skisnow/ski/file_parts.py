@@ -17,9 +17,8 @@ from .monkeycam import monkeycam_shape
 from .outline import ArcOutline, width_of_table
 
 if TYPE_CHECKING:
-    from .base_profile import BaseShape
     from .file_values import FileValues
-    from .layout import StationFunction
+    from .layout import BaseShape, StationFunction
     from .ski import Ski
     from .table_file import StationTable
 

@@ -1,16 +1,17 @@
-"""Positions of tip, tail, widest points and contact points of a ski, and the sections between them."""
+"""Positions of tip, tail, widest and contact points of a ski, the sections between them, and its base from the side."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Annotated, Final, TypeAlias
 
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.units import ShownFields
+from ..parameters import Quantity, require_declared
 
 LONGEST: Final = 6.0
 """Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""
@@ -155,3 +156,209 @@ class SkiSections(ShownFields):
             along(self.torsional_stiffness),
             along(self.mass_per_length),
         )
+
+
+SHOVEL_HEIGHT: Final = 0.050
+"""Height of the tip over the contact points (m). Modelling assumption: 50 mm, a usual alpine ski."""
+
+LEAST_CONTACT: Final = 1e-3
+"""Length of base that rockers must leave in contact (m)."""
+
+CAMBER_ROUNDING: Final = 0.100
+"""Length before a contact point over which the camber is rounded off (m). Modelling assumption without source: 100 mm,
+and 50 to 200 mm in a band."""
+
+TAIL_HEIGHT: Final = 0.008
+"""Height of the tail over the contact points (m). Modelling assumption: 8 mm, a usual square tail."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BaseShape:
+    """Heights and lengths of the unloaded base (m); heights are over the line through the contact points.
+
+    Modelling assumptions:
+
+    - Camber is an arch of one curvature, so that the ends stay down when the middle is pressed flat; over the length
+      ``camber_rounding`` before each contact point, at most a quarter of the length between them, it is rounded so that
+      it meets it with slope 0.
+    - The shovel rises quadratically from the front contact point to ``shovel_height`` at the tip, the tail likewise
+      behind. The slope is continuous along the whole base.
+    - Rocker draws a contact point in from the end of the running length, by ``…_rocker_length``; over that length the
+      base rises quadratically to ``…_rocker_height``, and the shovel or tail continues from there without a kink.
+
+    A missing height counts as 0 if the ski ends at the contact point.
+    """
+
+    camber: Annotated[
+        float,
+        ski_quantity(
+            "camber_mm", "height of the arch over the line through the contact points", (-50, 50), (0.5, 25), "0"
+        ),
+    ] = 0.0
+    camber_rounding: Annotated[
+        float,
+        ski_quantity(
+            "camber_rounding_mm",
+            "length before each contact point over which the arch levels out",
+            (1, 1000),
+            (20, 300),
+            "100 (modelling assumption, no source)",
+        ),
+    ] = CAMBER_ROUNDING
+    shovel_height: Annotated[
+        float | None,
+        ski_quantity(
+            "shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (modelling assumption)"
+        ),
+    ] = None
+    tail_height: Annotated[
+        float | None,
+        ski_quantity(
+            "tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (modelling assumption)"
+        ),
+    ] = None
+    tip_rocker_length: Annotated[
+        float,
+        ski_quantity(
+            "tip_rocker_length_mm", "by how much the front contact point is drawn in", (0, 1500), (20, 800), "0"
+        ),
+    ] = 0.0
+    tip_rocker_height: Annotated[
+        float,
+        ski_quantity(
+            "tip_rocker_height_mm",
+            "height of the base at the front end of the running length",
+            (0, 200),
+            (0.5, 100),
+            "0",
+        ),
+    ] = 0.0
+    tail_rocker_length: Annotated[
+        float,
+        ski_quantity(
+            "tail_rocker_length_mm", "by how much the rear contact point is drawn in", (0, 1500), (20, 800), "0"
+        ),
+    ] = 0.0
+    tail_rocker_height: Annotated[
+        float,
+        ski_quantity(
+            "tail_rocker_height_mm",
+            "height of the base at the rear end of the running length",
+            (0, 200),
+            (0.5, 100),
+            "0",
+        ),
+    ] = 0.0
+
+    def __post_init__(self) -> None:
+        require_declared(self)
+
+    def height_at(self, station: FloatArray, layout: Layout) -> FloatArray:
+        """Height (m) of the base at stations (m), 0 at the boot.
+
+        Raises
+        ------
+        ParameterError
+            Rockers overlap, or the shovel or tail would bend down after its rocker.
+
+        Examples
+        --------
+        >>> from .layout import layout_of_lengths
+        >>> layout = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
+        >>> contact, tip = BaseShape(camber=0.007).height_at(np.array([1.396 / 2, layout.tip]), layout)
+        >>> round(float(contact) * 1e3, 6), round(float(tip) * 1e3, 6)  # mm
+        (-7.0, 43.0)
+        """
+        heights = self._over_contact(np.append(station, 0.0), layout)
+        return heights[:-1] - heights[-1]
+
+    def _over_contact(self, station: FloatArray, layout: Layout) -> FloatArray:
+        front, rear = layout.contact_points
+        foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
+        if foremost - hindmost < LEAST_CONTACT:
+            raise ParameterError(
+                "the rockers, {tip_rocker_length:.1f} and {tail_rocker_length:.1f} mm long, leave less than "
+                "{least_contact:g} mm of the running length of {running_length:.1f} mm. Shorten them.",
+                code="contradiction",
+                tip_rocker_length=self.tip_rocker_length * 1e3,
+                tail_rocker_length=self.tail_rocker_length * 1e3,
+                least_contact=LEAST_CONTACT * 1e3,
+                running_length=layout.running_length * 1e3,
+            )
+        shovel = _End("shovel", self.tip_rocker_length, self.tip_rocker_height, layout.tip - front, self.shovel_height)
+        tail = _End("tail", self.tail_rocker_length, self.tail_rocker_height, rear - layout.tail, self.tail_height)
+        half = (foremost - hindmost) / 2.0
+        rounding = min(self.camber_rounding, half / 2.0)
+        heights = self.camber * _arch(station - (foremost + hindmost) / 2.0, half, rounding)
+        heights += shovel.rise(np.maximum(station - foremost, 0.0))
+        heights += tail.rise(np.maximum(hindmost - station, 0.0))
+        return heights
+
+
+def _arch(place: FloatArray, half: float, rounding: float) -> FloatArray:
+    """Camber of height 1 over ±half: curvature -k up to half - rounding from the middle."""
+    plain = half - rounding
+    k = 2.0 / (plain * half)  # the whole drop k plain half / 2 is 1
+    inside = np.minimum(np.abs(place), plain)
+    beyond = np.clip(np.abs(place) - plain, 0.0, rounding)
+    return np.asarray(1.0 - k * (inside**2 / 2.0 + plain * beyond * (1.0 - beyond / (2.0 * rounding))))
+
+
+@dataclass(frozen=True, slots=True)
+class _End:
+    """The rise of the base outwards from a contact point (m)."""
+
+    name: str
+    rocker_length: float
+    rocker_height: float
+    length: float
+    given_height: float | None
+
+    def rise(self, distance: FloatArray) -> FloatArray:
+        if self.rocker_height > 0 and not self.rocker_length > 0:
+            raise ParameterError(
+                "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. State its length "
+                "or remove the height.",
+                code="contradiction",
+                name=self.name,
+                rocker_height=self.rocker_height * 1e3,
+            )
+        share = np.minimum(distance, self.rocker_length) / self.rocker_length if self.rocker_length > 0 else 0.0
+        beyond = np.maximum(distance - self.rocker_length, 0.0)
+        return np.asarray(self.rocker_height * share**2 + self._slope * beyond + self._bend() * beyond**2)
+
+    @property
+    def _slope(self) -> float:
+        return 2.0 * self.rocker_height / self.rocker_length if self.rocker_length > 0 else 0.0
+
+    def _bend(self) -> float:
+        if self.length <= 1e-9:
+            if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
+                raise ParameterError(
+                    "the {name} height is {given_height:.1f} mm, but the running length ends where the ski does. "
+                    "State the length of the {name} or remove its height.",
+                    code="contradiction",
+                    name=self.name,
+                    given_height=self.given_height * 1e3,
+                )
+            return 0.0
+        straight = self.rocker_height + self._slope * self.length
+        default = SHOVEL_HEIGHT if self.name == "shovel" else TAIL_HEIGHT
+        height = max(default, straight) if self.given_height is None else self.given_height
+        if height < straight - 1e-9:
+            raise ParameterError(
+                "the {name} height is {height:.1f} mm, but straight on from its rocker the base is already "
+                "{straight:.1f} mm high. Raise the {name} or flatten the rocker.",
+                code="contradiction",
+                name=self.name,
+                height=height * 1e3,
+                straight=straight * 1e3,
+            )
+        return (height - straight) / self.length**2
+
+
+def ski_quantity(
+    name: str, meaning: str, allowed: tuple[float, float], usual: tuple[float, float], left_out: str
+) -> Quantity:
+    """A quantity with its allowed and its usual range, and the value without it."""
+    return Quantity(name, meaning, lowest=allowed[0], highest=allowed[1], usual=usual, origin=left_out)

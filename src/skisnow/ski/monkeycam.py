@@ -18,9 +18,8 @@ from .._support.messages import Message
 from .._support.units import CM, MM
 from .._support.user_files import read_json
 from .assembling import SkiParts, stiffness_table
-from .base_profile import BaseShape
 from .file_values import refuse
-from .layout import layout_of_lengths
+from .layout import BaseShape, layout_of_lengths
 from .outline import ArcOutline
 
 if TYPE_CHECKING:

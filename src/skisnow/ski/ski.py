@@ -11,11 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.units import Facts, Shown
 from ..parameters import APART
-from .base_profile import BaseShape
 from .checks import (
     STRAIGHT,
     EdgeShape,
@@ -26,7 +25,7 @@ from .checks import (
     require_on_ski,
     require_tables,
 )
-from .layout import Layout, SkiSections
+from .layout import BaseShape, Layout, SkiSections
 from .outline import radius_of_least_squares_circle
 
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated, Final, TypeAlias
 
-from .._support.display import Facts, Shown, amount, span
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM2, N_PER_MM3
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount, span
 from ..parameters import Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]

@@ -3,11 +3,10 @@
 from .bounded import NonNegativeFit, non_negative_fit, non_negative_fits
 from .clusters import ClusterIntervals, cluster_intervals
 from .combined_uncertainty import expanded_factor, percentile_interval, resampling_counts, welch_satterthwaite
-from .f_tests import Anova, NestedTest, nested_f_test, one_way_anova
+from .f_tests import Anova, NestedTest, nested_f_test, one_way_anova, tests_per_group
 from .linear import LinearFit, VarianceShares, linear_fit, polynomial_fit, variance_shares
 from .nonlinear import NonlinearFit, nonlinear_fit
 from .regress import Regress, RegressStatistics, regress
-from .two_groups import tests_per_group
 
 __all__ = [
     "Anova",

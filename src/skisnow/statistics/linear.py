@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
+from .._support.units import ShownFields
 from .combined_uncertainty import require_confidence
 from .f_tests import f_ratio, f_tail
 from .least_squares import (

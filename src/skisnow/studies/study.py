@@ -10,10 +10,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, Final, Protocol, TypeAlias
 
-from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.processes.kept_rows import Row
+from .._support.units import Facts, Shown
 from .._support.user_files import is_file, read_toml
 from ..parameters import InputValue, Quantity, checked_table, made, nearest
 from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points

@@ -9,10 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from .._support.display import ShownFields
 from .._support.errors import ParameterError, SkisnowError
 from .._support.processes.kept_rows import Row
-from .._support.units import MM
+from .._support.units import MM, ShownFields
 from .._support.user_files.json_text import json_number
 from ..carving.answer import CarveAnswer, answered, inputs_dict, scalars_dict
 from ..carving.question import CARVE_KEYS, carve_question, require_clamp, require_complete

@@ -12,7 +12,6 @@ from itertools import chain
 from pathlib import Path
 from typing import IO, Any, Final
 
-from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
 from .._support.processes.kept_rows import Row
 from .._support.spreadsheet_text import (
@@ -23,6 +22,7 @@ from .._support.spreadsheet_text import (
     most_frequent_separator,
     named_separator,
 )
+from .._support.units import Facts, Shown
 from .._support.user_files import plain_bytes
 from ..parameters import Quantity
 from .rows import ROWS_OF_A_BLOCK, CsvRows, DatabaseRows, ParquetRows, StoredRows, csv_block, readers, row_of

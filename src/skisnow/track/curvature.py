@@ -9,8 +9,7 @@ import numpy as np
 from scipy.stats import norm
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
-from .._support.display import ShownFields
-from .._support.units import CONFIDENCE
+from .._support.units import CONFIDENCE, ShownFields
 from .path_estimate import PathEstimate, estimate_path
 from .smoothing import SmoothedTrack, fill_rows, smooth_track
 from .track import Track

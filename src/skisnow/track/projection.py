@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.display import Facts, Shown
 from .._support.errors import ParameterError
-from .._support.units import DEGREE
+from .._support.units import DEGREE, Facts, Shown
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
-from .flags import FASTEST, GAP_FACTOR
 from .readers.conversion import build_track
 from .readers.fit import read_fit
 from .readers.gpx import read_gpx
@@ -18,6 +17,7 @@ from .readers.rtklib import HEADER, read_rtklib
 from .readers.table import read_table
 from .readers.text import decode_text
 from .readers.ubx import SYNC, has_places, read_ubx
+from .track import FASTEST, GAP_FACTOR
 
 if TYPE_CHECKING:
     from .projection import GeodeticPoint

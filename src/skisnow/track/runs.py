@@ -10,8 +10,7 @@ from typing import Final, Literal
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.display import ShownFields
-from .._support.units import STANDARD_GRAVITY
+from .._support.units import STANDARD_GRAVITY, ShownFields
 from .curvature import TrackMotion, running_mean, segments
 from .track import Track
 

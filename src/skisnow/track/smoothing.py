@@ -10,11 +10,10 @@ from scipy.optimize import brentq
 from scipy.stats import chi2
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
-from .._support.display import ShownFields
 from .._support.errors import ParameterError
-from .flags import GAP_FACTOR
+from .._support.units import ShownFields
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, WeightedValues, local_cubic
-from .track import Track
+from .track import GAP_FACTOR, Track
 
 SHORTEST_WINDOW: Final = 0.8
 """Default length (s) of the window where points are dense. Modelling assumption: a slalom turn takes 0.8 to 1 s."""

@@ -1,19 +1,27 @@
-"""Tracks: places at times, with accuracies and quality flags."""
+"""Tracks: places at times, with accuracies and quality flags; the rules of the flags."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from typing import Literal, TypeAlias
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray
-from .._support.display import Facts, Shown, amount, ends
 from .._support.errors import ParameterError
-from .flags import FLAGS, SolutionArray
+from .._support.units import Facts, Shown, amount, ends
 from .projection import GeodeticPoint, place_from_origin
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy.typing as npt
+
+    from .._support.arrays import BoolArray, FloatArray, IntArray
 
 Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 
@@ -39,7 +47,7 @@ class Track(Shown):
     speed_sd : (n,) m/s or None
         Standard deviation of the speed stated by the receiver.
     solution : (n,) of "fixed", "float", "code", "", or None
-        Kind of solution of each place, see `skisnow.track.flags`; None if unknown.
+        Kind of solution of each place, see `skisnow.track.track`; None if unknown.
     odometer : (n,) m or None
         Distance recorded by the device.
     start : datetime or None
@@ -145,3 +153,214 @@ class Track(Shown):
             if code in FLAGS and FLAGS[code].excludes:
                 usable &= ~where
         return usable
+
+
+FASTEST: Final = 75.0
+"""Speed (m/s) above which a step is impossible: the fastest run ever skied had 71 m/s (modelling assumption)."""
+GAP_FACTOR: Final = 5.0
+"""Shortest gap, in median intervals between points."""
+
+_CONTINUED: Final = 1.5
+"""Longest pause, in median intervals, after which a segment continues the one before."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointFlag:
+    """A quality flag: its code, the sentence that explains it, and True if `Track.usable` excludes the point."""
+
+    code: str
+    sentence: str
+    excludes: bool
+
+
+_ALL: Final = (
+    PointFlag("no_fix", "The receiver had no fix, or the file has no place for this point.", True),
+    PointFlag("missing_height", "The point has a place but no height.", False),
+    PointFlag("repeated_time", "The point has the same time stamp as the one before it.", True),
+    PointFlag(
+        "rounded_time", "The file's time stamps are coarser than its points: spread over the time of each stamp.", False
+    ),
+    PointFlag("not_finite", "A cell of the point is nan, inf or the like: it counts as blank.", False),
+    PointFlag("new_segment", "The file begins a new segment here: nothing is computed across.", False),
+    PointFlag("gap", "The time since the point before is much longer than the usual interval.", False),
+    PointFlag("jump", "A single point far off: the speed out to it and back again is impossible.", True),
+    PointFlag("impossible_step", "The speed to this point is impossible, and no single point explains it.", False),
+    PointFlag("negative_speed", "The speed is below zero, as devices write that have none; it counts as none.", False),
+    PointFlag(
+        "float_solution", "By the carrier's phase, but not fixed to whole cycles: decimetres that wander.", False
+    ),
+    PointFlag("code_solution", "Only by the code, in a track that has the carrier's phase elsewhere: metres.", False),
+)
+FLAGS: Final[Mapping[str, PointFlag]] = MappingProxyType({flag.code: flag for flag in _ALL})
+"""Every flag by its code, in the order in which they are listed."""
+
+
+def point_flags(
+    time: FloatArray,
+    place: FloatArray,
+    fix: BoolArray,
+    negative_speed: BoolArray,
+    *,
+    fastest: float = FASTEST,
+    gap_factor: float = GAP_FACTOR,
+    solution: SolutionArray | None = None,
+    segment: IntArray | None = None,
+    rounded: BoolArray | None = None,
+    not_finite: BoolArray | None = None,
+) -> dict[str, BoolArray]:
+    """Flags of every code, each (n,) bool.
+
+    Parameters
+    ----------
+    time : (n,) s
+        Times that never fall.
+    place : (n, 3) m
+        Places; NaN if missing.
+    fix : (n,) bool
+        True if the receiver had a fix.
+    negative_speed : (n,) bool
+        True if the recorded speed was below zero.
+    fastest : m/s
+        Horizontal speed above which a step is impossible.
+    gap_factor
+        A time step longer than this many medians of the steps above zero is a gap; the point after it is flagged.
+    solution : (n,) or None
+        Kind of solution of each place, as in `Track`.
+    segment : (n,) or None
+        Number of the segment of each point. A segment that continues the one before, at most 1.5 usual intervals later
+        and at a possible speed, is not flagged: some programs begin a segment for each lap.
+    rounded, not_finite : (n,) bool or None
+        Points whose time stamp was rounded, and points with a cell that is not a finite number.
+    """
+    placed = fix & np.isfinite(place[:, :2]).all(axis=1)
+    repeated = np.zeros(len(time), bool)
+    repeated[1:] = np.diff(time) == 0.0
+    sure = np.flatnonzero(placed & ~repeated)
+    jump, impossible = np.zeros(len(time), bool), np.zeros(len(time), bool)
+    jumped, stepped = _impossible_points(time[sure], place[sure, :2], fastest)
+    apart = _segment_starts(time, place, sure, segment, fastest)
+    jump[sure[jumped]] = True
+    impossible[sure[stepped]] = True
+    jump &= ~apart
+    impossible &= ~apart
+    none = np.zeros(len(time), bool)
+    return {
+        "no_fix": ~placed,
+        "missing_height": placed & np.isnan(place[:, 2]),
+        "repeated_time": repeated,
+        "rounded_time": none.copy() if rounded is None else rounded,
+        "not_finite": none.copy() if not_finite is None else not_finite,
+        "new_segment": apart,
+        "gap": _after_gap(time, gap_factor) & ~apart,
+        "jump": jump,
+        "impossible_step": impossible,
+        "negative_speed": negative_speed,
+        **solution_flags(solution, len(time)),
+    }
+
+
+def _after_gap(time: FloatArray, factor: float) -> BoolArray:
+    steps = np.diff(time)
+    after = np.zeros(len(time), bool)
+    if np.any(steps > 0.0):
+        after[1:] = steps > factor * np.median(steps[steps > 0.0])
+    return after
+
+
+def _segment_starts(
+    time: FloatArray, place: FloatArray, sure: IntArray, segment: IntArray | None, fastest: float
+) -> BoolArray:
+    """First points (n,) bool of segments that do not continue the one before."""
+    apart = np.zeros(len(time), bool)
+    if segment is None or len(sure) < 2:
+        return apart
+    steps = np.diff(time[sure])
+    lengths = np.hypot(*np.diff(place[sure, :2], axis=0).T)
+    continued = (steps <= _CONTINUED * np.median(steps)) & (lengths <= fastest * steps)
+    apart[sure[1:][(np.diff(segment[sure]) != 0) & ~continued]] = True
+    return apart
+
+
+def _impossible_points(time: FloatArray, place: FloatArray, fastest: float) -> tuple[list[int], list[int]]:
+    """Numbers of the points that jump out and back, and of the other points reached at an impossible speed."""
+    lengths = np.hypot(*np.diff(place, axis=0).T)
+    fast = lengths > fastest * np.diff(time)
+    last = len(time) - 1
+    jumps = _jumps(time, place, lengths, fastest)
+    if last > 1 and fast[0] and not fast[1] and 1 not in jumps:
+        jumps.insert(0, 0)  # the first point alone is far from all that follow
+    if last > 1 and fast[-1] and last - 1 not in jumps:
+        jumps.append(last)
+    jump_set = set(jumps)
+    steps = [point for point in (np.flatnonzero(fast) + 1).tolist() if not jump_set & {point - 1, point}]
+    return jumps, steps
+
+
+def _jumps(time: FloatArray, place: FloatArray, lengths: FloatArray, fastest: float) -> list[int]:
+    """Inner points with an impossible path through them and a possible path past them of less than half the length."""
+    over = lengths[:-1] + lengths[1:]
+    past = np.hypot(*(place[2:] - place[:-2]).T)
+    most = fastest * (time[2:] - time[:-2])
+    jumps: list[int] = []
+    for point in (np.flatnonzero((over > most) & (past <= most) & (past < 0.5 * over)) + 1).tolist():
+        if not jumps or jumps[-1] != point - 1:  # a good point between two jumps looks like one
+            jumps.append(point)
+    return jumps
+
+
+Solution: TypeAlias = Literal["", "fixed", "float", "code"]
+"""Kind of solution of a point; empty if unknown, or without a fix."""
+SOLUTIONS: Final[tuple[Solution, ...]] = get_args(Solution)[1:]
+"""Kinds of solutions, the most accurate first."""
+SolutionArray: TypeAlias = npt.NDArray[np.str_]
+
+
+def solution_array(solutions: Sequence[Solution]) -> SolutionArray | None:
+    """Kinds of solutions of all points (n,); None if all are unknown.
+
+    >>> solution_array(["fixed", ""]), solution_array(["", ""])
+    (array(['fixed', ''], dtype='<U5'), None)
+    """
+    return np.array(solutions, dtype="<U5") if any(solutions) else None
+
+
+def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
+    """Number of points by kind of solution; None if all are unknown or code solutions.
+
+    >>> solution_counts(np.array(["fixed", "float", "fixed"]))
+    {'fixed': 2, 'float': 1}
+    """
+    if solution is None or not _by_phase(solution):
+        return None
+    counts = {name: int(np.sum(solution == name)) for name in SOLUTIONS}
+    return {name: count for name, count in counts.items() if count}
+
+
+def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, BoolArray]:
+    """The flags ``float_solution`` and ``code_solution``, each (count,) bool.
+
+    Code solutions are flagged only if other points of the track are phase solutions.
+    """
+    none = np.zeros(count, bool)
+    if solution is None:
+        return {"float_solution": none, "code_solution": none.copy()}
+    by_code = solution == "code" if _by_phase(solution) else none
+    return {"float_solution": np.asarray(solution == "float"), "code_solution": np.asarray(by_code)}
+
+
+def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
+    """Warning if only some points of a track are fixed solutions, otherwise None.
+
+    >>> inexact_sentence("a.ubx", np.array(["fixed", "float", "code", "fixed"]))
+    'a.ubx: of 4 points 1 float (decimetres off) and 1 by the code alone (metres off); the others are fixed'
+    """
+    counts = solution_counts(solution) or {}
+    words = {"float": "float (decimetres off)", "code": "by the code alone (metres off)"}
+    counted = [f"{counts[kind]} {text}" for kind, text in words.items() if counts.get(kind)]
+    if not counted or not counts.get("fixed"):
+        return None
+    return f"{name}: of {sum(counts.values())} points {' and '.join(counted)}; the others are fixed"
+
+
+def _by_phase(solution: SolutionArray) -> bool:
+    return bool(np.isin(solution, ("fixed", "float")).any())

@@ -41,6 +41,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "simulation.run_summary:_provenance": "bytes for a SHA-256",
     "studies.run:_hash": "bytes for a SHA-256",
     "studies.study:Study.fingerprint": "bytes for a SHA-256",
+    "campaign.importing.answers:save_template": "the template that it would overwrite, to compare",
     "campaign.importing.folder:_sha256": "bytes for a SHA-256",
     "campaign.importing.folder:undo_import": "hashes that the import has written; none leads out of the folder",
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",

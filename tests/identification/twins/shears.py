@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from skisnow.identification import identify
-from skisnow.report.turn.numbers import used_grip
+from skisnow.report.turn.chain import used_grip
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate
 

@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from skisnow._support.errors import FieldDataError
-from skisnow.track.flags import FLAGS
 from skisnow.track.read import read_track
+from skisnow.track.track import FLAGS
 
 from .receivers import fit_checksum, fit_file, nav_pvt, sentence, ubx_frame
 from .test_fit import RECORDS

@@ -30,7 +30,7 @@ from skisnow._support.errors import SkisnowError
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
-from skisnow.web.application import lab_application
+from skisnow.web.server import lab_application
 from skisnow.web.settings import Lab
 from skisnow.web.widgets import LineChart
 from tests.coded import all_fields

@@ -171,9 +171,9 @@ def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> 
 
 def own_templates() -> Path:
     """Folder of the user's own templates, next to the user's own store."""
-    from ..store import default_path
+    from platformdirs import user_data_path
 
-    return default_path().parent / TEMPLATES
+    return user_data_path("skisnow") / TEMPLATES
 
 
 def parse_template(text: str, name: str) -> Answers:

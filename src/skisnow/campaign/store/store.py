@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from ..._support.display import Facts, Shown
 from ..._support.errors import StoreError
+from ..._support.units import Facts, Shown
 from .engine import database_errors, file_errors, open_engine, reading, writing
 from .folder import (
     FileState,

@@ -12,10 +12,9 @@ from typing import Final, Literal
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError, require_choice
 from ..._support.staging import write_file
-from ..._support.units import DEGREE
+from ..._support.units import DEGREE, Facts, Shown, amount
 from ..._support.user_files import plain_text
 from ...geometry.boot_axes import angles_of
 from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots

@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.display import Facts, Shown, amount
 from ..._support.errors import ParameterError
 from ..._support.staging import write_file
+from ..._support.units import Facts, Shown, amount
 from ..._support.user_files import plain_text
 from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
 

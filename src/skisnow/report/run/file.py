@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 from scipy.io import netcdf_file
 
+from ..._support.arrays import FloatArray
 from ..._support.environment import needed
 from ..._support.messages import Message
 from ..._support.staging import write_file
 from ...scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
+from ...simulation.run import GIVEN, LOST, STORED
 from ...simulation.run_tables import track_columns, track_table
-from .variables import PIECE, SKI, STATION, TIME, variables_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,8 +29,6 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from ...simulation.run import Run
-    from .variables import RunVariable
-
 
 CONVENTIONS: Final = "CF-1.11"
 MISSING: Final = 9.969209968386869e36
@@ -164,3 +166,244 @@ def _data_variable(variable: RunVariable, run: Run) -> tuple[tuple[str, ...], An
     values = np.asarray(variable.values(run), dtype=float)
     finite = np.where(np.isfinite(values), values, np.nan)  # as in run.nc: the radius of a straight path is missing
     return variable.dimensions, finite, {"units": variable.units, "long_name": variable.meaning}
+
+
+Values: TypeAlias = Callable[["Run"], npt.ArrayLike]
+
+TIME, SKI, STATION, PIECE = "time", "ski", "station", "piece"
+
+
+@dataclass(frozen=True, slots=True)
+class RunVariable:
+    """One variable of run.nc.
+
+    Attributes
+    ----------
+    name, dimensions, units
+        As in the file; units are SI in the notation of UDUNITS, angles in rad.
+    meaning
+        Its long_name.
+    values
+        Function that returns the array of a run in this unit.
+    axis
+        "T", "X", "Y" or "Z" of a coordinate, otherwise empty.
+    coordinates
+        Names of the variables with its place in space.
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    units: str
+    meaning: str
+    values: Values
+    axis: str = ""
+    coordinates: str = ""
+
+
+_PATH: Final = "x y z"
+_EDGE: Final = "ski_x ski_y ski_z"
+_GROOVE: Final = "groove_x groove_y groove_z"
+
+
+def _three(
+    stem: str,
+    dimensions: tuple[str, ...],
+    units: str,
+    meaning: str,
+    values: Callable[[Run], FloatArray],
+    **further: str,
+) -> list[RunVariable]:
+    """Variables of the components x, y and z of a vector."""
+
+    def part(place: int) -> Values:
+        return lambda run: values(run)[..., place]
+
+    return [
+        RunVariable(stem.format(name), dimensions, units, meaning.format(name), part(place), **further)
+        for place, name in enumerate("xyz")
+    ]
+
+
+def _energies() -> list[RunVariable]:
+    def of(name: str) -> Values:
+        return lambda run: run.energies[name]
+
+    stored = {
+        "kinetic": "kinetic energy",
+        "potential": "potential energy in the field of gravity",
+        "elastic_ski": "elastic energy of both skis",
+        "elastic_snow": "elastic energy of the snow: of pressure, of the shear at the edges, of friction that sticks",
+        "delayed_snow": "energy stored in the delayed depth of the snow under the skis",
+    }
+    lost = {
+        "penetration": "work lost to the grooves in the snow since the start",
+        "shear": "work lost to side-slip of the skis since the start",
+        "friction": "work lost to glide friction since the start",
+        "drag": "work lost to air drag since the start",
+        "damping": "work lost to damping of the skis since the start",
+        "snow_damping": "work lost to damping and delayed depth of the snow since the start",
+    }
+    variables = [RunVariable(f"{name}_energy", (TIME,), "J", stored[name], of(name)) for name in STORED]
+    variables += [RunVariable(f"lost_{name}", (TIME,), "J", lost[name], of(name)) for name in LOST]
+    supplied = {
+        "boots": "work given since the start by what moves the boots",
+        "push": "work given since the start by a push on the body",
+    }
+    return variables + [RunVariable(f"given_{name}", (TIME,), "J", supplied[name], _supplied(name)) for name in GIVEN]
+
+
+def _supplied(name: str) -> Values:
+    return lambda run: run.energies.get(name, np.zeros(len(run.time)))
+
+
+def _boot_variables() -> list[RunVariable]:
+    place = "middle of the boot's sole at the level of the base: {}"
+    variables = _three("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
+    angles = ("edge_angle", "pitch", "heading")
+    meanings = ("edge angle, positive: left edge down", "pitch, positive: tip up", "heading, positive to the left")
+    for i, (name, meaning) in enumerate(zip(angles, meanings, strict=True)):
+        variables.append(RunVariable(f"boot_{name}", (TIME, SKI), "rad", f"of the boot: {meaning}", _part("angles", i)))
+    for what, unit in (("force", "N"), ("moment", "N m")):
+        for i, axis in enumerate("xyz"):
+            meaning = f"{what} of the ski on its boot, in space: {axis}"
+            variables.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(what, i)))
+        for i, axis in enumerate(("ahead", "left", "up")):
+            meaning = f"{what} of the ski on its boot, in the boot's axes: {axis}"
+            variables.append(RunVariable(f"boot_{what}_{axis}", (TIME, SKI), unit, meaning, _part(f"own_{what}", i)))
+    return variables
+
+
+def _boots(run: Run, name: str) -> FloatArray:
+    if run.boots is None:
+        return np.full((len(run.time), 2, 3), np.nan)
+    return np.asarray(getattr(run.boots, name))
+
+
+def _part(name: str, axis: int) -> Values:
+    return lambda run: _boots(run, name)[..., axis]
+
+
+def _along_skis() -> list[RunVariable]:
+    named: list[tuple[str, str, str, Values]] = [
+        ("edge_depth", "m", "depth of the edge that is down below the undisturbed surface; negative: above it",
+         lambda run: run.skis.edge_depth),
+        ("force_per_length", "N m-1", "normal force of the snow on the ski per length",
+         lambda run: run.skis.force_per_length),
+        ("shear_per_length", "N m-1", "force of the snow on the ski across its edge, per length, positive to the left",
+         lambda run: run.skis.shear_per_length),
+        ("bending", "m", "deflection of the base away from the snow, against the boot", lambda run: run.skis.bending),
+        ("twist", "rad", "growth of the edge angle against that at the boot", lambda run: run.skis.twist),
+    ]  # fmt: skip
+    return [
+        RunVariable(name, (TIME, SKI, STATION), units, meaning, values, coordinates=_EDGE)
+        for name, units, meaning, values in named
+    ]
+
+
+def _snow_forces() -> list[RunVariable]:
+    total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
+    return [
+        *_three("snow_force_{}", (TIME, SKI), "N", total, lambda run: run.skis.force),
+        RunVariable("total_force", (TIME, SKI), "N", "magnitude of the total force of the snow on the ski",
+                    lambda run: run.skis.total_force),
+        RunVariable("normal_force", (TIME, SKI), "N", "its part along the snow's normal",
+                    lambda run: run.skis.normal_force),
+    ]  # fmt: skip
+
+
+def _coordinates() -> list[RunVariable]:
+    down = (
+        "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a profile), y left, z up"
+    )
+    edge = "loaded edge under the boot, on the snow surface: {}"
+    return [
+        RunVariable("time", (TIME,), "s", "time since the start", lambda run: run.time, axis="T"),
+        RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
+                    lambda run: run.skis.station),
+        *(_axis_variable(variable) for variable in _three("{}", (TIME,), "m", down, lambda run: run.place)),
+        *_three("ski_{}", (TIME, SKI), "m", edge, lambda run: run.skis.track),
+        *_three("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
+                lambda run: run.groove.middle),
+    ]  # fmt: skip
+
+
+def _axis_variable(variable: RunVariable) -> RunVariable:
+    return RunVariable(
+        variable.name, variable.dimensions, variable.units, variable.meaning, variable.values, variable.name.upper()
+    )
+
+
+def _over_time() -> list[RunVariable]:
+    turned = "path's turn radius, positive to the left; missing where the path is straight"
+    return [
+        *_three("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}",
+                lambda run: run.velocity, coordinates=_PATH),
+        RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", lambda run: run.speed,
+                    coordinates=_PATH),
+        RunVariable("heading", (TIME,), "rad", "heading of the skis from the fall line, positive to the left",
+                    lambda run: run.heading, coordinates=_PATH),
+        RunVariable("turn_radius", (TIME,), "m", turned, lambda run: run.turn_radius, coordinates=_PATH),
+        RunVariable("attitude", (TIME, "space_axis", "sledge_axis"), "1",
+                    "rotation matrix from the sledge's axes (forward, left, up) to those of space (x, y, z)",
+                    lambda run: run.attitude),
+        RunVariable("depth", (TIME, SKI), "m",
+                    "depth of the loaded edge under the boot below the undisturbed surface; negative: above it",
+                    lambda run: run.skis.depth, coordinates=_EDGE),
+    ]  # fmt: skip
+
+
+def _groove_variables() -> list[RunVariable]:
+    return [
+        *_three("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}",
+                lambda run: run.groove.left, coordinates=_GROOVE),
+        RunVariable("groove_width", (PIECE,), "m", "width of the piece, across the path",
+                    lambda run: run.groove.width, coordinates=_GROOVE),
+        RunVariable("groove_depth", (PIECE,), "m", "deepest that the snow was pushed", lambda run: run.groove.depth,
+                    coordinates=_GROOVE),
+        RunVariable("groove_residual_depth", (PIECE,), "m", "permanent (residual) groove depth",
+                    lambda run: run.groove.residual_depth, coordinates=_GROOVE),
+    ]  # fmt: skip
+
+
+RUN_VARIABLES: Final = (
+    *_coordinates(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energies(),
+    *_groove_variables(),
+)  # fmt: skip
+"""Variables of run.nc except the names of the skis, in the order of the file."""
+
+
+def _balance_variables() -> tuple[RunVariable, ...]:
+    def of(name: str) -> Values:
+        return lambda run: getattr(run.balance, name)
+
+    leans = {
+        "lean": "lean of the line from the boots' middle to the centre of mass, positive to the left",
+        "pressure_lean": "lean of the line from the centre of pressure to the centre of mass, positive to the left",
+        "balanced_lean": "lean in balance with speed and path radius of the centre of mass, positive to the left",
+        "rolling_lean": "the same with what the body's roll and the rise of its centre of mass take",
+        "angulation": "mean edge angle of the boots less the lean",
+    }
+    lengths = {
+        "leg": "length from the boots' middle to the centre of mass",
+        "pressure": "centre of pressure from the boots' middle, to the left",
+    }
+    centre = "centre of mass of the body: {}"
+    return (
+        *(RunVariable(name, (TIME,), "rad", meaning, of(name)) for name, meaning in leans.items()),
+        *(RunVariable(name, (TIME,), "m", meaning, of(name)) for name, meaning in lengths.items()),
+        RunVariable("load", (TIME, SKI), "N", "force of the ski on its boot along the snow's normal", of("load")),
+        *_three("centre_{}", (TIME,), "m", centre, _centre),
+    )
+
+
+def _centre(run: Run) -> FloatArray:
+    return np.full((len(run.time), 3), np.nan) if run.boots is None else run.boots.centre_of_mass
+
+
+SKIER_VARIABLES: Final = _balance_variables()
+"""Further variables of a run with a skier."""
+
+
+def variables_of(run: Run) -> tuple[RunVariable, ...]:
+    """Variables of a run's file except the names of the skis."""
+    return RUN_VARIABLES if run.scenario.skier is None else (*RUN_VARIABLES, *SKIER_VARIABLES)

@@ -1,14 +1,27 @@
-"""Result of `skisnow.turn`."""
+"""Result of `skisnow.turn`: comparisons of its runs, inputs of its band, and all of it as JSON values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
-from ..._support.display import Facts, Shown, amount
-from ..._support.messages import ENGLISH, outcome_words
+import numpy as np
+import numpy.typing as npt
+
+from ..._support.arrays import FloatArray
+from ..._support.messages import ENGLISH, Message, outcome_words
+from ..._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount
+from ..._support.user_files.json_text import json_number
+from ...comparison.nearest_place import distance_from_path
+from ...parameters import values_of
+from ...scenario.plausibility import implausible_values
+from ...simulation.run_summary import summary_dict
+from ...snow.from_results import snow_dict
+from ...statistics import VarianceShares, variance_shares
+from ..run.time_figures import grip_utilisation
+from .figures import FEWEST, TimedTrack, band_of, offsets
 
 if TYPE_CHECKING:
     from ...estimation import Analysis
@@ -116,3 +129,235 @@ class TurnChain(Shown):
         runs = [(name, f"{run.outcome}, {amount(run.run_length, 'm')}") for name, run in self.runs.items()]
         rows = (("snow", self.snow.in_words), *runs, ("ensemble", f"{len(self.ensemble)} runs"))
         return Facts(f"from {self.campaign!r}, {self.site}", rows)
+
+
+MORE_THAN_INPUTS: Final = 3
+"""Minimum number of runs above the number of inputs for shares with an interval."""
+YIELDS: Final = 0.95
+"""Grip utilisation above which a ski side-slips; short parts at its ends can still have grip."""
+
+
+def loaded_skis(run: Run) -> npt.NDArray[np.intp]:
+    """Index of the ski with the larger total force at each time, shape (n,): 0 left, 1 right."""
+    return np.argmax(run.skis.total_force, axis=1)
+
+
+def afterbody_depth_ratio(run: Run) -> float | None:
+    """Ratio of the loaded ski's mean edge depth behind the boot to that before it, median over the second half.
+
+    None if the ski never has contact on both sides of the boot in that time.
+    """
+    late = np.flatnonzero(run.time >= run.time[-1] / 2.0)
+    depth = run.skis.edge_depth[late, loaded_skis(run)[late]]
+    behind, before = (_mean_depth(depth[:, part]) for part in (run.skis.station < 0.0, run.skis.station > 0.0))
+    ratio = behind / before
+    finite = ratio[np.isfinite(ratio)]
+    return float(np.median(finite)) if finite.size else None
+
+
+def _mean_depth(depth: FloatArray) -> FloatArray:
+    """Mean over the stations below the surface, shape (n,); NaN without one."""
+    below = depth > 0.0
+    count = below.sum(axis=1)
+    return np.where(count > 0, np.where(below, depth, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
+
+
+def used_grip(run: Run) -> tuple[float | None, float | None]:
+    """Median grip utilisation of the loaded ski, and the share of time in which it side-slips."""
+    share = np.take_along_axis(grip_utilisation(run), loaded_skis(run)[:, None], axis=1)[:, 0]
+    finite = share[np.isfinite(share)]
+    return (float(np.median(finite)), float(np.mean(finite >= YIELDS))) if finite.size else (None, None)
+
+
+def median_radius(run: Run) -> float | None:
+    """Median turn radius (m) of the curved parts of a run; None without one."""
+    radius = np.abs(run.turn_radius[np.isfinite(run.turn_radius)])
+    return float(np.median(radius)) if radius.size else None
+
+
+def maximum_distance(run: Run, reference: Run) -> float | None:
+    """Maximum distance of a run's path from that of another run (m); None if they do not overlap."""
+    distance = distance_from_path(run.place, reference.place)
+    return float(np.nanmax(distance)) if np.isfinite(distance).any() else None
+
+
+def middle_track(run: Run) -> TimedTrack:
+    """Track of the middle between the boots from above."""
+    return TimedTrack(run.time, run.place[:, 0], run.place[:, 1])
+
+
+def band_width(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[float, float]:
+    """Widths across and along (m) of the band of 90 % of the tracks, at the last time that three runs reach."""
+    aside, ahead = (band_of(values[:, None])[:, 0] for values in end_offsets(nominal, tracks))
+    return float(aside[4] - aside[0]), float(ahead[4] - ahead[0])
+
+
+def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[FloatArray, FloatArray]:
+    """Offsets of the tracks to the left and ahead (m), shape (tracks,), at the last time that three runs reach.
+
+    NaN for a run that ended before.
+    """
+    aside, ahead = offsets(nominal, tracks)
+    last = int(np.flatnonzero(np.isfinite(aside).sum(axis=0) >= FEWEST)[-1])
+    return aside[:, last], ahead[:, last]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BandShares:
+    """Share of each input of an ensemble in the variance at the end of the band, aside and ahead.
+
+    Attributes
+    ----------
+    keys
+        Keys of the varied inputs.
+    aside, ahead
+        Shares of these inputs.
+    """
+
+    keys: tuple[str, ...]
+    aside: VarianceShares
+    ahead: VarianceShares
+
+
+def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandShares | None:
+    """First-order Sobol shares by regression on logarithms; None with fewer than three runs more than inputs."""
+    keys = [key for key in (ensemble[0].values if ensemble else ()) if len({run.values[key] for run in ensemble}) > 1]
+    if not keys:
+        return None
+    aside, ahead = end_offsets(nominal, [run.track for run in ensemble])
+    reached = np.isfinite(aside)
+    if reached.sum() < len(keys) + MORE_THAN_INPUTS:
+        return None
+    inputs = np.log([[run.values[key] for key in keys] for run in ensemble])[reached]
+    return BandShares(tuple(keys), *(variance_shares(offset[reached], inputs) for offset in (aside, ahead)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BandInput:
+    """One input of a band.
+
+    Attributes
+    ----------
+    key
+        Key of the scenario.
+    measured
+        True if the campaign measured its spread; otherwise a prior gives it.
+    value
+        Median in the key's unit; None for a prior.
+    low, high
+        Ends in the key's unit: of the 95 % interval of a measured input, of the whole range of a prior.
+    origin
+        Origin of the range.
+    """
+
+    key: str
+    measured: bool
+    value: float | None
+    low: float
+    high: float
+    origin: str
+
+    @property
+    def distribution(self) -> str:
+        """Name of the distribution."""
+        return "log-normal" if self.measured else "log-uniform"
+
+    @property
+    def spread(self) -> str:
+        """Origin of the spread: measured or prior."""
+        return "measured" if self.measured else "prior"
+
+    @property
+    def in_words(self) -> str:
+        """Spread, distribution and origin."""
+        if self.measured:
+            return Message("measured: log-normal with the 95 % interval of {origin}", origin=self.origin)
+        return Message("prior: even in its logarithm; {origin}", origin=self.origin)
+
+
+def band_inputs(chain: TurnChain) -> Iterator[BandInput]:
+    """Inputs of the band: first the measured ones, then the priors."""
+    for of in chain.measured:
+        yield BandInput(key=of.key, measured=True, value=of.value, low=of.low, high=of.high, origin=chain.site)
+    own = values_of(chain.nominal.scenario)
+    for prior in chain.priors:
+        low, high = prior.ends(own[prior.key])
+        yield BandInput(key=prior.key, measured=False, value=None, low=low, high=high, origin=prior.origin)
+
+
+SCHEMA_VERSION: Final = 1
+
+
+def turn_dict(chain: TurnChain) -> dict[str, Any]:
+    """The JSON of `skisnow turn`, and the contents of turn.json; its JSON Schema is that of ``skisnow schema turn``."""
+    across, along = band_width(middle_track(chain.nominal), [run.track for run in chain.ensemble])
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "campaign": chain.campaign,
+        "site": chain.site,
+        "synthetic": chain.synthetic,
+        "snow": {
+            **_numbers_dict(chain.snow),
+            "unloading_ratio": json_number(chain.snow.unloading_ratio),
+            "shear_displacement_mm": json_number(chain.nominal.scenario.contact.shear_displacement / MM),
+            **snow_dict(chain.snow),
+        },
+        "runs": [_run_dict(name, run, chain.nominal) for name, run in chain.runs.items()],
+        "ensemble": {
+            "seed": chain.seed,
+            "band_across_m": json_number(across),
+            "band_along_m": json_number(along),
+            "nominal_end_moves_m": json_number(chain.ensemble_error),
+            "inputs": [
+                {
+                    "key": row.key,
+                    "spread": row.spread,
+                    "distribution": row.distribution,
+                    "value": row.value,
+                    "low": row.low,
+                    "high": row.high,
+                    "origin": row.origin,
+                }
+                for row in band_inputs(chain)
+            ],
+            "priors": [
+                {"key": row.key, "low": row.low, "high": row.high, "times_own": row.about, "origin": row.origin}
+                for row in chain.priors
+            ],
+            "runs": [_ensemble_dict(row) for row in chain.ensemble],
+        },
+        "sentences": chain.sentences,
+        "warnings": list(chain.warnings),
+    }
+
+
+def _run_dict(contact: str, run: Run, nominal: Run) -> dict[str, Any]:
+    grip, slips = used_grip(run)
+    return {
+        "contact": contact,
+        "afterbody_depth_ratio": json_number(afterbody_depth_ratio(run)),
+        "grip_utilisation": json_number(grip),
+        "side_slip_share": json_number(slips),
+        "distance_from_first_m": None if run is nominal else json_number(maximum_distance(run, nominal)),
+        "summary": summary_dict(run, warnings=implausible_values(run.scenario)),
+    }
+
+
+def _ensemble_dict(run: EnsembleRun) -> dict[str, Any]:
+    track = run.track
+    ends = {"end_time_s": track.time, "end_x_m": track.x, "end_y_m": track.y}
+    return {
+        **_numbers_dict(run.snow),
+        "values": {key: json_number(value) for key, value in run.values.items()},
+        "outcome": run.outcome,
+        "side_slip_share": json_number(run.slips),
+        **{name: json_number(column[-1]) for name, column in ends.items()},
+    }
+
+
+def _numbers_dict(snow: SnowProperties) -> dict[str, float | None]:
+    stress = snow.failure_shear_stress
+    return {
+        "H_V_N_per_mm3": snow.snow_hardness / N_PER_MM3,
+        "S_f_N_per_mm2": None if stress is None else stress / N_PER_MM2,
+    }

@@ -23,8 +23,7 @@ from ..run.tables import scenario_table
 from ..run.time_figures import run_along_ski, run_grip
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table
-from .figures import FEWEST, draw_runs, track_band
-from .numbers import (
+from .chain import (
     BandShares,
     afterbody_depth_ratio,
     band_inputs,
@@ -34,6 +33,7 @@ from .numbers import (
     turn_dict,
     used_grip,
 )
+from .figures import FEWEST, draw_runs, track_band
 from .sentences import ensemble_accuracy, ensemble_sentence, headline, key_sentences, meaning
 
 if TYPE_CHECKING:

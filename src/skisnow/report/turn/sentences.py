@@ -10,7 +10,7 @@ from markupsafe import Markup
 from ..._support.messages import Message, outcome_words, template
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..formatting import counted, html, interval, prose, significant
-from .numbers import (
+from .chain import (
     BandShares,
     afterbody_depth_ratio,
     band_inputs,

@@ -12,9 +12,9 @@ from typing import Annotated, Final, Literal, NamedTuple, TypeAlias, get_args
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError, require_choice
 from ..._support.messages import Message, template
+from ..._support.units import Facts, Shown, ShownFields, amount
 from ...parameters import Quantity, Word, require_declared
 
 Discipline: TypeAlias = Literal["slalom", "giant-slalom"]

@@ -9,9 +9,9 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.display import Facts, Shown, ShownFields, amount
 from ..._support.errors import ParameterError
 from ..._support.messages import template
+from ..._support.units import Facts, Shown, ShownFields, amount
 from ..projection import GeodeticPoint
 from ..track import Track
 from .course import Course, Gate, GateLine

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ..flags import FASTEST, GAP_FACTOR, point_flags
 from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
-from ..track import Track
+from ..track import FASTEST, GAP_FACTOR, Track, point_flags
 from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
 from .text import spread_times
 

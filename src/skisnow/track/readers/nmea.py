@@ -21,7 +21,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..._support.units import DEGREE
-from ..flags import Solution, solution_array
+from ..track import Solution, solution_array
 from .recording import NOT_FINITE_CELL, Recording, track_error
 
 __all__ = ["SENTENCE", "read_nmea"]

@@ -15,7 +15,7 @@ from ..track import Axes
 
 if TYPE_CHECKING:
     from ..._support.arrays import BoolArray, FloatArray, IntArray
-    from ..flags import SolutionArray
+    from ..track import SolutionArray
 
 
 @dataclass(eq=False)

@@ -16,8 +16,8 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.spreadsheet_text import number
-from ..flags import Solution, solution_array
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
+from ..track import Solution, solution_array
 from .recording import FARTHEST, FASTEST_NUMBER, Recording, is_not_finite, track_error
 
 SCALES: Final = {"GPST": "GPS", "UTC": "UTC", "JST": "JST"}

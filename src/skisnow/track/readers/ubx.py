@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from ..._support.units import MM
-from ..flags import Solution, solution_array
+from ..track import Solution, solution_array
 from .nmea import SENTENCE
 from .recording import Recording, track_error
 

@@ -15,9 +15,8 @@ from uvicorn.server import ServerState
 import skisnow.web
 from skisnow._support.messages import Message as Text
 from skisnow._support.messages import languages
-from skisnow.web.application import _set_language
 from skisnow.web.guard import Tries, answer_to_token, token_page
-from skisnow.web.server import TimeLimitedProtocol
+from skisnow.web.server import TimeLimitedProtocol, _set_language
 
 from ...finished import finished
 
