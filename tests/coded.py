@@ -1,7 +1,5 @@
 """Errors and warnings by code and fields, whatever their wording."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, NamedTuple, TypeVar

@@ -4,8 +4,6 @@ One line each: commands and options, keys of files and results (from the schemas
 texts of the lab's controls, public Python names.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import importlib

@@ -1,7 +1,5 @@
 """From a campaign to a turn with objects alone."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys

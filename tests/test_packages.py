@@ -1,7 +1,5 @@
 """The plan of the packages: no file is reached again by what it imports, not even for a type."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter

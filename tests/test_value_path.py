@@ -4,8 +4,6 @@ The scenario is read and run with an unusual number. A file counts when one of i
 unit of the file or in SI, in a local variable or in a field of one (three levels deep).
 """
 
-from __future__ import annotations
-
 import dataclasses
 import sys
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """What the oldest versions that pyproject.toml allows cannot: `make test-minimum` leaves it out, with the reason."""
 
-from __future__ import annotations
-
 from importlib.metadata import version
 
 import pytest

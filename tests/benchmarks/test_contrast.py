@@ -1,7 +1,5 @@
 """Pairs of runs on elastic and hypoplastic snow: the design, what a pair tells, and what the pairs tell together."""
 
-from __future__ import annotations
-
 import importlib
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The benchmarks of turns on runs of 0.05 s: what they count and compare, not how fast anything is."""
 
-from __future__ import annotations
-
 import importlib.util
 from dataclasses import replace
 

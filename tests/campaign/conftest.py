@@ -1,7 +1,5 @@
 """A small campaign without a problem, to be changed by each test."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Recordings of a SnowMicroPen that tests build, and the two real ones."""
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Quality flags on single experiments: each at its limit, from both sides, with the reading that it is about."""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 import math

@@ -1,7 +1,5 @@
 """SMET: units, gaps, time zones, and what does not fit."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

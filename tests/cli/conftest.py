@@ -1,7 +1,5 @@
 """Helpers for tests of the command line."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

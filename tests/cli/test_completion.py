@@ -1,7 +1,5 @@
 """Completion: the words themselves, and the shells where they are installed."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import re

@@ -1,8 +1,7 @@
-"""``skisnow export``: models that are written, and refusals."""
-
-from __future__ import annotations
+"""skisnow export, skisnow schema."""
 
 import builtins
+import json
 import platform
 import re
 import shlex
@@ -12,9 +11,11 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 
 from skisnow.cli import main
+from skisnow.cli.schema import NAMES
 
 linux = pytest.mark.skipif(
     not sys.platform.startswith("linux") or platform.machine() != "x86_64",
@@ -133,3 +134,11 @@ def test_the_demo_prints_no_warning(
         # the reduced slalom passes no gate, which is the outcome of its length
         assert status == 0 or (reduced and arguments[0] == "simulate")
         assert "warning" not in (said.out + said.err).lower()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_schema_is_valid(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["schema", name]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    assert schema["properties" if name != "carve" else "$defs"]

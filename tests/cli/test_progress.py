@@ -1,7 +1,5 @@
 """Progress: nothing for a second; then one line that is written over, or in a log a line every ten seconds."""
 
-from __future__ import annotations
-
 import re
 import time
 

@@ -1,7 +1,5 @@
 """Small campaigns written as files, so that every estimate is tested through the door that users take."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The campaign's model against a general optimiser, known spreads and simulated truth."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -21,7 +19,7 @@ from skisnow.estimation.spread_groups import fit_in_groups, scatter_warning
 from skisnow.geometry import Disc, SkiPiece, Tool
 
 from .conftest import MakeCampaign
-from .test_errors_in_depth import series
+from .test_hardness import series
 
 LOADS = np.linspace(12.0, 492.0, 7)
 ANGLE = math.radians(30.0)

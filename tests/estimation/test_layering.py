@@ -1,21 +1,123 @@
-"""Layered snow: exact series give their exponent back, noise alone is seldom marked, and intervals hold the truth."""
-
-from __future__ import annotations
+"""Layered snow, weather of a campaign, and excluded tests."""
 
 import math
+from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 
 import skisnow
+from skisnow._support.errors import FieldDataError
+from skisnow._support.units import N_PER_MM2, N_PER_MM3
+from skisnow.campaign import Problem, reference_campaign
+from skisnow.cli.schema import json_schema
+from skisnow.estimation import quality_flags
 from skisnow.estimation.campaign_model import fit_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.layering import layered, layering
 from skisnow.estimation.readings import Readings, ReadingUncertainty
+from skisnow.estimation.screening import hardness_outliers, screened_penetration
 from skisnow.geometry import SkiPiece
+from skisnow.interop.snowex import site_pit
 
 from .conftest import MakeCampaign
-from .test_errors_in_depth import series
+from .test_hardness import series
+
+SMET = """SMET 1.1 ASCII
+[HEADER]
+station_id = S
+nodata = -999
+tz = 0
+fields = timestamp TA RH
+[DATA]
+2026-02-03T08:00 263.15 0.5
+2026-02-03T10:00 267.15 0.7
+"""
+SECTION = '\n[weather]\nfile = "s.smet"\nutc_offset_h = 1\n'
+
+
+def campaign(make: MakeCampaign, extra: str = SECTION, name: str = "s.smet") -> Path:
+    times = {"p1": "2026-02-03T10:00", "p2": "2026-02-03T09:00Z", "p3": "2026-02-03", "p4": "2026-02-03T23:00"}
+    rows = [
+        (each, "A" if each < "p3" else "B", "disc", 0, load, load / 100, time if load == 200 else "")
+        for each, time in times.items()
+        for load in (100, 200, 300)
+    ]
+    shear = [("s1", "B", "blade", 90, 5, 300, 12, "2026-02-03T11:00:00")]
+    folder = make(rows, shear, columns=",time", shear_columns=",time").folder
+    (folder / name).write_text(SMET)
+    (folder / "campaign.toml").write_text((folder / "campaign.toml").read_text() + extra)
+    return folder
+
+
+def test_conditions_at_the_time_of_each_experiment(make_campaign: MakeCampaign) -> None:
+    """10:00 an hour ahead of UTC is 9:00 UTC, as p2 says by itself: -8 °C, 60 %. 11:00 is the last reading."""
+    analysis = skisnow.analyse(campaign(make_campaign), n_resamples=100)
+    section = analysis.results["weather"]
+    schema = json_schema("results")
+    jsonschema.validate(analysis.results, schema)
+    rows = {row["experiment"]: row for row in section["experiments"]}
+    air = {name: row["air_temperature_C"] for name, row in rows.items()}
+    assert air == {
+        "p1": pytest.approx(-8.0), "p2": pytest.approx(-8.0), "p3": None, "p4": None, "s1": pytest.approx(-6.0),
+    }  # fmt: skip
+    assert rows["p1"]["relative_humidity_percent"] == pytest.approx(60.0)
+    assert rows["p1"]["wind_speed_m_per_s"] is None
+    assert [(row["site"], row["n"]) for row in section["sites"]] == [("A", 2), ("B", 1)]
+    assert section["sites"][0]["air_temperature_C"] == pytest.approx(-8.0)
+    assert site_pit(analysis, "A").air_temperature_C == pytest.approx(-8.0)
+    assert "s.smet" in analysis.campaign.file_hashes
+    assert "3 of 5 experiments" in repr(analysis.weather)
+
+
+def test_a_gap_that_is_too_long_leaves_it_open(make_campaign: MakeCampaign) -> None:
+    analysis = skisnow.analyse(campaign(make_campaign, SECTION + "longest_gap_h = 1.5\n"), n_resamples=100)
+    assert analysis.weather is not None
+    nan = math.nan
+    np.testing.assert_allclose(analysis.weather.quantities["air_temperature_C"], [nan, nan, nan, nan, -6.0])
+
+
+def test_without_the_section_nothing_is_said(make_campaign: MakeCampaign) -> None:
+    analysis = skisnow.analyse(campaign(make_campaign, ""), n_resamples=100)
+    assert analysis.weather is None
+    assert "weather" not in analysis.results
+    assert analysis.campaign.unread_files == ("s.smet",)
+
+
+def refused_cells(folder: Path) -> list[tuple[str | None, str | None]]:
+    """Column and value of each problem of a campaign that cannot be read."""
+    with pytest.raises(FieldDataError) as caught:
+        skisnow.read_campaign(folder)
+    return [(problem.column, problem.value) for problem in caught.value.problems if isinstance(problem, Problem)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "column", "value"),
+    [
+        ('file = "gone.smet"', "file", "gone.smet"),
+        ('file = "../s.smet"', "file", "../s.smet"),
+        ('file = "s.smet"\nutc_offset_h = 15', "utc_offset_h", "15"),
+        ("longest_gap = 2", "longest_gap", "longest_gap"),
+    ],
+)
+def test_a_wrong_section_refuses_the_campaign(make_campaign: MakeCampaign, lines: str, column: str, value: str) -> None:
+    assert (f"weather.{column}", value) in refused_cells(campaign(make_campaign, f"\n[weather]\n{lines}\n"))
+
+
+def test_a_damaged_file_refuses_the_campaign(make_campaign: MakeCampaign) -> None:
+    folder = campaign(make_campaign)
+    (folder / "s.smet").write_text(SMET.replace("0.7", "wet"))
+    assert refused_cells(folder) == [("RH", "wet")]
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_report_has_a_table(make_campaign: MakeCampaign, tmp_path: Path) -> None:
+    analysis = skisnow.analyse(campaign(make_campaign), n_resamples=100)
+    skisnow.write_report(analysis, tmp_path / "out")
+    assert "by the station S" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert (tmp_path / "out" / "tables" / "weather.csv").exists()
+
 
 TOOL = SkiPiece(0.2, 0.062)
 LOADS = np.linspace(12.0, 492.0, 7)
@@ -87,3 +189,65 @@ def test_a_layered_series_is_flagged_and_takes_part_and_b_has_no_interval_with_e
     fitted = results["penetration"]["errors_in_depth"]["models"]
     assert all(row["intervals"] == dict.fromkeys(("a0", "a1", "b0", "b1")) for row in fitted)
     assert results["penetration"]["models"][-2]["intervals"]["b0"] is not None
+
+
+def test_outlier_rule_by_hand() -> None:
+    """ln H = 0, 0.1, 0.2, 0.3, 0.4 and x: limits 3.5 · 1.4826 · MAD around the median of all six."""
+    H = np.exp(np.array([0.0, 0.1, 0.2, 0.3, 0.4, 3.0]))
+    used = np.ones(6, dtype=bool)
+    # median 0.25, deviations .25 .15 .05 .05 .15 2.75: MAD 0.15, limit 0.778
+    assert hardness_outliers(H, used, ["A"] * 6).tolist() == [False] * 5 + [True]
+    inside = np.exp(np.array([0.0, 0.1, 0.2, 0.3, 0.4, 1.02]))
+    assert not hardness_outliers(inside, used, ["A"] * 6).any()
+
+
+def test_a_site_needs_five_used_series_and_a_scatter() -> None:
+    H = np.exp(np.array([0.0, 0.1, 0.2, 0.3, 9.0]))
+    everything = np.ones(5, dtype=bool)
+    assert hardness_outliers(H, everything, ["A"] * 5).any()
+    assert not hardness_outliers(H, np.array([True] * 4 + [False]), ["A"] * 5).any()
+    assert not hardness_outliers(np.exp(np.array([0, 0, 0, 0, 9.0])), everything, ["A"] * 5).any()
+    assert not hardness_outliers(H, everything, ["A"] * 4 + ["B"]).any()
+
+
+def series_rows(name: str, hardness: float) -> list[tuple[object, ...]]:
+    """A flat series of the ski piece with H_V in N/mm³."""
+    return [(name, "A", "ski", 0, load, round(load / (hardness * 12400), 4)) for load in (100, 200, 300)]
+
+
+@pytest.mark.parametrize(("extra", "used"), [("", True), ('[screening]\nexclude = ["hardness_outlier"]\n', False)])
+def test_an_outlier_stays_unless_it_is_excluded(make_campaign: MakeCampaign, extra: str, used: bool) -> None:
+    rows = [row for i, H in enumerate((0.1, 0.11, 0.12, 0.13, 0.14, 0.9)) for row in series_rows(f"p{i}", H)]
+    campaign = make_campaign(rows, extra=extra, gauge=0.0001)
+    found = screened_penetration(campaign, geometry="extended")
+    assert found.codes()[-1] == ["hardness_outlier"]
+    assert found.used.tolist() == [True] * 5 + [used]
+    flag = next(p for p in quality_flags(campaign) if p.code == "hardness_outlier")
+    assert (flag.severity, flag.file, flag.experiment, flag.row) == ("mark", "penetration.csv", "p5", 19)
+
+
+def test_excluding_flags_keep_a_series_out(make_campaign: MakeCampaign) -> None:
+    rows = [*series_rows("p1", 0.1), ("p2", "A", "ski", 0, 100, 1.0), ("p2", "A", "ski", 0, 200, 0.9)]
+    campaign = make_campaign(rows)
+    found = screened_penetration(campaign, geometry="extended")
+    assert found.codes() == [[], ["too_few_loads", "depth_shrinks"]]
+    assert found.used.tolist() == [True, False]
+
+
+# The interval of a site's mean is one number, whether a report of the campaign or of a turn prints it
+
+
+def test_the_snow_of_a_site_has_the_interval_of_its_mean() -> None:
+    found = skisnow.analyse(reference_campaign(1).campaign(), n_resamples=100)
+    means = {(row["quantity"], row["site"]): row for row in found.results["site_means"]}
+    for letter in "CE":
+        snow = found.snow(letter)
+        for key, unit, value, interval in (
+            ("H_V_N_per_mm3", N_PER_MM3, snow.snow_hardness, snow.snow_hardness_interval),
+            ("S_f_N_per_mm2", N_PER_MM2, snow.failure_shear_stress, snow.failure_shear_stress_interval),
+        ):
+            row = means[key, f"site {letter}"]
+            assert value is not None
+            assert interval is not None
+            assert value / unit == pytest.approx(row["mean"], rel=1e-12)
+            assert [end / unit for end in interval] == pytest.approx(row["interval"], rel=1e-9)

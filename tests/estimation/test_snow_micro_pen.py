@@ -1,7 +1,5 @@
 """Recordings of a SnowMicroPen in a campaign: their numbers, their place beside plate tests, the regressions."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The gallery's examples as the builder of its pages runs them."""
 
-from __future__ import annotations
-
 import importlib.util
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The examples on sand: a campaign of 9 x 7 readings, and the wheel's regression against scipy's."""
 
-from __future__ import annotations
-
 import runpy
 import sys
 from pathlib import Path

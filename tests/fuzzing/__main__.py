@@ -1,7 +1,5 @@
 """``python -m tests.fuzzing``: long runs in shards, their counts, and single cases."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections import Counter, defaultdict

@@ -1,7 +1,5 @@
 """Mutations of zip files: one member changed and packed again, or the archive itself."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from collections.abc import Callable, Sequence

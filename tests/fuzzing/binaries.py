@@ -1,7 +1,5 @@
 """Mutations of binary files, and checksums that are right again afterwards."""
 
-from __future__ import annotations
-
 from random import Random
 from typing import Final
 

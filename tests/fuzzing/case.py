@@ -1,7 +1,5 @@
 """One case: read a mutated file, and name what went wrong."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import shutil

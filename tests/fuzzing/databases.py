@@ -1,7 +1,5 @@
 """Mutations of SQLite files: pages, and by statements cells, rows, columns, tables and the file's own numbers."""
 
-from __future__ import annotations
-
 import sqlite3
 import tempfile
 from contextlib import closing, suppress

@@ -1,7 +1,5 @@
 """Mutations of XML: contents, attributes, elements, declarations, entities."""
 
-from __future__ import annotations
-
 import re
 from random import Random
 from typing import Final

@@ -1,7 +1,5 @@
 """Mutations of NetCDF-3 files: values, shapes, variables, attributes and the JSON texts among them."""
 
-from __future__ import annotations
-
 import io
 import warnings
 from random import Random

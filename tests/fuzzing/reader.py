@@ -1,7 +1,5 @@
 """A reader of files under test: its sound files, its mutations, and the functions of skisnow that it runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec

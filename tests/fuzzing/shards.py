@@ -1,7 +1,5 @@
 """The long run in shards of some minutes: rows are kept as they come, and a shard goes on behind them."""
 
-from __future__ import annotations
-
 import json
 import os
 import resource

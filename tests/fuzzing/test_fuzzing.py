@@ -1,7 +1,5 @@
 """Mutated files of every reader are read or rejected in the project's own words, and single faults are noticed."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """The registry lists every reader: a function that opens files and is in no reader fails here."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Mutations of texts: cells, columns, rows, lines, encodings. Each takes a generator and the file's bytes."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from random import Random

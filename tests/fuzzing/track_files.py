@@ -1,7 +1,5 @@
 """A short run in every format of receivers: 12 points, 8 m/s, southwards, over a gentle bend."""
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import Final
 

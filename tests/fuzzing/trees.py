@@ -1,7 +1,5 @@
 """Mutations of TOML and JSON: values of another kind, nested, doubled, swapped, dropped, or huge."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from random import Random

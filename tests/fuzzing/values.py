@@ -1,7 +1,5 @@
 """Values at the ends of what a cell, a key or a binary field can hold."""
 
-from __future__ import annotations
-
 import struct
 from random import Random
 from typing import Final

@@ -3,8 +3,6 @@
 v = v∞ tanh(φ), φ = φ₀ + t v∞/(2ℓ), s = 2ℓ ln(cosh φ / cosh φ₀), so t = (2ℓ/v∞) (arcosh(cosh φ₀ e^{s/2ℓ}) - φ₀).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Tracks of runs made without a simulation: straight down the fall line, in closed form."""
 
-from __future__ import annotations
-
 import sys
 from types import ModuleType
 

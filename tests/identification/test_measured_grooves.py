@@ -1,7 +1,5 @@
 """H_V and S_f from marks: a rigid-plastic balance by hand, twins of the carved turn, bounds, and files."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Several runs and skiers at once, runs that weigh differently, and a slope of changing inclination."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Friction and drag from photo-cell times, against the Fisher information of the closed form."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

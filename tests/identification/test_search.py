@@ -1,7 +1,5 @@
 """The search on problems whose answer is known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

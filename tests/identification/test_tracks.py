@@ -1,7 +1,5 @@
 """Parameters from tracks: straight runs in closed form, and one real simulated run."""
 
-from __future__ import annotations
-
 import math
 import re
 import sys

@@ -1,7 +1,5 @@
 """The machinery of the twins: truths that do not change, kept rows, counting, tables; no whole turn is identified."""
 
-from __future__ import annotations
-
 import csv
 import math
 from pathlib import Path

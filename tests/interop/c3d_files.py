@@ -1,7 +1,5 @@
 """A .c3d file packed by hand, after the C3D File Format User Guide (Motion Lab Systems, 2021)."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Mapping, Sequence
 

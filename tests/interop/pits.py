@@ -1,7 +1,5 @@
 """A snow pit with everything that a snow pit may have; numbers that two decimals in the file's units hold."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from skisnow.campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit

@@ -1,7 +1,5 @@
 """CAAML out and in: what is written is read again, and as the standard has it; what would hurt is refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

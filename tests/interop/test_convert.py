@@ -1,7 +1,5 @@
 """Conversions by endings, from the command line: results, and refusals with nothing written."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

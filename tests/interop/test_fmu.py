@@ -1,7 +1,5 @@
 """FMUs through their C functions: the bits of the library and of a run, states, instances, refusals."""
 
-from __future__ import annotations
-
 import ctypes
 import platform
 import re

@@ -1,7 +1,5 @@
 """OpenSim's files: read as written, refused where they are wrong; boots from the markers on them."""
 
-from __future__ import annotations
-
 import math
 import sys
 from pathlib import Path

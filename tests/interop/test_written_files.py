@@ -1,7 +1,5 @@
 """What is in the files that others read, line by line, where little or nothing is known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -6,8 +6,6 @@ The errors are drawn with a seed from all that can be planted; the same seed on 
 Nothing in this tree is changed: the tests run in copies.
 """
 
-from __future__ import annotations
-
 import argparse
 import difflib
 import random

@@ -1,7 +1,5 @@
 """A pytest plugin that leaves out tests that have run already: their names, one a line, are in a file."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import Final

@@ -1,7 +1,5 @@
 """All single errors that can be planted in a file, each as a replaced piece of its text."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ Calls of a fixture of a module or session count for all tests that use it. Proce
 theirs by themselves (`children/sitecustomize.py`).
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import os

@@ -1,7 +1,5 @@
 """Each kind of error is planted where it belongs, and the tests of a package are what finds it."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import tomllib

@@ -1,7 +1,5 @@
 """The tests of a package on a copy of the tree in which one error is planted."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

@@ -1,7 +1,5 @@
 """Each exact answer again, another way than its formula in openbench: by adding up, or by stepping."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The set as files: schemas, units, licences, and that what is committed is what the commands write."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

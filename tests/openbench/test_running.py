@@ -1,7 +1,5 @@
 """Programs are run and scored: what is right, what is wrong in words, and an answer that is wrong."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import sys

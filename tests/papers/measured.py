@@ -1,7 +1,5 @@
 """Measured radii beside ours: python -m tests.papers.measured writes the tables of docs/validation/measured.md."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Measured radii of edged skis beside ours."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

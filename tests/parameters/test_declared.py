@@ -1,7 +1,5 @@
 """Quantities that dataclasses declare: what their fields say of them, checks in constructors, values there and back."""
 
-from __future__ import annotations
-
 import math
 import os
 import shutil

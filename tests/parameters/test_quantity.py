@@ -1,7 +1,5 @@
 """One quantity: what it allows in words and in numbers, lists, labels, a table of a file."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated

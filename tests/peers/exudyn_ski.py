@@ -4,8 +4,6 @@ Exudyn (Gerstmayr 2023, *Multibody System Dynamics* 60) is a multibody program. 
 exact; its elements, assembly and static solver have nothing in common with ours.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

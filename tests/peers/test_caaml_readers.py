@@ -1,7 +1,5 @@
 """CAAML as other programs read it: snowpylot reads every value back, and the schema's rules hold."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The same ski statically in Exudyn: deflection and depth within 1 %."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The snow in Exudyn: a rigid sledge goes as in MuJoCo and in our own steps."""
 
-from __future__ import annotations
-
 import runpy
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """FMUs in FMPy, in a process without skisnow and without an environment: they are valid, and run as the run does."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

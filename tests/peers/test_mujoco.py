@@ -1,7 +1,5 @@
 """The snow in MuJoCo: a rigid sledge goes as in our own steps, the better the shorter MuJoCo's are; skis as MJCF."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import os

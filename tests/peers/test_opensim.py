@@ -1,7 +1,5 @@
 """OpenSim's own library reads what we write, and we what it writes."""
 
-from __future__ import annotations
-
 import contextlib
 import tempfile
 from pathlib import Path

@@ -4,8 +4,6 @@ FMPy's own check says nothing of an FMU without an interface, so that the model 
 standard's schema, too, which FMPy brings along.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import io
 import json

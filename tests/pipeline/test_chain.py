@@ -1,7 +1,5 @@
 """The chain from a campaign to a turn, in Python and by its command; runs are replaced by ones in closed form."""
 
-from __future__ import annotations
-
 import inspect
 import json
 import math

@@ -1,7 +1,5 @@
 """Parts of a search, by hand: its boxes, scores, a wider ski, and the limits of what is allowed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import product

@@ -1,7 +1,5 @@
 """A line by three numbers a turn: half waves as the follower's, straights between turns, its table."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

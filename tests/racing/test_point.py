@@ -1,7 +1,5 @@
 """A mass on a line against exact solutions: straight glide, a turn on level snow; gates, and lines that fail."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Literal

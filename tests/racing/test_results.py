@@ -1,7 +1,5 @@
 """Results of a race: windows, words, tables, and gains of variants, by hand."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

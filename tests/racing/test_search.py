@@ -1,7 +1,5 @@
 """The search against known optima, seeded, interrupted and continued."""
 
-from __future__ import annotations
-
 import math
 import sys
 from dataclasses import dataclass, replace

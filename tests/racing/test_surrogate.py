@@ -1,7 +1,5 @@
 """A Gaussian process against what it was given, and a search that asks it against known optima."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A GLB file read and played by hand, after the glTF 2.0 specification, with nothing of the program that writes it."""
 
-from __future__ import annotations
-
 import json
 import struct
 from typing import Any

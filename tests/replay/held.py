@@ -1,7 +1,5 @@
 """Contents of a replay's page."""
 
-from __future__ import annotations
-
 import base64
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The model taken away: a GLB file by the letter of glTF 2.0, with the skis where the replay has them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The model that moves: valid by the letter of glTF 2.0, and at any time where the run has its skis."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

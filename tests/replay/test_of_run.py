@@ -1,7 +1,5 @@
 """A replay has the run's own numbers, from the object and from run.nc alike."""
 
-from __future__ import annotations
-
 import random
 import warnings
 from collections.abc import Callable

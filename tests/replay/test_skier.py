@@ -1,7 +1,5 @@
 """A skier as it is drawn: bones keep their lengths, the masses their centre, boots and lean are the run's."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Runs over measured heights, and runs whose boots move: where snow and skis are drawn."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """One synthetic campaign of the paper's design, analysed and reported once for all tests of this package."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Runs made without a simulation: a left or right turn on a circle, with everything known in closed form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

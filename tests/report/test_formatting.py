@@ -1,10 +1,13 @@
-"""Numbers, symbols and citations as they are printed."""
+"""Formatted values and tables in LaTeX."""
 
-from __future__ import annotations
-
+import csv
 import io
 import re
+import shutil
+import subprocess
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
@@ -14,8 +17,214 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from skisnow.report.formatting import figure_text, html, p_equals, prose, significant, whole
+from skisnow.report.campaign.data import ReportData
+from skisnow.report.campaign.tables import campaign_tables
+from skisnow.report.formatting import figure_text, html, latex_escaped, p_equals, prose, significant, whole
 from skisnow.report.sheet import CITED, bibtex
+from skisnow.report.table import Column, Table, table_csv
+from skisnow.report.table_latex import PACKAGES, table_latex
+
+from .conftest import Reported
+
+SPECIAL = "& % $ # _ { } ~ ^ \\ [ * < >"
+
+
+def test_special_letters_never_reach_latex_bare() -> None:
+    r"""After \command{} and escaped letters are taken away, none of the ten special ones is left."""
+    text = latex_escaped(SPECIAL)
+    bare = re.sub(r"\\text[a-z]+\{\}|\\[&%$#_{}]|\{\[\}|\{\*\}", "", text)
+    assert not set(bare) & set("&%$#_{}~^\\[*<>")
+
+
+def _table(rows: list[tuple[object, ...]], synthetic: bool = False) -> str:
+    columns = (Column("site", "Site", "text"), Column("H", "H_V", "estimate", "N/mm³"), Column("p", "p", "p"))
+    return table_latex(Table("test", "Values of H_V in 5 %.", columns, rows, synthetic=synthetic))
+
+
+def test_a_row_has_its_cells_between_ampersands() -> None:
+    text = _table([("a & b", (-2.0e-7, (0.001, 20.0)), 0.0001)])
+    assert r"a \& b & \num{-2.00e-7} [\num{0.00100}, \num{20.0}] & $<$ 0.001 \\" in text
+    assert r"{Site} & {\makecell{$H_\mathrm{V}$" in text
+    assert r"\begin{tabular}{lrr}" in text
+    assert all(rule in text for rule in (r"\toprule", r"\midrule", r"\bottomrule"))
+
+
+def test_a_long_table_breaks_over_pages() -> None:
+    text = _table([("a", (None, None), None)] * 60)
+    assert r"\begin{longtable}{lrr}" in text
+    assert text.count(r"a & -- & -- \\") == 60
+
+
+def test_a_table_beyond_measure_is_cut_and_says_so() -> None:
+    text = _table([("a", (1.0, None), None)] * 2001)
+    assert text.count(r"a & \num{1.00} & -- \\") == 2000
+    assert "2000 of 2001" in text
+
+
+def numbers(values: list[float | None], kind: Any = "number") -> str:
+    column = Column("x", "x", kind, "kg/m³")
+    return table_latex(Table("test", "Values.", (Column("site", "Site", "text"), column), [("a", x) for x in values]))
+
+
+def test_numbers_stand_below_each_other_by_their_points() -> None:
+    text = numbers([-0.5, 12.25, None])
+    assert "table-format=-2.3" in text  # -0.500, 12.2: three places at most, two before
+    assert r"a & -0.500 \\" in text
+    assert r"a & 12.2 \\" in text
+    assert r"a & {--} \\" in text  # in braces it is not a number to siunitx
+    assert "table-format=4" in numbers([3, 1652], "count")
+    assert r"\begin{tabular}{lr}" in numbers([1.0, 2.0e-7])  # a power of ten stays as it is
+
+
+def test_notes_stand_below() -> None:
+    text = table_latex(Table("test", "Values.", (Column("a", "A"),), [(1.0,)], note="Said of H_V."))
+    assert text.index(r"\end{tabular}") < text.index(r"Said of $H_\mathrm{V}$.") < text.index(r"\end{table}")
+    assert text.index(r"\caption") < text.index(r"\begin{tabular}")
+
+
+def test_a_wide_table_lies_across_the_page_and_long_texts_are_broken() -> None:
+    columns = tuple(Column(f"c{i}", f"C{i}", "text") for i in range(6))
+    text = table_latex(Table("test", "Values.", columns, [("one word after the other, and " * 2,) * 6]))
+    assert r"\begin{sidewaystable}" in text
+    assert text.count("p{45mm}") == 6
+    assert "sideways" not in numbers([1.0])
+
+
+@pytest.mark.slow
+def test_every_table_prints_within_its_page(reference: Reported, tmp_path: Path) -> None:
+    """With LaTeX of Debian: no error, no line that is too wide, every caption there."""
+    program = shutil.which("pdflatex")
+    finder = shutil.which("kpsewhich")
+    if program is None or finder is None:
+        pytest.skip("there is no LaTeX here (Debian: texlive-latex-extra and texlive-science)")
+    for package in PACKAGES:
+        if subprocess.run([finder, f"{package}.sty"], capture_output=True, check=False).returncode:
+            pytest.skip(f"LaTeX has no {package} here (Debian: texlive-latex-extra and texlive-science)")
+    places = sorted((reference.folder / "tables").glob("*.tex"))
+    read_in = "\n".join(rf"\input{{{place}}}\clearpage" for place in places)
+    paper = tmp_path / "paper.tex"
+    paper.write_text(
+        "\\documentclass[a4paper,11pt]{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[margin=25mm]{geometry}\n"
+        f"\\usepackage{{{','.join(PACKAGES)}}}\n\\begin{{document}}\n{read_in}\n\\end{{document}}\n",
+        encoding="utf-8",
+    )
+    for _ in range(2):  # the second time with the widths of long tables
+        done = subprocess.run(
+            [program, "-interaction=nonstopmode", "-halt-on-error", paper.name],
+            cwd=tmp_path, capture_output=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout.decode("utf-8", "replace")[-2000:]
+    log = (tmp_path / "paper.log").read_text(encoding="utf-8", errors="replace")
+    assert "Overfull \\hbox" not in log
+    assert len(places) > 15
+    labels = (tmp_path / "paper.aux").read_text(encoding="utf-8", errors="replace")
+    assert labels.count(r"\newlabel{tab:") >= len(places)
+
+
+def test_braces_and_environments_balance_in_every_table(reference: Reported) -> None:
+    for path in (reference.folder / "tables").glob("*.tex"):
+        text = path.read_text(encoding="utf-8")
+        plain = re.sub(r"\\[{}]", "", text)
+        assert plain.count("{") == plain.count("}")
+        begun = re.findall(r"\\begin\{(\w+)\}", text)
+        assert sorted(begun) == sorted(re.findall(r"\\end\{(\w+)\}", text))
+        widths = {
+            len(re.split(r"(?<!\\)&", line)) for line in text.splitlines() if line.endswith(r" \\") and "&" in line
+        }
+        assert len(widths) == 1
+
+
+TABLE = Table(
+    "test",
+    "A table.",
+    (
+        Column("site", "Site", "text"),
+        Column("n", "n", "count"),
+        Column("used", "used", "yes"),
+        Column("flags", "flags", "codes"),
+        Column("H_V_N_per_mm3", "H_V", "estimate", "N/mm³"),
+        Column("range_mm", "range", "interval", "mm"),
+        Column("p", "p", "p"),
+    ),
+    [
+        ('a, "b"\nc', 3, True, ["x", "y"], (0.1 + 0.2, (1e-17, 1e300)), None, 1 / 3),
+        ("ünïcode ;", 0, False, [], (None, None), (0.0, -2.5), None),
+    ],
+)
+
+
+def test_no_text_is_a_formula_and_every_number_stays() -> None:
+    rows = [("=1+1", 1, True, ["@x"], (-1.5, (-2.0, -1.0)), None, 0.5)]
+    (row,) = csv.DictReader(io.StringIO(table_csv(replace(TABLE, rows=rows)), newline=""))
+    assert (row["site"], row["flags"]) == ("'=1+1", "'@x")
+    assert (row["H_V_N_per_mm3"], row["H_V_N_per_mm3_low"]) == ("-1.5", "-2.0")
+
+
+def test_values_come_back_with_all_digits() -> None:
+    rows = list(csv.DictReader(io.StringIO(table_csv(TABLE), newline="")))
+    first, second = rows
+    assert first["site"] == 'a, "b"\nc'
+    assert (first["n"], first["used"], first["flags"]) == ("3", "true", "x; y")
+    assert float(first["H_V_N_per_mm3"]) == 0.1 + 0.2
+    assert (float(first["H_V_N_per_mm3_low"]), float(first["H_V_N_per_mm3_high"])) == (1e-17, 1e300)
+    assert float(first["p"]) == 1 / 3
+    assert (first["range_mm_low"], first["range_mm_high"]) == ("", "")
+    assert (second["H_V_N_per_mm3"], second["p"], second["flags"]) == ("", "", "")
+    assert (float(second["range_mm_low"]), float(second["range_mm_high"])) == (0.0, -2.5)
+
+
+def test_lines_end_as_rfc_4180_has_it() -> None:
+    text = table_csv(TABLE)
+    assert text.endswith("\r\n")
+    assert text.count("\r\n") == 3
+    assert text.split("\r\n")[0].split(",")[:5] == ["site", "n", "used", "flags", "H_V_N_per_mm3"]
+
+
+def test_the_report_s_experiments_equal_the_results(reference: Reported) -> None:
+    path = reference.folder / "tables" / "penetration_experiments_synthetic.csv"
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    experiments = reference.results["penetration"]["experiments"]
+    for key in ("H_e_N_per_mm", "H_A_N_per_mm2", "H_V_N_per_mm3", "edge_angle_deg"):
+        assert [float(row[key]) for row in rows] == [row[key] for row in experiments]
+    low, high = zip(*(row["H_V_interval_N_per_mm3"] for row in experiments), strict=True)
+    assert [float(row["H_V_N_per_mm3_low"]) for row in rows] == list(low)
+    assert [float(row["H_V_N_per_mm3_high"]) for row in rows] == list(high)
+
+
+HEADS = {
+    "sites": "site penetration_n penetration_used H_V_N_per_mm3 H_V_range_N_per_mm3 shear_n shear_used S_f_N_per_mm2 "
+    "S_f_range_N_per_mm2",
+    "corrections": "file row experiment column old new who when why",
+    "warnings": "severity code file row column experiment value allowed action",
+    "models": "row selected a0 a1 b0 b1 at_bound n_parameters rmse_N rmse_dof_N rmse_free_N printed_rmse_N",
+    "model_tests": "full reduced F df1 df2 p rmse_change_percent valid_classically",
+    "errors_in_depth": "row procedure a0 a1 b0 b1 at_bound rmse_N rmse_free_N",
+    "hardness_by_procedure": "experiment site used H_V_N_per_mm3 H_V_fitted_N_per_mm3 relative_scatter",
+    "seating_distribution": "quantile depth_offset_mm H_V_change_percent",
+    "seating_largest": "experiment site edge_angle_deg H_V_N_per_mm3 depth_offset_mm H_V_change_percent",
+    "seating": "experiment site used depth_offset_mm H_V_change_percent",
+    "hardness_growth_sites": "site n growth_percent",
+    "hardness_growth": "experiment site used H_V_N_per_mm3 H_0_N_per_mm3 growth_percent",
+    "unloading_sites": "site n unloading_ratio rebound_ratio_interval k_u_N_per_mm3",
+    "unloading": "experiment site edge_angle_deg n_unloading used unloading_ratio rebound_ratio_interval k_u_N_per_mm3",
+    "shear_displacement_sites": "site n shear_displacement_mm",
+    "shear_displacement": "experiment site edge_angle_deg n_turning used shear_displacement_mm",
+    "regressions": "response predictor group n intercept slope slope_by_site rmse rmse_dof r2 F p",
+    "group_comparisons": "quantity by group_a n_a group_b n_b ratio p p_holm n_needed",
+    "comparisons": "source quantity value range own own_range own_over_published",
+    "marks": "code sentence excludes penetration_n penetration_experiments shear_n shear_experiments",
+    "penetration_experiments": "experiment site tool edge_angle_deg n_loads used flags H_e_N_per_mm H_A_N_per_mm2 "
+    "H_V_N_per_mm3",
+    "shear_experiments": "experiment site plate edge_angle_deg depth_mm F_t_N S_f_N_per_mm2 used flags",
+    "files": "file sha256",
+}
+"""Settings with which other programs read the tables."""
+
+
+def test_columns_of_every_table_have_their_names(reference: Reported) -> None:
+    tables = campaign_tables(ReportData(reference.analysis))
+    assert {name: " ".join(column.key for column in table.columns) for name, table in tables.items()} == HEADS
 
 
 @pytest.mark.parametrize(

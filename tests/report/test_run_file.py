@@ -1,7 +1,5 @@
 """run.nc holds a run to the digit, with units and meanings that a program of the field understands."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

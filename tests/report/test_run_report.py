@@ -1,7 +1,5 @@
 """The report of a run: complete, self-contained, and its numbers are those of the run."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import fields, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Sample files: readable, the same for a seed, and those that the pages show."""
 
-from __future__ import annotations
-
 import importlib
 import json
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Boots of a scenario: rules for tables and arrays of poses, and the defaults of a table."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A scenario that is built in Python holds to the same limits as one from a file."""
 
-from __future__ import annotations
-
 import math
 import re
 import warnings

@@ -1,7 +1,5 @@
 """Declarations of a scenario's dataclasses hold in files: defaults, ranges, schema."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from typing import Any

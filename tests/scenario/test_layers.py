@@ -1,7 +1,5 @@
 """Which layer of a scenario counts: 500 random combinations, compared with an earlier version's answers."""
 
-from __future__ import annotations
-
 import json
 import warnings
 from collections import Counter

@@ -1,7 +1,5 @@
 """ESRI ASCII grids and GeoTIFF: places, heights in m, and each rule that rejects a grid."""
 
-from __future__ import annotations
-
 import math
 import sys
 from pathlib import Path

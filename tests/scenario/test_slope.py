@@ -1,7 +1,5 @@
 """Planes and measured profiles: the points, between them, beyond them, and everything that is refused."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Snow that varies over the place: contents of the file, order of precedence, and refusals."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

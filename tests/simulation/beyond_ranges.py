@@ -1,7 +1,5 @@
 """Parts of scenarios that no scenario may have, where an equation is known for them."""
 
-from __future__ import annotations
-
 import copy
 from typing import TypeVar
 

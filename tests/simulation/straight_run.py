@@ -1,7 +1,5 @@
 """Runs made without a simulation: straight down the fall line with constant friction, known in closed form."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

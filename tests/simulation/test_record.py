@@ -1,8 +1,13 @@
-"""What is kept of a run under way, moment by moment."""
+"""A run as object: record, table of its track, limits of the model."""
 
-from __future__ import annotations
-
+import csv
+import io
+import json
 import math
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -10,11 +15,21 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from skisnow import BootMoment, BootPose, Scenario, load_scenario, simulate
+from skisnow._support.errors import ModelLimitWarning, ParameterError
+from skisnow._support.units import DEGREE
+from skisnow.cli import main
 from skisnow.dynamics import Ended
-from skisnow.scenario import Plane, load_scenario
+from skisnow.scenario import Plane
+from skisnow.scenario.plausibility import model_limits
 from skisnow.simulation.moving_boots import StrengthDrive
 from skisnow.simulation.run_record import Record
 from skisnow.simulation.run_setup import Setup, set_up
+from skisnow.simulation.run_tables import COLUMNS, track_csv, write_track
+from skisnow.ski import ski_named, write_ski
+from skisnow.ski.editing import SkiEdit, edit_stations
+
+from .straight_run import STRAIGHT, straight_run
 
 
 def chords(record: Record) -> float:
@@ -134,3 +149,124 @@ def test_outputs_between_the_times_of_a_drive_leave_no_trace() -> None:
     assert reached == pytest.approx([0.004, 0.008, 0.01, 0.025, 0.05])
     assert calls == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04])
     assert dynamics.way == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04, 0.05])
+
+
+@pytest.mark.parametrize(
+    ("method", "function", "arguments"),
+    [
+        (lambda run: run.plot(), "run.drawings.run_figure", ("track",)),
+        (lambda run: run.plot("motion"), "run.drawings.run_figure", ("motion",)),
+        (lambda run: run.report(Path("out")), "run.folder.write_run", (Path("out"),)),
+        (lambda run: run.to_dataframe(), "run.file.run_dataframe", ()),
+        (lambda run: run.to_xarray(), "run.file.run_dataset", ()),
+    ],
+)
+def test_a_method_returns_the_result_of_the_upper_package(
+    method: Callable[[Any], Any], function: str, arguments: tuple[Any, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, result = straight_run(load_scenario("carved-46m", changes=STRAIGHT)), object()
+    calls: list[tuple[Any, ...]] = []
+
+    def record(*given: Any) -> object:
+        calls.append(given)
+        return result
+
+    monkeypatch.setattr(f"skisnow.report.{function}", record)
+    assert method(run) is result
+    assert calls == [(run, *arguments)]
+
+
+HEAD = (
+    "time_s,x_m,y_m,z_m,speed_m_per_s,heading_deg,turn_radius_m,"
+    "left_x_m,left_y_m,left_depth_mm,right_x_m,right_y_m,right_depth_mm,"
+    "left_total_force_N,right_total_force_N,left_normal_force_N,right_normal_force_N"
+)
+
+
+def rows_of(text: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_columns_are_those_of_the_contract() -> None:
+    text = track_csv(straight_run(load_scenario("carved-46m", changes=STRAIGHT)))
+    assert text.splitlines()[0] == HEAD == ",".join(COLUMNS)
+    assert len(rows_of(text)) == 201  # 2 s in steps of 10 ms, both ends
+
+
+def test_numbers_have_their_units_and_all_digits() -> None:
+    run = straight_run(load_scenario("carved-46m", changes={**STRAIGHT, "y_m": 3.0}))
+    turned = replace(run, heading=np.full(len(run.time), -math.pi / 6.0))
+    row = rows_of(track_csv(turned))[100]
+    assert float(row["time_s"]) == 1.0
+    # 5 t + a t²/2 with a = 9.81 (sin 10° - 0.05 cos 10°), by hand
+    assert float(row["x_m"]) == pytest.approx(5.0 + (1.703488622912587 - 0.483048202852488) / 2.0, rel=1e-12)
+    assert float(row["speed_m_per_s"]) == pytest.approx(5.0 + 1.703488622912587 - 0.483048202852488, rel=1e-12)
+    assert float(row["heading_deg"]) == pytest.approx(-30.0, rel=1e-12)
+    assert float(row["left_y_m"]) - float(row["right_y_m"]) == pytest.approx(0.5, rel=1e-12)
+    assert (float(row["left_depth_mm"]), float(row["right_depth_mm"])) == pytest.approx((4.0, 8.0), rel=1e-12)
+    assert row["left_x_m"] == row["right_x_m"] == row["x_m"] == repr(float(run.place[100, 0]))
+
+
+def test_radius_is_empty_where_the_path_is_straight() -> None:
+    run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))
+    radius = run.turn_radius.copy()
+    radius[1] = -12.5
+    found = [row["turn_radius_m"] for row in rows_of(track_csv(replace(run, turn_radius=radius)))]
+    assert found[:3] == ["", "-12.5", ""]
+
+
+def test_file_is_the_text(tmp_path: Path) -> None:
+    run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))
+    write_track(run, tmp_path / "track.csv")
+    assert (tmp_path / "track.csv").read_text(encoding="utf-8") == track_csv(run)
+    assert [path.name for path in tmp_path.iterdir()] == ["track.csv"]
+
+
+def turn(**changes: object) -> Scenario:
+    return load_scenario("carved-46m", changes={"run.duration_s": 0.05} | changes)
+
+
+def test_no_edge_angle_is_warned_of() -> None:
+    for edge_angle in (0.0, 0.01, -1.0, 30.0):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", ModelLimitWarning)
+            simulate(turn(**{"sledge.edge_angle_deg": edge_angle}))
+
+
+@pytest.mark.parametrize(
+    ("change", "codes"),
+    [
+        ({"base_bevel": 1.0 * DEGREE}, []),
+        ({"side_edge": 88.0 * DEGREE}, ["side_edge_without_radius"]),
+        ({"side_edge": 88.0 * DEGREE, "edge_radius": 1e-4}, ["edge_radius_unmeasured"]),
+    ],
+)
+def test_grinding_without_a_measurement_is_warned_of(change: dict[str, Any], codes: list[str]) -> None:
+    assert list(model_limits(replace(ski_named("giant-slalom"), **change))) == codes
+
+
+def test_the_terminal_and_the_report_have_the_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    ground = replace(ski_named("giant-slalom"), edge_radius=1e-4)
+    write_ski(ground, tmp_path / "ground.toml")
+    settings = ["--set", f"ski.file={tmp_path / 'ground.toml'}", "--set", "run.duration_s=0.05"]
+    main(["simulate", "carved-46m", *settings, "--out", str(tmp_path / "out")])
+    (text,) = model_limits(ground).values()
+    assert capsys.readouterr().err.count(text) == 1
+    assert text in json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["warnings"]
+    assert text in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_function_does_not_replace_a_skier_s_balance() -> None:
+    def still(_: BootMoment) -> list[BootPose]:
+        return [BootPose.of([0.0, side, 0.0], 0.0) for side in (0.2, -0.2)]
+
+    with pytest.raises(ParameterError, match="with_"):
+        simulate(load_scenario("skier-10deg"), boots=still)
+
+
+@pytest.mark.parametrize("part", ["factors", "values"])
+def test_an_unknown_column_of_an_edit_is_an_error(part: str) -> None:
+    station = edit_stations(ski_named("slalom"))
+    arguments: dict[str, Any] = {part: {"sidecut": 1.2 if part == "factors" else station}}
+    with pytest.raises(ParameterError, match="sidecut"):
+        SkiEdit(station, **arguments)

@@ -1,7 +1,5 @@
 """Parts of a run, each on numbers that were made up for it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -1,9 +1,7 @@
-from __future__ import annotations
-
 import math
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -17,9 +15,6 @@ from skisnow.ski import BaseShape, Ski, arc_ski, layout_of_lengths, read_ski
 from skisnow.ski.outline import ArcOutline, width_of_table
 from skisnow.ski.table_file import StationTable
 from skisnow.snow import SnowProperties
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def slalom(*, boot_position: float = 0.0, base: BaseShape | None = None, stations: list[float] | None = None) -> Ski:

@@ -1,9 +1,7 @@
-from __future__ import annotations
-
 import dataclasses
 import math
 import warnings
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,10 +13,6 @@ from skisnow._support.errors import OutputError, ParameterError, RangeWarning
 from skisnow._support.units import MM
 from skisnow.ski import Ski, read_ski, ski_named, ski_names, write_ski
 from skisnow.ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
 
 NAN = math.nan
 

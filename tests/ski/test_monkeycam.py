@@ -1,18 +1,14 @@
-from __future__ import annotations
-
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow.ski import BaseShape, Ski, read_monkeycam, read_ski
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 SHAPES = Path(__file__).parents[3] / "shared" / "data" / "ski-shapes"
 

@@ -1,9 +1,7 @@
-from __future__ import annotations
-
 import math
 import warnings
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -16,10 +14,7 @@ from skisnow.ski.layout import BaseShape
 from skisnow.ski.ski_file import Sources
 from skisnow.snow import published_snow
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    Written = Callable[..., Path]
+Written = Callable[..., Path]
 
 
 # sidecut radius printed on the ski (m), δ by hand from the widths (mm), mass (kg), camber (mm), EI in the middle (N m²)

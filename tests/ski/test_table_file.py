@@ -1,6 +1,5 @@
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,11 +13,7 @@ from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.ski import read_ski
 from skisnow.ski.table_file import StationTable, evenly_spread
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    Written = Callable[..., Path]
+Written = Callable[..., Path]
 
 
 # a ski 1.6 m long of five rows, its mass by the trapezoid (0.8·(1+2)/2·2) = 2.4 kg

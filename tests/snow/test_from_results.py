@@ -1,7 +1,5 @@
 """The snow of an analysed campaign."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

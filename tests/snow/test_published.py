@@ -1,7 +1,5 @@
 """Published relations against the numbers that their papers print."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from pathlib import Path

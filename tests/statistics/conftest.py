@@ -1,7 +1,5 @@
 """Certified data of the NIST Statistical Reference Datasets: the nonlinear sets, others where they lie beside us."""
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Callable

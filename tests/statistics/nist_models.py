@@ -1,7 +1,5 @@
 """The models of the 27 nonlinear sets of the NIST Statistical Reference Datasets, as their files print them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Cluster-robust intervals: the textbook formulas with dense matrices, exact special cases, coverage."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

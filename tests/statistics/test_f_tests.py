@@ -1,16 +1,19 @@
-"""Nested F test: statsmodels, the values that follow from the paper's printed rmse, and the undefined cases."""
-
-from __future__ import annotations
+"""F tests and combined uncertainty."""
 
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from tests.coded import raises
 
 from skisnow._support.errors import ParameterError
-from skisnow.statistics import nested_f_test, one_way_anova
+from skisnow.statistics import expanded_factor, nested_f_test, one_way_anova, welch_satterthwaite
+from skisnow.statistics.combined_uncertainty import random_effects_mean
+
+from ..versions import EXACT_QUANTILES
 
 READINGS = 1652  # 236 series of 7 loads
 
@@ -126,3 +129,106 @@ def test_undefined() -> None:
 def test_a_value_that_is_no_number_is_told_with_its_group() -> None:
     with raises(ParameterError, "not_a_number", name="group 2"):
         one_way_anova([[1.0, 2.0], [3.0, float("nan")], [4.0]])
+
+
+def test_equal_contributions_add_their_degrees() -> None:
+    # u⁴-weights equal: (k u²)²/(k u⁴/ν) = k ν
+    assert float(welch_satterthwaite([4.0, 4.0, 4.0], 5.0)) == pytest.approx(15.0)
+
+
+def test_known_contributions_raise_the_degrees() -> None:
+    # half the variance known: (2)²/(1/ν) = 4 ν
+    assert float(welch_satterthwaite([1.0, 1.0], [6.0, np.inf])) == pytest.approx(24.0)
+    assert float(welch_satterthwaite([1.0, 2.0], np.inf)) == np.inf
+
+
+def test_leading_axes_and_edges() -> None:
+    variances = np.array([[1.0, 0.0], [0.0, 0.0], [1.0, 1.0], [1.0, np.nan], [1.0, -1.0], [1.0, 1.0]])
+    dof = np.array([[3.0, 0.0], [3.0, 3.0], [0.0, 9.0], [3.0, 3.0], [3.0, 3.0], [3.0, np.nan]])
+    found = welch_satterthwaite(variances, dof)
+    np.testing.assert_array_equal(found, [3.0, np.inf, 0.0, np.nan, np.nan, np.nan])
+
+
+def test_tiny_and_huge_units_do_not_matter() -> None:
+    for unit in (1e-200, 1e200):
+        assert float(welch_satterthwaite([1.0 * unit, 3.0 * unit], [2.0, 8.0])) == pytest.approx(16 / (1 / 2 + 9 / 8))
+
+
+@given(
+    st.lists(st.tuples(st.floats(1e-3, 1e3), st.floats(1.0, 100.0)), min_size=1, max_size=5),
+)
+def test_between_the_least_and_the_sum(parts: list[tuple[float, float]]) -> None:
+    variances, dof = np.array(parts).T
+    found = float(welch_satterthwaite(variances, dof))
+    assert dof.min() * (1 - 1e-12) <= found <= dof.sum() * (1 + 1e-12)
+
+
+@EXACT_QUANTILES
+def test_expanded_factors_of_elementary_distributions() -> None:
+    # t with 1 degree: tan(π c/2); with 2: c √(2/(1 - c²)); the limit: normal
+    c = 0.9545
+    found = expanded_factor([1.0, 2.0, np.inf], c)
+    expected = [np.tan(np.pi * c / 2), c * np.sqrt(2 / (1 - c * c)), 2.0000024438996027]
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_table_g2_of_the_gum() -> None:
+    # columns 95 % and 99 % of its table of t, printed to two decimals
+    table = {1: (12.71, 63.66), 5: (2.57, 4.03), 16: (2.12, 2.92), 50: (2.01, 2.68)}
+    for dof, printed in table.items():
+        np.testing.assert_allclose([expanded_factor(dof, 0.95), expanded_factor(dof, 0.99)], printed, atol=0.005)
+
+
+def test_unknown_scatter_has_no_factor() -> None:
+    assert np.isnan(expanded_factor([0.0, -1.0, np.nan], 0.95)).all()
+    for confidence in (0.0, 1.0, 95.0, float("nan")):
+        with raises(ParameterError, "out_of_range"):
+            expanded_factor(3.0, confidence)
+
+
+LOG_RISK_RATIO = (
+    *(-0.8893, -1.5854, -1.3481, -1.4416, -0.2175, -0.7861, -1.6209),
+    *(0.0120, -0.4694, -1.3713, -0.3394, 0.4459, -0.0173),
+)
+VARIANCE = (0.3256, 0.1946, 0.4154, 0.0200, 0.0512, 0.0069, 0.2230, 0.0040, 0.0564, 0.0730, 0.0124, 0.5325, 0.0714)
+
+
+def test_the_spread_is_that_of_another_program() -> None:
+    """Thirteen trials of a vaccine (Colditz and others 1994, JAMA 271, 698-702); R's metafor, method PM: τ² 0.3181."""
+    found = random_effects_mean(LOG_RISK_RATIO, np.sqrt(VARIANCE))
+    assert found.spread**2 == pytest.approx(0.3181, abs=5e-5)
+    assert found.mean == pytest.approx(-0.7150, abs=5e-5)
+
+
+def test_equal_errors_leave_the_plain_t_interval() -> None:
+    x = np.random.default_rng(1).normal(5.0, 2.0, 9)
+    found = random_effects_mean(x, np.full(9, 0.3))
+    half = float(expanded_factor(8.0, 0.95)) * x.std(ddof=1) / 3.0
+    assert (found.mean, found.low, found.high) == pytest.approx((x.mean(), x.mean() - half, x.mean() + half))
+    assert found.spread**2 == pytest.approx(x.var(ddof=1) - 0.3**2)
+
+
+def test_estimates_that_agree_better_than_their_errors_have_no_spread() -> None:
+    assert random_effects_mean([1.0, 1.1, 0.9], [1.0, 1.0, 1.0]).spread == 0.0
+
+
+def test_one_estimate_has_no_interval() -> None:
+    found = random_effects_mean([3.0], [0.1])
+    assert found.mean == 3.0
+    assert np.isnan([found.low, found.high]).all()
+
+
+def test_exact_estimates_do_not_divide_by_zero() -> None:
+    found = random_effects_mean([2.0, 2.0, 2.0], [0.0, 0.0, 0.0])
+    assert (found.mean, found.low, found.high) == pytest.approx((2.0, 2.0, 2.0))
+    assert random_effects_mean([0.0, 0.0], [0.0, 0.0]).mean == 0.0
+
+
+@pytest.mark.parametrize(("spread", "least", "most"), [(0.0, 0.95, 1.0), (1.0, 0.91, 0.96), (3.0, 0.92, 0.97)])
+def test_coverage(spread: float, least: float, most: float) -> None:
+    """Over eight estimates whose errors differ up to five times 92 to 99 % of 1000 intervals hold the mean (± 2 %)."""
+    rng = np.random.default_rng(2)
+    errors = np.linspace(0.3, 1.5, 8)
+    draws = 4.0 + np.hypot(spread, errors) * rng.standard_normal((1000, 8))
+    found = [random_effects_mean(x, errors) for x in draws]
+    assert least < np.mean([each.low <= 4.0 <= each.high for each in found]) <= most

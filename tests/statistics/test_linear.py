@@ -1,7 +1,5 @@
 """Linear fits against certified data, rational arithmetic and hand calculation."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any

@@ -1,7 +1,5 @@
 """STUDY.toml: its points, and every mistake told."""
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import json

@@ -1,7 +1,5 @@
 """A study's table that a spreadsheet program saved again."""
 
-from __future__ import annotations
-
 import json
 import sqlite3
 import sys

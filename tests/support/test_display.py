@@ -1,6 +1,4 @@
-"""How public objects show themselves: in a few lines with units, and as a table in a notebook."""
-
-from __future__ import annotations
+"""Objects as they are displayed, and arrays."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
@@ -11,6 +9,7 @@ import pytest
 
 import skisnow
 from skisnow import SnowProperties, Track
+from skisnow._support.arrays import cross
 from skisnow._support.units import Facts, Shown, field_facts
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
@@ -173,3 +172,12 @@ def test_lists_and_texts_are_shown_up_to_a_length() -> None:
 def test_a_track_of_many_points_is_shown_short() -> None:
     far = Track("far", np.arange(1e5), np.zeros((100_000, 3)), np.zeros(100_000), "UTC", "local")
     assert len(repr(far).splitlines()) < 10
+
+
+@pytest.mark.parametrize("shape", [(3,), (2, 3), (5, 2, 3)])
+def test_a_vector_product_has_the_bits_of_numpy(shape: tuple[int, ...]) -> None:
+    """Also its sign: ahead by left is up."""
+    random = np.random.default_rng(1)
+    first, second = random.normal(size=shape), random.normal(size=shape)
+    assert np.array_equal(cross(first, second), np.cross(first, second))
+    assert cross(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])).tolist() == [0.0, 0.0, 1.0]

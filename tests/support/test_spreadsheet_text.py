@@ -1,7 +1,5 @@
 """Tables of users by their cells; texts in tables that people open: never a formula, always the same again."""
 
-from __future__ import annotations
-
 import math
 import random
 from pathlib import Path

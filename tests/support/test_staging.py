@@ -1,7 +1,5 @@
 """Files that belong together: never parts of two writings, wherever a process is killed."""
 
-from __future__ import annotations
-
 import os
 import signal
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Lengths of a degree on WGS84 by the textbook's series, apart from any formula of the package."""
 
-from __future__ import annotations
-
 import math
 
 

@@ -1,7 +1,5 @@
 """Noise of places on simulated tracks of known noise, with turns that the points resolve and turns that they do not."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

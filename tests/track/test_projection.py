@@ -1,7 +1,5 @@
 """The local projection against published numbers and the textbook's lengths of a degree."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Campaigns of a few tests, as the texts of their files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 DESK = """name = "Desk"

@@ -18,18 +18,20 @@ from urllib.parse import urlsplit
 
 import pytest
 
+pytest.importorskip("nicegui", reason="the web lab is not installed: pip install 'skisnow[web]'")
+
+from multiprocessing.process import BaseProcess
+
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
 
 if TYPE_CHECKING:
-    from multiprocessing.process import BaseProcess
-
     from playwright.sync_api import Browser, Locator, Page
 
 # without windows it takes a quarter of the computing that the whole browser takes
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium-headless-shell", "chromium", "chromium-browser"))), None)
-MISSING = [name for name in ("nicegui", "playwright") if importlib.util.find_spec(name) is None]
+HAS_PLAYWRIGHT = importlib.util.find_spec("playwright") is not None
 PATIENCE_MS = 150_000  # as long as a page of the lab itself waits for an answer; no time is asserted
 DRAWING_MS = 180_000  # all figures of a report
 
@@ -140,8 +142,6 @@ class Servers:
 
 @pytest.fixture(scope="session")
 def servers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servers]:
-    if "nicegui" in MISSING:
-        pytest.skip("NiceGUI is not installed: pip install 'skisnow[web]'")
     every = Servers(lambda: tmp_path_factory.mktemp("served"))
     yield every
     every.end()
@@ -156,8 +156,6 @@ def served(servers: Servers) -> Served:
 @pytest.fixture
 def served_with_figures(tmp_path: Path) -> Iterator[Served]:
     """A separate lab that draws."""
-    if "nicegui" in MISSING:
-        pytest.skip("NiceGUI is not installed: pip install 'skisnow[web]'")
     lab = Served(tmp_path / "store.sqlite3", are_drawn=True).start()
     yield lab
     lab.kill()
@@ -165,8 +163,8 @@ def served_with_figures(tmp_path: Path) -> Iterator[Served]:
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
-    if MISSING:
-        pytest.skip(f"not installed: {', '.join(MISSING)} (pip install 'skisnow[web]' playwright)")
+    if not HAS_PLAYWRIGHT:
+        pytest.skip("Playwright is not installed: pip install playwright")
     if CHROMIUM is None:
         pytest.skip("there is no Chromium on this machine (Debian: apt install chromium)")
     from playwright.sync_api import sync_playwright

@@ -1,7 +1,5 @@
 """Work for an event loop, done in a separate thread: in this one a loop may run, the one that drives a browser."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Coroutine
 from concurrent.futures import ThreadPoolExecutor

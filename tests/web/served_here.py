@@ -4,8 +4,6 @@ whether figures are drawn.
 The process that draws for the lab runs this file, too, under another name: nothing stands here that takes long to load.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 

@@ -4,17 +4,13 @@ A text is a string, or a string with places for values, that is not a docstring,
 has a word in it.
 """
 
-from __future__ import annotations
-
 import ast
 import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import skisnow.web
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 HERE: Final = Path(skisnow.web.__file__).parent
 _UNREAD: Final = """

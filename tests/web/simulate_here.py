@@ -1,7 +1,5 @@
 """`python -m skisnow` with an empty picture instead of every figure, which takes a second: the pages show words."""
 
-from __future__ import annotations
-
 import sys
 from unittest.mock import patch
 

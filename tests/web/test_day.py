@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from PIL import Image
 
@@ -20,9 +21,7 @@ from skisnow.cli import main
 from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
     from playwright.sync_api import Download, Locator, Page
-
 
 SERIES = {
     "1": ("30", ("1.5", "22.5", "2.6", "3.0")),  # the second one is a typing error for 2.15

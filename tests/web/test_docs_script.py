@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from playwright.sync_api import Browser, Page
 
 SCRIPT = (Path(__file__).resolve().parents[2] / "docs" / "_static" / "skisnow.js").read_text(encoding="utf-8")

@@ -1,10 +1,8 @@
 """The lab analyses campaigns in memory: the same numbers as over the folder that is exported, and no folder made."""
 
-from __future__ import annotations
-
 from base64 import b64decode
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -27,8 +25,8 @@ from ..campaign.recordings import plain_snow
 from ..support.user_files.test_workbook import packed
 from .campaign_texts import DESK
 
-if TYPE_CHECKING:
-    pass
+pass
+
 
 TOML = DESK
 ROWS = [("20", "1.5"), ("40", "2.1"), ("60", "2.6")]

@@ -5,28 +5,22 @@ from __future__ import annotations
 import io
 import json
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-
-from skisnow.studies import read_study, run_study
-
-from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready, settled
-
-pytest.importorskip("nicegui", reason="the web lab is not installed: pip install 'skisnow[web]'")
 from fastapi import FastAPI
 
+from skisnow.studies import read_study, run_study
 from skisnow.web.replay_addresses import RunFolders, add_addresses
 
-from ..track.course.test_gates_table import folder_of
+from ..track.course.test_passages import folder_of
+from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready, settled
 from .replay.test_addresses import Client
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from playwright.sync_api import Locator, Page
-
 
 LONG_MS = 4 * PATIENCE_MS
 FIRST, SECOND = "First input", "Second input"

@@ -1,7 +1,5 @@
 """Import of workbooks in everyday layouts: the right numbers, or an error that names the option."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Callable
 from pathlib import Path

@@ -1,16 +1,192 @@
-"""campaign.toml: what is refused with the path of its key, and its schema."""
+"""campaign.toml and the file of corrections."""
 
-from __future__ import annotations
-
+import csv
+import io
 import tomllib
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import jsonschema
 import pytest
 
+from skisnow.campaign import check_campaign, read_campaign
 from skisnow.campaign.problems import QUALITY_FLAGS, Problem
 from skisnow.campaign.reading.campaign_file import SHAPES, CampaignFile, read_campaign_file
 from skisnow.cli.schema import json_schema
+
+WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+Where = tuple[int | None, str | None, str | None, str | None]
+
+PEN, SHEAR, DENSITY, CONE, FILE = "penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv"
+HEADER = ("file", "experiment", "row", "column", "old", "new", "who", "when", "why")
+
+
+def corrections(*rows: tuple[str, str, str, str, str, str]) -> str:
+    stream = io.StringIO()
+    writer = csv.writer(stream)
+    writer.writerow(HEADER)
+    writer.writerows((*row, "AM", "2013-02-01T10:00", "misread, twice") for row in rows)
+    return stream.getvalue()
+
+
+def where(problem: Problem) -> Where:
+    assert (problem.severity, problem.file) == ("error", FILE)
+    return (problem.row, problem.column, problem.experiment, problem.value)
+
+
+def test_cells_are_corrected_before_they_are_read(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("140.5,2.5", "140.5,2.s")
+    small_campaign[FILE] = corrections(
+        (PEN, "P1", "3", "depth_mm", "2.s", "2.75"),
+        (PEN, "P1", "2", "remark", "first", "sun, wind"),
+        (PEN, "P1", "4", "snow_density_kg_per_m3", "360.0", ""),
+        (SHEAR, "S2", "3", "experiment", "S2", "S9"),
+        (SHEAR, "S9", "3", "moment_Nm", "10", "11"),
+        (DENSITY, "D2", "4", "snow_density_kg_per_m3", "310", "320"),
+        (CONE, "C2", "4", "drop_cone_depth_mm", "17", "18"),
+    )
+    campaign = read_campaign(write_campaign(small_campaign))
+    assert campaign.penetration is not None
+    assert campaign.penetration.penetration_depth[1] == pytest.approx(2.75e-3)
+    assert campaign.penetration.further["remark"][0] == "sun, wind"
+    assert campaign.penetration.snow_density[0] == 350.0
+    assert campaign.shear is not None
+    assert campaign.shear.experiment == ("S1", "S9")
+    assert campaign.shear.moment[1] == 11.0
+    assert campaign.density is not None
+    assert campaign.density.snow_density[2] == 320.0
+    assert campaign.drop_cone is not None
+    assert campaign.drop_cone.drop_cone_depth[2] == pytest.approx(0.018)
+    assert campaign.problems == ()
+
+
+def test_corrections_of_one_cell_chain_in_their_order(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    first = (PEN, "P1", "3", "depth_mm", "2.5", "2.6")
+    second = (PEN, "P1", "3", "depth_mm", "2.6", "2.7")
+    tests = read_campaign(write_campaign({**small_campaign, FILE: corrections(first, second)})).penetration
+    assert tests is not None
+    assert tests.penetration_depth[1] == pytest.approx(2.7e-3)
+    problems = check_campaign(write_campaign({**small_campaign, FILE: corrections(second, first)}))
+    assert [where(problem) for problem in problems] == [(2, "old", "P1", "2.6")]
+
+
+@pytest.mark.parametrize(("file", "experiment"), [(PEN, "P2"), (SHEAR, "S2"), (DENSITY, "D2"), (CONE, "C2")])
+def test_status_cancels_with_and_without_such_a_column(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], file: str, experiment: str
+) -> None:
+    row = next(
+        number for number, line in enumerate(small_campaign[file].splitlines(), 1) if line.startswith(experiment)
+    )
+    small_campaign[FILE] = corrections((file, experiment, str(row), "status", "", "ice below"))
+    campaign = read_campaign(write_campaign(small_campaign))
+    table = {PEN: campaign.penetration, SHEAR: campaign.shear, DENSITY: campaign.density, CONE: campaign.drop_cone}[
+        file
+    ]
+    assert table is not None
+    expected: dict[str, tuple[str, ...]] = {PEN: ("", "ice below"), SHEAR: ("", "ice below")}
+    expected |= {DENSITY: ("", "ice below", "ice below"), CONE: ("", "", "ice below")}
+    assert table.cancelled == expected[file]
+
+
+def test_files_with_decimal_commas_take_either_form(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[CONE] = "test;site;repeat;drop_cone_depth_mm\nC1;S;1;12,5\nC1;S;2;13,5\nC2;S;1;17,0\n"
+    small_campaign[FILE] = corrections(
+        (CONE, "C1", "2", "drop_cone_depth_mm", "12.50", "12.75"),
+        (CONE, "C1", "3", "drop_cone_depth_mm", "13,5", "13,75"),
+        (CONE, "C2", "4", "drop_cone_depth_mm", "17", "18"),
+    )
+    cone = read_campaign(write_campaign(small_campaign)).drop_cone
+    assert cone is not None
+    assert cone.drop_cone_depth.tolist() == pytest.approx([0.01275, 0.01375, 0.018])
+
+
+REFUSED: list[tuple[tuple[str, str, str, str, str, str], Where, str]] = [
+    ((PEN, "P1", "3", "depth_mm", "2.4", "9"), (2, "old", "P1", "2.4"), "'2.5'"),
+    ((PEN, "P1", "3", "depth_mm", "", "9"), (2, "old", "P1", ""), "'2.5'"),
+    ((PEN, "P1", "3", "site", "süd", "9"), (2, "old", "P1", "süd"), "'Süd'"),
+    ((PEN, "P2", "3", "depth_mm", "2.5", "9"), (2, "experiment", "P2", "P2"), "'P1'"),
+    ((PEN, "P1", "1", "depth_mm", "2.5", "9"), (2, "row", "P1", "1"), "header"),
+    ((PEN, "P1", "99", "depth_mm", "2.5", "9"), (2, "row", "P1", "99"), "the file has no rows"),
+    ((PEN, "P1", "3.5", "depth_mm", "2.5", "9"), (2, "row", "P1", "3.5"), "whole"),
+    ((PEN, "P1", "3", "Depth", "2.5", "9"), (2, "column", "P1", "Depth"), "depth_mm"),
+    ((PEN, "P1", "3", "time", "", "9"), (2, "column", "P1", "time"), "depth_mm"),
+    (("penetration", "P1", "3", "depth_mm", "2.5", "9"), (2, "file", "P1", "penetration"), PEN),
+    (("campaign.toml", "P1", "3", "depth_mm", "2.5", "9"), (2, "file", "P1", "campaign.toml"), PEN),
+    ((CONE, "C1", "2", "drop_cone_depth_mm", "12.5", "9"), (2, "file", "C1", CONE), "campaign"),
+]
+
+
+@pytest.mark.parametrize(("row", "expected", "told"), REFUSED)
+def test_what_does_not_meet_is_refused(
+    write_campaign: WriteCampaign,
+    small_campaign: dict[str, str],
+    row: tuple[str, str, str, str, str, str],
+    expected: Where,
+    told: str,
+) -> None:
+    del small_campaign[CONE]
+    (problem,) = check_campaign(write_campaign({**small_campaign, FILE: corrections(row)}))
+    assert (problem.code, where(problem)) == ("correction_mismatch", expected)
+    assert told in problem.allowed
+
+
+def test_a_wrong_new_value_is_told_of_the_table(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign[FILE] = corrections((PEN, "P1", "3", "depth_mm", "2.5", "-2.5"))
+    (problem,) = check_campaign(write_campaign(small_campaign))
+    assert (problem.code, problem.file, problem.row, problem.value) == ("out_of_range", PEN, 3, "-2.5")
+
+
+def test_surplus_cells_are_never_taken_for_a_status(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[DENSITY] = small_campaign[DENSITY].replace("D1,Süd,410.5", "D1,Süd,410,5")
+    small_campaign[FILE] = corrections((DENSITY, "D2", "3", "status", "", "spilt"))
+    (problem,) = check_campaign(write_campaign(small_campaign))
+    assert (problem.code, problem.file, problem.row, problem.value) == ("unreadable_file", DENSITY, 2, "5")
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [
+        ("", ("empty_file", None, None)),
+        ("file,experiment,row,column,old,new,who,when\n", ("missing_column", 1, "why")),
+        (corrections((PEN, "P1", "x", "depth_mm", "2.5", "9")), ("not_a_number", 2, "row")),
+        (corrections((PEN, "P1", "0", "depth_mm", "2.5", "9")), ("out_of_range", 2, "row")),
+        (corrections((PEN, "", "3", "depth_mm", "2.5", "9")), ("out_of_range", 2, "experiment")),
+        (corrections(("", "P1", "3", "depth_mm", "2.5", "9")), ("out_of_range", 2, "file")),
+    ],
+)
+def test_a_broken_file_of_corrections(
+    write_campaign: WriteCampaign,
+    small_campaign: dict[str, str],
+    content: str,
+    expected: tuple[str, int | None, str | None],
+) -> None:
+    problem = check_campaign(write_campaign({**small_campaign, FILE: content}))[0]
+    assert problem.file == FILE
+    assert (problem.code, problem.row, problem.column) == expected
+
+
+def test_a_header_alone_is_no_correction(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    assert check_campaign(write_campaign({**small_campaign, FILE: corrections()})) == ()
+
+
+@pytest.mark.parametrize(("standing", "old"), [("2.s", ""), ("2.s", "abc"), ("", "unknown")])
+def test_two_texts_that_are_no_numbers_are_not_equal(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], standing: str, old: str
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("140.5,2.5", f"140.5,{standing}")
+    small_campaign[FILE] = corrections((PEN, "P1", "3", "depth_mm", old, "9"))
+    problems = check_campaign(write_campaign(small_campaign))
+    assert "correction_mismatch" in [problem.code for problem in problems]
+
 
 SKI = '[[tool]]\nname = "a"\nshape = "ski"\nlength_mm = 200\nwidth_mm = 62\n'
 PLATE = '[[plate]]\nname = "b"\nlength_mm = 200\n'
@@ -27,7 +203,7 @@ def schema() -> Any:
 
 
 # text, code, column, value; and whether the schema can tell
-REFUSED: list[tuple[str, str, str, str | None, bool]] = [
+REJECTED_TOML: list[tuple[str, str, str, str | None, bool]] = [
     ("name = 3", "bad_toml", "name", "3", True),
     ("place = []", "bad_toml", "place", "[]", True),
     ("observers = 1", "bad_toml", "observers", "1", True),
@@ -66,7 +242,7 @@ REFUSED: list[tuple[str, str, str, str | None, bool]] = [
 ]
 
 
-@pytest.mark.parametrize(("text", "code", "column", "value", "in_schema"), REFUSED)
+@pytest.mark.parametrize(("text", "code", "column", "value", "in_schema"), REJECTED_TOML)
 def test_what_is_refused(text: str, code: str, column: str, value: str | None, in_schema: bool, schema: Any) -> None:
     _, (problem,) = read(text)
     assert (problem.severity, problem.code, problem.file) == ("error", code, "campaign.toml")

@@ -1,7 +1,5 @@
 """Cells to numbers: what Python would take for a number and people do not."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from decimal import Decimal

@@ -1,7 +1,5 @@
 """Campaigns read: SI values known by hand, every spreadsheet program's form, nothing lost, nothing raised."""
 
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import itertools

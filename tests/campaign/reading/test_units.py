@@ -2,8 +2,6 @@
 column are errors with the result for both readings.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path

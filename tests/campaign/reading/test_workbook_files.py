@@ -1,7 +1,5 @@
 """A workbook as a campaign, or as the tables of one."""
 
-from __future__ import annotations
-
 import csv
 import io
 import os

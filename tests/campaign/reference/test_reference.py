@@ -1,7 +1,5 @@
 """The synthetic reference campaign: the paper's design, truth that fits its readings, the same bytes for a seed."""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import itertools

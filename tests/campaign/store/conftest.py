@@ -1,7 +1,5 @@
 """Stores in a file and on a server."""
 
-from __future__ import annotations
-
 import shutil
 import sqlite3
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """A PostgreSQL server for tests: started once in a session, from the programs of the system's packages."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import shutil

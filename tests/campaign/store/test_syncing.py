@@ -1,7 +1,5 @@
 """Two laptops and a group's store: what each lacks it gets, once; what contradicts is shown, and the user chooses."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
@@ -30,8 +28,7 @@ from skisnow.campaign.store.engine import writing
 from skisnow.cli import main
 
 from .conftest import opened
-from .test_corrected_export import PLAIN, correction, kept, standing
-from .test_journal import TOML, reading
+from .test_journal import PLAIN, TOML, correction, kept, reading, standing
 from .test_store import FILES, contents, write
 
 

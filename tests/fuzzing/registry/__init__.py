@@ -1,7 +1,5 @@
 """Every reader of skisnow, and the functions that open files of the program's own."""
 
-from __future__ import annotations
-
 from ..reader import Reader
 from . import field, lab, motion, scenario, study, track
 

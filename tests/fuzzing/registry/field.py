@@ -1,7 +1,5 @@
 """Readers of field measurements: campaigns, workbooks, stores, snow pits, weather, recordings."""
 
-from __future__ import annotations
-
 import csv
 import io
 from argparse import Namespace

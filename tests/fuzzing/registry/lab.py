@@ -1,7 +1,5 @@
 """Readers of the store and of the lab: the SQLite store, uploads, jobs, what a killed process left."""
 
-from __future__ import annotations
-
 import json
 import sqlite3
 from contextlib import closing, suppress

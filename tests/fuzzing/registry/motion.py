@@ -1,7 +1,5 @@
 """Readers of motions and of simulated runs: OpenSim, C3D, run.nc, replays."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory

@@ -1,7 +1,5 @@
 """The functions of skisnow that open files, found in its source, and those among them that read no file of a user."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Mapping
 from pathlib import Path

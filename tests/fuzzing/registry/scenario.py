@@ -1,7 +1,5 @@
 """Readers of scenarios and of what they name: skis, slopes, snow, boots; and of identify's sections."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Readers of studies: STUDY.toml, tables, and the databases of finished points."""
 
-from __future__ import annotations
-
 import sqlite3
 from collections.abc import Callable
 from contextlib import closing

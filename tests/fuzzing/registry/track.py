@@ -1,7 +1,5 @@
 """Readers of tracks, photo cells, grooves, gates and lines."""
 
-from __future__ import annotations
-
 from functools import cache
 from pathlib import Path
 

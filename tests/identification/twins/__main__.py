@@ -4,8 +4,6 @@ Twins of photo cells and marks take minutes, those of turns hours: all that are 
 and the same command goes on with those that are missing.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

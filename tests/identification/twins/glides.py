@@ -1,7 +1,5 @@
 """One twin of photo-cell times: the closed form v²(s) with noise, and standard errors beside its Fisher information."""
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

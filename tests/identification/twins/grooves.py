@@ -1,7 +1,5 @@
 """One twin of marks: depth, width and radius that a carving or sliding ski leaves, and H_V and S_f only from them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final

@@ -1,7 +1,5 @@
 """Row of one parameter, the same for all twins."""
 
-from __future__ import annotations
-
 from skisnow.identification import Identified
 
 from .kept import number

@@ -1,7 +1,5 @@
 """Twins on several processes; each that is finished is kept at once, and one that is kept is not computed again."""
 
-from __future__ import annotations
-
 import multiprocessing
 import sys
 import time

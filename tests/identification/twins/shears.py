@@ -1,7 +1,5 @@
 """One twin for the snow's shear: S_f and u_y of a run that holds or slips, identified from its track."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Finished twins as the tables of docs/validation/identification.md."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """A true run with finer numbers than those of an identification, and the track that a receiver makes of it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """One twin of a turn: its truth, its track, what is identified from it, and how far that is from the truth."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Final
 

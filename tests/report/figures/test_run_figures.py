@@ -1,7 +1,5 @@
 """The figures of runs show what the numbers say: the right way round, left where left is, in the units of the axis."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

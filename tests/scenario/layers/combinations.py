@@ -3,8 +3,6 @@
 The module needs no skisnow, so that any version of the resolver can be asked (`record.py`).
 """
 
-from __future__ import annotations
-
 import json
 import random
 from collections.abc import Callable, Iterator

@@ -3,8 +3,6 @@
 The answers of commit 58cc12bf are in ``58cc12bf.json``: one line for each combination, null where it rejected it.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import tempfile

@@ -1,7 +1,5 @@
 """Sledges on skis whose runs are known in closed form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numbers of docs/validation/simulated-turn.md; `python -m tests.simulation.runs.tables` writes them (7 minutes)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -17,7 +15,7 @@ from skisnow.simulation.simulated_run import simulate
 from skisnow.simulation.verification import refine
 
 from ...dynamics.test_free_flight import DURATION, tumbling_drift
-from . import test_cross_slope, test_static_start, test_steady_circle, test_straight_run
+from . import test_static_start, test_steady_circle, test_symmetries
 from .sledges import load, rigid_ski, scenario
 
 SNOWS: Final = (
@@ -106,31 +104,31 @@ def resting() -> Iterable[Row]:
 
 def straight() -> Iterable[Row]:
     """Down the fall line on rigid flat skis."""
-    run = test_straight_run.straight(compaction=False)
-    known = test_straight_run.squared_speed(run.scenario, run.place[:, 0], 0.0, test_straight_run.SPEED**2)
+    run = test_steady_circle.straight(compaction=False)
+    known = test_steady_circle.squared_speed(run.scenario, run.place[:, 0], 0.0, test_steady_circle.STRAIGHT_SPEED**2)
     yield (
         "straight run, friction and drag: v²(s)",
         "v∞² + (v₀² − v∞²) exp(−s/ℓ)",
         _off(run.speed**2, known),
-        "runs/test_straight_run",
+        "runs/test_steady_circle",
     )
-    elastic = test_straight_run.straight(compaction=True, unloading_ratio=1.0)
+    elastic = test_steady_circle.straight(compaction=True, unloading_ratio=1.0)
     share = abs(elastic.energies["penetration"][-1]) / elastic.energies["friction"][-1]
-    yield "the same on elastic snow: lost to the groove", "0", f"{share:.1e} of the friction", "runs/test_straight_run"
+    yield "the same on elastic snow: lost to the groove", "0", f"{share:.1e} of the friction", "runs/test_steady_circle"
 
 
 def across() -> Iterable[Row]:
     """A cross slope."""
-    enough = test_cross_slope.sufficient_strength()
+    enough = test_symmetries.sufficient_strength()
     for share in (0.97, 1.03):
-        run = test_cross_slope.across(strength=enough / share, duration=3.0)
+        run = test_symmetries.across(strength=enough / share, duration=3.0)
         way = 1e3 * float(np.ptp(run.place[10:, 0]))
         answer = "grips" if share < 1.0 else "slips"
         asked = f"cross slope, m g sin α = {share:g} S_f ∫ e ds"
-        yield asked, answer, f"moves {way:.2g} mm from 1 s to 3 s", "runs/test_cross_slope"
-    minute = test_cross_slope.across(strength=0.5, duration=60.0)
+        yield asked, answer, f"moves {way:.2g} mm from 1 s to 3 s", "runs/test_symmetries"
+    minute = test_symmetries.across(strength=0.5, duration=60.0)
     crept = 1e3 * float(np.linalg.norm(minute.place[-1] - minute.place[100]))
-    yield "cross slope, from 10 s to 60 s", "no creep", f"{crept:.2g} mm", "runs/test_cross_slope"
+    yield "cross slope, from 10 s to 60 s", "no creep", f"{crept:.2g} mm", "runs/test_symmetries"
 
 
 def circling() -> Iterable[Row]:

@@ -1,7 +1,5 @@
 """Runs over a course: times from the run's own closed form, outcomes, and files."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

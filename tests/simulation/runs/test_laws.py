@@ -1,9 +1,9 @@
-"""Turns on laws that are not the scenario's own."""
-
-from __future__ import annotations
+"""Runs with each law: second pass, side slip, varying strength."""
 
 import json
+import math
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +11,18 @@ import numpy.typing as npt
 import pytest
 from scipy.io import netcdf_file
 
-from skisnow import load_scenario, simulate, verify
+from skisnow import Run, verify
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Laws
 from skisnow.forces.friction import ConstantFriction, FrictionLaw, WaterFilmFriction
 from skisnow.forces.penetration import HypoplasticPoint, MeanPressurePoint, PointLaw, VolumeWithAnglePoint
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
-from skisnow.simulation.run import Run
+from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.run_summary import summary_dict
+from skisnow.simulation.simulated_run import simulate
+
+from ...carving.synthetic import shovel
+from .sledges import GRAVITY, load, rigid_ski, scenario, total_mass
 
 FloatArray = npt.NDArray[np.float64]
 H, S = 0.2e9, 0.5e6
@@ -139,3 +143,163 @@ def test_a_law_that_gives_no_strength_ends_the_run_with_its_name() -> None:
     """A wild pose of a step that is tried does not (the machining above meets one)."""
     with pytest.raises(ParameterError, match=r"MachiningShear.*strength"):
         carve(0.5, Laws(shear=MachiningShear(1e5, 1.0)))
+
+
+SPEED, ANGLE_DEG = 3.0, 10.0
+
+
+def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
+    """Up the fall line on flat rigid skis, without friction; backwards it meets the lines that it has left."""
+    ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
+    return simulate(
+        scenario(
+            ski=ski,
+            angle_deg=ANGLE_DEG,
+            hardness=0.001,
+            unloading_ratio=unloading_ratio,
+            heading_deg=180.0,
+            speed=SPEED,
+            duration=duration,
+            solver=Solver(tolerance=1e-8),
+        )
+    )
+
+
+def test_elastic_snow_gives_back_everything() -> None:
+    """Up v²/(2 g sin α), and as fast down as up at the same place: snow that springs back has no second pass."""
+    run = up_and_back(1.0)
+    x = run.place[:, 0]
+    assert x.min() == pytest.approx(-(SPEED**2) / (2.0 * GRAVITY * math.sin(math.radians(ANGLE_DEG))), rel=1e-3)
+    top = int(np.argmin(x))
+    height = math.sin(math.radians(ANGLE_DEG)) * (x - x[top])
+    assert run.speed == pytest.approx(np.sqrt(2.0 * GRAVITY * np.maximum(height, 0.0)), rel=2e-3, abs=5e-3)
+    assert abs(run.energies["penetration"][-1]) < 1e-3
+
+
+def test_groove_is_paid_for_once() -> None:
+    """The way back, 1.8 m in the groove of the way up, costs less than a tenth of what that part of it had cost."""
+    run = up_and_back(10.0)
+    x, lost = run.place[:, 0], run.energies["penetration"]
+    top = int(np.argmin(x))
+    back = x[-1] - x[top]
+    assert back > 1.5
+    first = lost[top] - np.interp(-x[-1], -x[: top + 1], lost[: top + 1])
+    assert first > 2.5
+    assert 0.0 <= lost[-1] - lost[top] < 0.1 * first
+    assert run.energy_balance_error is not None
+    assert run.energy_balance_error < 1e-4
+
+
+def test_it_stands_deeper_in_the_groove_than_in_virgin_snow() -> None:
+    """The groove was cut by the shovel's load; on the way back it bears the even load without sinking further."""
+    run = up_and_back(10.0)
+    x = run.place[:, 0]
+    top = int(np.argmin(x))
+    up = float(np.interp(1.2, -x[: top + 1], run.skis.depth[: top + 1, 0]))
+    down = float(np.interp(-1.2, x[top:], run.skis.depth[top:, 0]))
+    cut = float(np.median(run.groove.depth))
+    assert up < down < cut
+    assert down == pytest.approx(cut, rel=0.02)
+
+
+def test_a_track_counts_once() -> None:
+    """All energy in the snow at the end, piece by piece of every 24 mm, does not exceed what was taken from the motion.
+
+    On the way up pieces are archived; the way back takes them over and archives them again.
+    Counted twice, the loss would double.
+    """
+    run, half = up_and_back(10.0), up_and_back(10.0, duration=1.7)
+    assert run.energies["penetration"][-1] == pytest.approx(half.energies["penetration"][-1], rel=0.1)
+
+
+HARDNESS, STRENGTH, LENGTH, STANCE = 0.2, 0.06, 1.6, 0.5
+EDGE, SLOPE = math.radians(20.0), math.radians(20.0)
+
+
+@cache
+def slipping(ratio: float) -> Run:
+    run = simulate(
+        scenario(
+            ski=rigid_ski(length=LENGTH),
+            hardness=HARDNESS,
+            strength=STRENGTH,
+            unloading_ratio=ratio,
+            angle_deg=math.degrees(SLOPE),
+            edge_deg=math.degrees(EDGE),
+            heading_deg=90.0,
+            stance=STANCE,
+            duration=1.4,
+            solver=Solver(output_interval=0.02),
+        )
+    )
+    assert run.outcome == "finished"
+    return run
+
+
+def acceleration(run: Run, low: float, high: float) -> float:
+    """Mean over a part of the way (m/s²)."""
+    way = run.place[:, 0]
+    within = (way > low) & (way < high)
+    return float(2.0 * np.polynomial.polynomial.polyfit(run.time[within], way[within], 2)[2])
+
+
+def slipping_down(run: Run, depths: float) -> float:
+    """g sin α - S_f L (e₁ + e₂)/m."""
+    return GRAVITY * math.sin(SLOPE) - STRENGTH * 1e6 * LENGTH * depths / total_mass(run.scenario)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+def test_virgin_snow_until_the_stance(ratio: float) -> None:
+    """e = √(2 F tan ϑ/(H_V L)) for each ski, for any k_u; as they bear unequally the sum of depths is 0.3 % less."""
+    run = slipping(ratio)
+    depth = math.sqrt(load(run.scenario) * math.tan(EDGE) / (HARDNESS * 1e9 * LENGTH))
+    assert acceleration(run, 0.05, 0.45) == pytest.approx(slipping_down(run, 2.0 * depth), rel=0.01)
+    late = (run.place[:, 0] > 0.2) & (run.place[:, 0] < 0.45)
+    assert run.skis.edge_depth[late].mean(axis=(0, 2)).sum() == pytest.approx(2.0 * depth, rel=5e-3)
+
+
+def test_deeper_in_the_groove_of_the_other() -> None:
+    """Where snow keeps its groove the grip grows by a fifth; where it springs back nothing changes.
+
+    The uphill ski falls into the groove at once and swings there: that costs it 4 % over many swings.
+    """
+    run, elastic = slipping(10.0), slipping(1.0)
+    before = (run.place[:, 0] > 0.2) & (run.place[:, 0] < 0.45)
+    uphill, downhill = run.skis.edge_depth[before].mean(axis=(0, 2))
+    deeper = math.sqrt(uphill**2 + downhill**2 * 0.9)
+    assert acceleration(run, 0.6, 1.0) == pytest.approx(slipping_down(run, downhill + deeper), rel=0.05)
+    assert acceleration(elastic, 0.6, 1.0) == pytest.approx(slipping_down(run, downhill + uphill), rel=0.01)
+
+
+CHANGES = {"run.duration_s": 1.2, "solver.fixed": True}
+WEAKER = 4.0
+"""Distance (m) from which the snow is weaker."""
+
+
+def test_the_same_strength_everywhere_gives_the_same_bits() -> None:
+    scenario = load_scenario("carved-46m", changes=CHANGES)
+    plain, asked = simulate(scenario), simulate(scenario, strength_along=lambda _: 1.0)
+    assert np.array_equal(plain.place, asked.place)
+
+
+def test_where_it_gets_weaker_the_edges_slip() -> None:
+    """Nothing changes before; behind, the sledge runs wide like on snow that is weak from the beginning."""
+    scenario = load_scenario("carved-46m", changes=CHANGES)
+    distances: list[float] = []
+
+    def strength(distance: float) -> float:
+        distances.append(distance)
+        return 0.1 if distance > WEAKER else 1.0
+
+    plain, run = simulate(scenario), simulate(scenario, strength_along=strength)
+    assert np.all(np.diff(distances) > 0.0)
+    steps = np.linalg.norm(np.diff(plain.place, axis=0), axis=1)
+    before = np.concatenate([[0.0], np.cumsum(steps)]) <= WEAKER
+    assert 20 < before.sum() < len(before) - 20
+    assert np.array_equal(run.place[: len(before)][before], plain.place[before])
+    ahead = plain.place[-1] - plain.place[-2]
+    aside = run.place[-1] - plain.place[-1]
+    assert ahead[0] * aside[1] - ahead[1] * aside[0] < -0.05 * np.linalg.norm(ahead)  # the turn goes left
+    assert run.energies["shear"][-1] > 1.2 * plain.energies["shear"][-1]  # 56 against 39 J
+    assert run.energy_balance_error is not None
+    assert run.energy_balance_error < 0.005

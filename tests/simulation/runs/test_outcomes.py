@@ -1,7 +1,5 @@
 """How runs end: each outcome with the results so far, and never with numbers that are finite nonsense."""
 
-from __future__ import annotations
-
 import functools
 import os
 import signal

@@ -1,6 +1,4 @@
-"""Where a run begins: the sledge at rest on the snow."""
-
-from __future__ import annotations
+"""Starts at rest and in balance."""
 
 import math
 from collections.abc import Mapping
@@ -13,6 +11,7 @@ from scipy.optimize import fsolve
 
 from skisnow import Run, Scenario, read_ski, rest
 from skisnow._support.errors import SolverError
+from skisnow.contact.snow_field import STICK_DISPLACEMENT
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.run_record import at_nodes
 from skisnow.simulation.run_setup import set_up
@@ -194,3 +193,44 @@ def test_flexible_as_at_rest(edge_deg: float, hardness: float) -> None:
         there = np.interp(found.station[buried], station[::-1], depth[::-1])
         # lines of 6 mm against Gauss points of 1 cm; the skis a kilometre apart lean by 0.3 µm
         assert there == pytest.approx(found.edge_depth[buried], rel=5e-3, abs=2e-6)
+
+
+def flat(*, friction: float, speed: float, duration: float) -> Run:
+    changes = {
+        "slope.angle_deg": 2.0,
+        "friction.mu_0": friction,
+        "drag.drag_area_m2": 0.0,
+        "start.speed_m_per_s": speed,
+        "start.heading_deg": 0.0,
+        "sledge.edge_angle_deg": 0.0,
+        "run.duration_s": duration,
+    }
+    scenario = load_scenario("carved-46m", changes=changes)
+    return simulate(scenario.with_(solver=Solver(output_interval=0.05)))
+
+
+def test_friction_holds_a_ski_at_rest() -> None:
+    """It gives by a part of the stick displacement, swings about it, and stands; that energy is counted."""
+    run = flat(friction=0.05, speed=0.0, duration=5.0)
+    assert run.outcome == "finished"
+    assert np.abs(run.place - run.place[0]).max() < 0.1e-3
+    share = math.tan(math.radians(2.0)) / 0.05  # of the friction in use
+    assert run.place[-1, 0] - run.place[0, 0] == pytest.approx(share * STICK_DISPLACEMENT, rel=0.8)
+    assert run.speed[-1] < 1e-9
+    held = 0.5 * 0.05 * load(run.scenario) * STICK_DISPLACEMENT * share**2
+    assert np.abs(run.energy_residual).max() < 0.3 * held
+
+
+def test_a_ski_comes_to_rest_and_stays() -> None:
+    """From 2 m/s over v²/(2 g (μ cos α - sin α)), less what the snow takes else; then it does not creep."""
+    run = flat(friction=0.1, speed=2.0, duration=5.0)
+    slope = math.radians(2.0)
+    way = run.place[-1, 0] - run.place[0, 0]
+    to_snow = run.energies["penetration"][-1] + run.energies["shear"][-1]  # groove, and what the tail pushes aside
+    lost = to_snow / (total_mass(run.scenario) * GRAVITY)
+    braking = 0.1 * math.cos(slope) - math.sin(slope)
+    assert way == pytest.approx((2.0**2 / (2.0 * GRAVITY) - lost) / braking, rel=1e-3)
+    assert run.energies["friction"][-1] == pytest.approx(0.1 * load(run.scenario) * way, rel=1e-3)
+    stopped = run.time > 4.0
+    assert np.ptp(run.place[stopped, 0]) < 1e-6
+    assert run.speed[-1] < 1e-9

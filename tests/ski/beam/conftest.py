@@ -1,7 +1,5 @@
 """Plain beams: chains of the elements, free at both ends or held at the first node."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

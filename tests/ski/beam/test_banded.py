@@ -1,7 +1,5 @@
 """Banded storage and its LU against dense linear algebra."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

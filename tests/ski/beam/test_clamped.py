@@ -1,7 +1,5 @@
 """A ski clamped at the boot against plain beams, and the frequencies of the catalogue's skis."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 What is kept is noted in `FOLDER/kept.txt` once `add` has returned: those rows no kill may lose.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterable

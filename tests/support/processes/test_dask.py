@@ -1,7 +1,5 @@
 """Workers of a Dask scheduler, in separate processes: the bytes of one process, even if some of them are killed."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import signal

@@ -1,7 +1,5 @@
 """What is done with Dask, by a stand-in for its client: counting, waiting for it, its errors, certificates."""
 
-from __future__ import annotations
-
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path

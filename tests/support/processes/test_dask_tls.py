@@ -1,7 +1,5 @@
 """A scheduler and workers that speak TLS alone: a study runs through it, a wrong certificate is refused in words."""
 
-from __future__ import annotations
-
 import datetime
 import ipaddress
 import socket

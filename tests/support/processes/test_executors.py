@@ -1,7 +1,5 @@
 """Whoever computes, the rows are the same; what cannot compute is refused in words."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor

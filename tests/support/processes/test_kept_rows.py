@@ -1,6 +1,4 @@
-"""Finished rows on disk: what was taken is there once after a kill at any moment."""
-
-from __future__ import annotations
+"""Rows that a process keeps: after kills and after damage."""
 
 import os
 import random
@@ -8,7 +6,8 @@ import signal
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -189,3 +188,73 @@ def test_killed_at_any_moment_nothing_taken_is_lost_and_none_is_there_twice(plac
 @pytest.mark.slow
 def test_a_hundred_kills(place: Path) -> None:
     killed_again_and_again(place, 100, seed=2)
+
+
+DAMAGED_ROWS = {number: {"n": number, "text": "x" * 400} for number in range(40)}
+
+
+@pytest.fixture
+def damaged_place(tmp_path: Path) -> Path:
+    path = tmp_path / "rows.partial"
+    kept = KeptRows.opened(path, "f", about={"points": "40"})
+    kept.add((number, row_text(row)) for number, row in DAMAGED_ROWS.items())
+    kept.close()
+    with closing(sqlite3.connect(path)) as database:
+        database.execute("pragma journal_mode = delete")
+    return path
+
+
+def read_all(path: Path) -> Mapping[int, object]:
+    kept = KeptRows.opened(path, "f")
+    try:
+        return {number: kept.row(number) for number in kept.numbers()} | dict(kept.rows())
+    finally:
+        kept.close()
+
+
+def test_sound_rows_are_read(damaged_place: Path) -> None:
+    assert read_all(damaged_place) == DAMAGED_ROWS
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "update rows set row = replace(row, 'x', 'y') where number = 7",
+        "update rows set row = 5 where number = 7",
+        "update rows set row = cast(x'ff' as text) where number = 7",
+        "update rows set number = 1000 where number = 7",
+        "update rows set checksum = 0 where number = 7",
+        "update about set value = '41' where name = 'points'",
+        "delete from about where name = 'fingerprint'",
+        "delete from about",
+        "alter table rows drop column checksum",
+        "alter table rows rename column row to words",
+        "drop table rows",
+        "alter table rows rename to r; create view rows as select * from r",
+        "insert into rows values (-1, '{}', 0)",
+    ],
+)
+def test_a_change_of_the_content_is_an_error(damaged_place: Path, statement: str) -> None:
+    with closing(sqlite3.connect(damaged_place, isolation_level=None)) as database:
+        database.executescript(statement)
+    with pytest.raises(ParameterError) as caught:
+        read_all(damaged_place)
+    assert damaged_place.name in str(caught.value)
+
+
+def test_damaged_pages_are_an_error(damaged_place: Path) -> None:
+    """Each page in turn, its head and its content."""
+    sound = damaged_place.read_bytes()
+    for begin in range(0, len(sound), 4096):
+        for at in (begin + (100 if begin == 0 else 0), begin + 2000):
+            damaged_place.write_bytes(sound[:at] + b"\xa5" * 64 + sound[at + 64 :])
+            try:
+                assert read_all(damaged_place) == DAMAGED_ROWS  # where the place is not used
+            except ParameterError as error:
+                assert damaged_place.name in str(error)
+
+
+def test_rows_that_are_gone_are_computed_again(damaged_place: Path) -> None:
+    with closing(sqlite3.connect(damaged_place, isolation_level=None)) as database:
+        database.execute("delete from rows where number in (3, 39)")
+    assert read_all(damaged_place) == {number: row for number, row in DAMAGED_ROWS.items() if number not in (3, 39)}

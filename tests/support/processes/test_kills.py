@@ -1,7 +1,5 @@
 """Workers, clients and schedulers are killed again and again: no row that was kept is lost, none is computed twice."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import dataclass, field

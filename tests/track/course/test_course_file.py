@@ -1,7 +1,5 @@
 """Courses from their files: columns, sides, degrees against metres, and everything that is refused with its place."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

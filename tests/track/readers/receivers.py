@@ -1,7 +1,5 @@
 """Files as receivers write them, packed by hand after the published formats."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Sequence
 from functools import reduce

@@ -1,7 +1,5 @@
 """Tracks from NMEA sentences."""
 
-from __future__ import annotations
-
 from datetime import UTC, date, datetime
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Tracks from RTKLIB's solution files."""
 
-from __future__ import annotations
-
 import math
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Tracks from CSV: cells, how spreadsheets write them, and refusals."""
 
-from __future__ import annotations
-
 import csv
 from datetime import UTC, datetime
 from pathlib import Path

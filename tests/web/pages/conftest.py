@@ -1,20 +1,13 @@
 """A lab at a desk: its pages, in this process."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import pytest
-
-pytest.importorskip("nicegui", reason="the web lab is not installed")
 
 from skisnow._support.errors import SkisnowError
 
 from . import desk as desks
-
-if TYPE_CHECKING:
-    from .desk import Desk
+from .desk import Desk
 
 
 @pytest.fixture(scope="session")

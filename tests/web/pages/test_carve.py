@@ -1,14 +1,13 @@
 """*Carve*: its contents, and what its sliders and menus ask for."""
 
-from __future__ import annotations
-
 import io
 import json
 import re
 import threading
 from ast import literal_eval
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 from unittest.mock import Mock
 
 import pandas
@@ -26,11 +25,7 @@ from skisnow.web import carved_turn
 from skisnow.web.lab_skis import LabSkis
 
 from ..campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from .desk import Desk, Sheet
+from .desk import Desk, Sheet
 
 ANGLE, LOAD = "Edge angle (°)", "Load on this ski (N)"
 HARDNESS, STRESS = "Snow hardness H_V (N/mm³)", "Failure shear stress S_f (N/mm²)"

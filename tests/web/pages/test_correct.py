@@ -1,28 +1,21 @@
 """Correcting an imported campaign: contents of the page, what is written down beside its files, what is refused."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from nicegui import ui
 
 from skisnow import analyse, read_campaign
 from skisnow._support.errors import StoreError
-from skisnow.campaign.store import Journals, NewEntry, export_corrected
+from skisnow.campaign.store import JournalEntry, Journals, NewEntry, export_corrected
 from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.words import hardness_words
 from tests.coded import raises
 
 from ...support.user_files.test_workbook import packed
-from .desk import values
+from .desk import Desk, Sheet, values
 from .enter.shared import CANCEL, undo_button
-
-if TYPE_CHECKING:
-    from skisnow.campaign.store import JournalEntry
-
-    from .desk import Desk, Sheet
 
 TOML = """name = "From a drawer"
 observers = ["Ada", "Bo"]

@@ -1,11 +1,9 @@
 """*Design*: the ski of its sliders beside a competitor, the search for a radius, and its files."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from ast import literal_eval
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -15,10 +13,8 @@ from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
 from skisnow.web.lab_skis import LabSkis
 
+from .desk import Desk, Sheet
 from .test_carve import ANGLE, LOAD, move, slider, told
-
-if TYPE_CHECKING:
-    from .desk import Desk, Sheet
 
 SIDECUT, WAIST, TIP, TAIL = "Sidecut, tip and tail (mm)", "Waist (mm)", "Tip (mm)", "Tail (mm)"
 STIFFNESS, FRONT = "Stiffness EI ×", "EI before the middle ×"

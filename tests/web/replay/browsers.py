@@ -1,7 +1,5 @@
 """A browser that draws in software, as on a machine without a graphics card."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any

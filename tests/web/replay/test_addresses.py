@@ -1,7 +1,5 @@
 """A server gives out only runs of the list, whatever is requested."""
 
-from __future__ import annotations
-
 import io
 import math
 import os

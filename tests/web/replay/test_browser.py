@@ -1,7 +1,5 @@
 """The replay in a browser that draws in software: seen, moving, by keyboard, on a phone, and alone on its machine."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The model that moves in a real browser, played by three.js's own GLTFLoader, which NiceGUI brings along."""
 
-from __future__ import annotations
-
 import importlib.util
 import io
 from collections.abc import Iterator

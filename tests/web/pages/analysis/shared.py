@@ -1,18 +1,14 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
 import asyncio
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from skisnow.web.campaign_analysis import choosable_flags
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
-
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet
 
 TOML = SHEARED
 PENETRATION = pressed(

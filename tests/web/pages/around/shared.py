@@ -1,14 +1,10 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+
+from starlette.types import Receive, Scope, Send
 
 from skisnow.web.guard import STATUS
-
-if TYPE_CHECKING:
-    from starlette.types import Receive, Scope, Send
 
 
 def raising(error: Exception) -> Callable[..., object]:

@@ -1,14 +1,12 @@
 """Files in and out: uploads, zips, exports."""
 
-from __future__ import annotations
-
 import errno
 import io
 import stat
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -20,11 +18,7 @@ from skisnow.web.uploads import UNDESCRIBED, Unpacking, add_uploaded, campaign_f
 from tests.coded import Coded, coded, raises
 
 from ...campaign_texts import DESK
-from ..desk import in_this_process
-
-if TYPE_CHECKING:
-    from ..desk import Desk
-
+from ..desk import Desk, in_this_process
 
 TOML = DESK
 PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\n1,A,ski piece,30,20,1.5\n1,A,ski piece,30,40,2.1\n"

@@ -1,13 +1,10 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from skisnow.campaign.store import Journals, NewEntry
 
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet
 
 TOML = """name = "Slope"
 place = "a hill"

@@ -1,19 +1,14 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nicegui import ui
 
-from skisnow.campaign.store import Journals, NewEntry
+from skisnow.campaign.store import JournalEntry, Journals, NewEntry
 from skisnow.report.charts import SeriesCurve
 from skisnow.web.edit_session import EditSession, QuickResults
 
-if TYPE_CHECKING:
-    from skisnow.campaign.store import JournalEntry
-
-    from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet
 
 TOML = """name = "Desk"
 observers = ["Ada", "Bo", "Cy"]

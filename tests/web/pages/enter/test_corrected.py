@@ -1,9 +1,6 @@
 """A series that is being entered: what its readings say, corrections, undo, cancel, history, the next one."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import pytest
 from nicegui import ui
@@ -13,7 +10,7 @@ from skisnow.report.formatting import significant
 from skisnow.web.edit_session import EditSession
 from skisnow.web.words import hardness_words
 
-from ..desk import values
+from ..desk import Desk, Sheet, values
 from .shared import (
     CANCEL,
     NAME,
@@ -33,9 +30,6 @@ from .shared import (
     undo_button,
     write,
 )
-
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
 
 
 def test_the_hardness_follows_the_readings(desk: Desk) -> None:

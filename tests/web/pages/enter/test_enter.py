@@ -1,9 +1,6 @@
 """Entering tests: the page and its frame, the head of a series, its address, its readings."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 import numpy as np
@@ -14,7 +11,7 @@ from skisnow.geometry import SkiPiece
 from skisnow.report.formatting import significant
 from skisnow.web.entry.series import ON_BLUR, ON_ENTER
 
-from ..desk import values
+from ..desk import Desk, values
 from .shared import (
     DISCS_OFF,
     NAME,
@@ -37,9 +34,6 @@ from .shared import (
     series_page,
     undo_button,
 )
-
-if TYPE_CHECKING:
-    from ..desk import Desk
 
 CHART = "chart Load against depth of this series and the others of its site, load in N: "
 

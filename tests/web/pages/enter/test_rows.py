@@ -1,13 +1,9 @@
 """Tests of one row: contents of their page, what is stored, corrected and refused."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import pytest
 from nicegui import ui
 
-from ..desk import values
+from ..desk import Desk, Sheet, values
 from .shared import (
     CANCEL,
     DENSITY,
@@ -23,9 +19,6 @@ from .shared import (
     stored,
     undo_button,
 )
-
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
 
 
 def store(page: Sheet, **typed: str) -> None:

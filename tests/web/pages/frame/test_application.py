@@ -1,15 +1,15 @@
 """The application around the pages: its own files, the token, requests that never end."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 import uvicorn
+from starlette.responses import Response
+from starlette.types import Message, Receive, Scope, Send
 from uvicorn.server import ServerState
 
 import skisnow.web
@@ -19,12 +19,7 @@ from skisnow.web.guard import Tries, answer_to_token, token_page
 from skisnow.web.server import TimeLimitedProtocol, _set_language
 
 from ...finished import finished
-
-if TYPE_CHECKING:
-    from starlette.responses import Response
-    from starlette.types import Message, Receive, Scope, Send
-
-    from ..desk import Desk
+from ..desk import Desk
 
 HERE = Path(skisnow.web.__file__).parent
 

@@ -1,12 +1,10 @@
 """The frame of a page, its fields and its charts."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from datetime import UTC, datetime, timedelta, timezone
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from nicegui import ui
@@ -31,8 +29,7 @@ from skisnow.web.words import (
     unloading_words,
 )
 
-if TYPE_CHECKING:
-    from ..desk import Desk
+from ..desk import Desk
 
 
 @pytest.mark.parametrize("language", ["en", "de"])

@@ -1,7 +1,5 @@
 """Queues of runs and studies: their folders, their processes."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import re
@@ -10,7 +8,7 @@ import sys
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -25,10 +23,7 @@ from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from tests.coded import raises
 
 from ...finished import finished
-
-if TYPE_CHECKING:
-    from ..desk import Desk
-
+from ..desk import Desk
 
 SUMMARY = {"outcome": "left_course", "run_length_m": 46.04, "simulated_s": 5.126, "remedy": "Take less."}
 TABLE = "edge_angle_deg,outcome,study\n10,equilibrium,a\n70,not_converged,a\n75,not_converged,a\n"

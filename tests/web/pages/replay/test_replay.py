@@ -1,14 +1,12 @@
 """*Replay*: the runs that are kept, the form that puts two together, a track that is sent."""
 
-from __future__ import annotations
-
 import io
 import json
 import math
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,10 +24,7 @@ from tests.coded import raises
 
 from ....report.runs import circle_run
 from ...replay.test_addresses import gpx
-
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
-
+from ..desk import Desk, Sheet
 
 TRACK = b"time_s,x_m,y_m,z_m\n0,1,2,0.1\n1,4,6,0.2\n"
 ODD = 'a "b" \\n <i>&c\\'

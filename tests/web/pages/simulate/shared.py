@@ -1,15 +1,11 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...campaign_texts import HARD, SHEARED, SOFT, pressed
-
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet
 
 GIVEN = "as in the scenario"
 NUMBERS = "the numbers below"

@@ -1,14 +1,12 @@
 """*Simulate*: the ski, course and snow that go with a run, and the cards of the queue."""
 
-from __future__ import annotations
-
 import io
 import json
 import math
 import os
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from nicegui import ui
@@ -27,12 +25,8 @@ from skisnow.web.snow_choice import campaign_snow
 from tests.coded import raises
 
 from ...campaign_texts import SHEARED, sheared
-from ..desk import in_this_process
+from ..desk import Desk, in_this_process
 from .shared import ENDS, GIVEN, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
-
-if TYPE_CHECKING:
-    from ..desk import Desk
-
 
 SHEAR = sheared({"a": ("A", 20), "b": ("A", 21), "c": ("B", 30)})
 

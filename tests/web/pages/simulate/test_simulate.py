@@ -1,10 +1,7 @@
 """*Simulate*: its inputs, what they ask for, what is refused."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -18,7 +15,7 @@ from skisnow.web.lab_skis import LabSkis
 from skisnow.web.scenario_fields import ScenarioField, called
 from tests.coded import raises
 
-from ..desk import values
+from ..desk import Desk, Sheet, values
 from .shared import (
     ENDS,
     GIVEN,
@@ -35,9 +32,6 @@ from .shared import (
     jobs,
     refused,
 )
-
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
 
 INERTIA = "Moments of inertia I (kg m²)"
 

@@ -1,20 +1,14 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from skisnow.ski import ski_named
+from skisnow.ski import Ski, ski_named
 from skisnow.ski.editing import edit_stations
 from skisnow.web.lab_skis import LabSkis
 
-if TYPE_CHECKING:
-    from skisnow.ski import Ski
-
-    from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet
 
 CARVER, SLALOM = ski_named("carver"), ski_named("slalom")
 TEXT = LabSkis(Path("nowhere")).texts("carver")[0]

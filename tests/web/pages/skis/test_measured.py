@@ -1,7 +1,5 @@
 """A measured ski that comes in, and the skis of the lab."""
 
-from __future__ import annotations
-
 import io
 import json
 import threading
@@ -10,7 +8,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import httpx
@@ -19,7 +17,7 @@ import pytest
 from nicegui import ui
 
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning, SkisnowError
-from skisnow.ski import read_ski, ski_names
+from skisnow.ski import Ski, read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web import lab_skis as measured_ski
 from skisnow.web.lab_skis import (
@@ -36,13 +34,9 @@ from skisnow.web.ski_editor import CELLS, FACTORS, SkiEditInput, edit_ski_texts
 from skisnow.web.subprocesses import SKI_BOUNDS
 from tests.coded import Coded, coded, raises
 
-from ...test_skis_page import DESIGN, TABLE, TYPED, WITH_TABLE
+from ...test_tool_pages import DESIGN, TABLE, TYPED, WITH_TABLE
+from ..desk import Desk, Sheet
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
-
-if TYPE_CHECKING:
-    from skisnow.ski import Ski
-
-    from ..desk import Desk, Sheet
 
 
 def type_ski(page: Sheet, name: str, typed: Mapping[str, str]) -> None:

@@ -1,19 +1,35 @@
-"""*Skis*: contents of the page, and two skis compared."""
+"""Skis: the list and edited files."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+import tomllib
+from ast import literal_eval
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 from nicegui import ui
 
-from skisnow.ski import ski_names
-from skisnow.web.lab_skis import LabSkis
+from skisnow.ski import read_ski, ski_names
+from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
+from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
+from skisnow.web.page_requests import carving
+from skisnow.web.subprocesses import SKI_BOUNDS
 
-from .shared import CARVER, FILE, SLALOM, TABLE_FIELD, TEXT, cells_of, opened, source_words
-
-if TYPE_CHECKING:
-    from ..desk import Desk
+from ..desk import Desk, Sheet
+from .shared import (
+    BOTH,
+    CARVER,
+    FILE,
+    HEAVY,
+    SAVE,
+    SLALOM,
+    TABLE_FIELD,
+    TEXT,
+    cells_of,
+    opened,
+    saved_place,
+    source_words,
+)
 
 CARVER_FACTS = [
     "Length", "1.755 m",
@@ -120,3 +136,278 @@ def test_a_ski_that_came_in_is_told(desk: Desk, added: str) -> None:
     announced = [each for each in page.of(ui.label) if "good" in each.classes and "mine" in each.text]
     assert [each.props["role"] for each in announced] == (["status"] if added else [])
     page.shows("Begun from mine")
+
+
+def between(lines: list[str], first: str, last: str) -> list[str]:
+    """Lines from the one that begins so to the one that begins so."""
+    start = next(i for i, line in enumerate(lines) if line.startswith(first))
+    stop = next(i for i, line in enumerate(lines[start:], start) if line.startswith(last))
+    return lines[start : stop + 1]
+
+
+def test_a_factor_makes_an_edited_ski(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "1,5")
+    page.shows("100 to 690 (carver, carver, edited)")
+    assert page.field("Compared with").value == "the edited ski"
+    lines = page.outline()
+    place = lines.index("EI at the boot")
+    assert lines[place + 1 : place + 3] == ["460 N m²", "690 N m²"]
+    page.shows(f"(EI × 1,5) from: {source_words(CARVER)}")
+    edited = edited_ski(CARVER, SkiEdit(edit_stations(CARVER), {"EI_N_m2": 1.5}), name="carver", source="x")
+    assert between(lines, "Position (m)", "field GJ (N m²) at -0.825") == cells_of(edited)
+    page.fill("Mass ×", "2")
+    page.shows("4.49 kg")
+    page.shows("edited in the lab (EI × 1,5; Mass × 2) from: Atomic")
+    page.fill("EI ×", "1")
+    page.shows("100 to 460 (carver, carver, edited)")
+    page.shows("edited in the lab (Mass × 2) from: Atomic")
+    page.fill("Mass ×", "1")
+    page.shows("100 to 460 (carver, carver)")
+    assert confined_words == []  # earlier texts are not read again
+
+
+def test_values_at_positions_are_drawn_and_taken_back(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("Width (mm) at 0.000 m", " 70 ")
+    page.shows("127 – 70.0 – 111 mm")
+    assert page.field("Width (mm) at 0.000 m").value == "70"
+    page.shows("edited in the lab (Width (mm) 70 at 0.000 m) from: Atomic")
+    page.fill("GJ (N m²) at -0.268 m", "200")
+    page.shows("(Width (mm) 70 at 0.000 m; GJ (N m²) 200 at -0.268 m) from")
+    stiffness = [page.field(f"GJ (N m²) at {place} m").value for place in ("-0.268", "0.000")]
+    assert stiffness == ["200", "195"]  # a neighbour stays
+    page.fill("Width (mm) at 0.000 m", " ")
+    page.shows("(GJ (N m²) 200 at -0.268 m) from")
+    page.shows("field Width (mm) at 0.000 m = '74' numeric")
+    page.fill("GJ (N m²) at -0.268 m", "")
+    page.shows("65.0 to 195 (carver, carver)")
+
+
+def test_what_is_just_being_typed_stays(desk: Desk) -> None:
+    page = opened(desk)
+    half = page.field("EI (N m²) at 0.000 m")
+    desk.do(lambda: half.set_value("50"), page.client)  # its end was not typed yet
+    page.fill("EI ×", "2")
+    page.shows("100 to 920 (carver, carver, edited)")
+    assert page.field("EI (N m²) at 0.000 m").value == "50"
+    assert page.field("EI (N m²) at -0.825 m").value == "200"
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "code"),
+    [
+        ("GJ (N m²) at 0.000 m", "1x", "not_a_number"),
+        ("GJ (N m²) at -0.268 m", "-3", "out_of_range"),
+        ("EI ×", "", "not_a_number"),
+        ("Width ×", "1000", "out_of_range"),
+    ],
+)
+def test_an_invalid_edit_is_neither_saved_nor_downloaded(desk: Desk, field: str, text: str, code: str) -> None:
+    page = opened(desk)
+    page.fill(field, text)
+    why = page.shows("[status bad] ").removeprefix("[status bad] ")
+    assert desk.code == code
+    page.fill("New name", "never")
+    page.press(SAVE)
+    page.until(lambda: sum(line.startswith("[status bad] ") and why in line for line in page.outline()) == 2)
+    page.press("Download the file")
+    page.until(lambda: sum(f"[status bad] {why}" in line for line in page.outline()) == 2)
+    assert LabSkis(desk.lab.runs).saved() == []
+    assert not any(each.startswith("download") for each in page.scripts)
+    page.fill(field, "1" if "×" in field else "195")
+    page.until(lambda: sum(why in line for line in page.outline()) == 1)
+    status = [each for each in page.of(ui.label) if "status" in each.classes]
+    assert [("bad" in each.classes, bool(each.text)) for each in status] == [(False, False)] * 2 + [(True, True)]
+    page.until(lambda: "carver, carver" in page.charts()["GJ (N m²)"]["label"])
+
+
+def test_what_a_reader_warns_of_is_shown(desk: Desk) -> None:
+    LabSkis(desk.lab.runs).save_texts("heavy", HEAVY, "")
+    page = opened(desk, "/skis?ski=heavy", "heavy")
+    assert page.shows("mass_kg is 20").startswith("[status good]")
+    assert page.shows("mass_kg is 20").count("mass_kg is 20") == 1
+    page.fill("Compared with", "the edited ski")
+    page.until(lambda: any(line.count("mass_kg is 20") == 2 for line in page.outline()))
+    page.fill("Ski", "carver")
+    page.fill("Compared with", "nothing")
+    page.until(lambda: not any("mass_kg is 20;" in line for line in page.outline() if line.startswith("[status")))
+
+
+def test_an_edited_ski_is_saved_and_compared(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "1.5")
+    page.shows("(carver, carver, edited)")
+    page.fill("New name", "  my   own ")
+    page.press(SAVE)
+    page.shows("[status good] Saved: my own. Carve and Simulate have it too.")
+    page.shows("100 to 690 (carver, my own)")
+    assert page.link(BOTH) == carving("carver", "my own")
+    assert page.field("Compared with").value == "my own"
+    names = [*ski_names(), "my own"]
+    assert list(page.field("Ski").options) == names
+    assert list(page.field("Compared with").options) == ["nothing", "the edited ski", *names]
+    ski = read_ski(saved_place(desk, "my own"))
+    assert ski.name == "my own"
+    assert ski.bending_stiffness == pytest.approx(1.5 * CARVER.bending_stiffness)
+    assert saved_place(desk, "my own").with_name("ski.csv").is_file()
+    page.press(SAVE)
+    page.until(lambda: desk.code == "already_there")
+    page.shows("[status bad] ")
+    page.fill("New name", "second")
+    page.press(SAVE)
+    page.shows("[status good] Saved: second.")
+    page.until(lambda: page.link(BOTH) == carving("carver", "second"))
+
+
+def test_a_ski_without_changes_is_saved_as_its_file_is_written(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("New name", "same")
+    page.press(SAVE)
+    page.shows("[status good] Saved: same.")
+    assert saved_place(desk, "same").read_text(encoding="utf-8") == TEXT.replace('name = "carver"', 'name = "same"')
+    assert not saved_place(desk, "same").with_name("ski.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("", "name_not_allowed"),
+        ("carver", "already_there"),
+        ("nothing", "name_not_allowed"),
+        ("The edited ski", "name_not_allowed"),
+    ],
+)
+def test_a_name_that_cannot_be_is_refused_with_the_reason(desk: Desk, name: str, code: str) -> None:
+    page = opened(desk)
+    page.fill("New name", name)
+    page.press(SAVE)
+    why = page.shows("[status bad] ")
+    assert desk.code == code
+    page.fill("Name of the ski", name)
+    page.press("Add this ski")
+    page.until(lambda: page.outline().count(why) == 2)
+    assert LabSkis(desk.lab.runs).saved() == []
+
+
+def downloads(page: Sheet) -> dict[str, str]:
+    """Files for the browser, by name."""
+    return {each["filename"]: each["src"].decode() for each in page_downloads(page)}
+
+
+def page_downloads(page: Sheet) -> list[dict[str, Any]]:
+    return [literal_eval(each.removeprefix("download ")) for each in page.scripts if each.startswith("download ")]
+
+
+def test_the_file_is_downloaded_as_it_is_written(desk: Desk) -> None:
+    page = opened(desk)
+    page.press("Download the file")
+    page.told("download")
+    assert downloads(page) == {"ski.toml": TEXT}
+
+
+def test_an_edited_ski_is_downloaded_with_its_table(desk: Desk, tmp_path: Path) -> None:
+    page = opened(desk)
+    page.fill("GJ ×", "2")
+    page.shows("(carver, carver, edited)")
+    page.press("Download the file")
+    page.until(lambda: len(downloads(page)) == 2)
+    for name, text in downloads(page).items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    ski = read_ski(tmp_path / "ski.toml")
+    assert ski.name == "carver, edited"
+    assert ski.torsional_stiffness == pytest.approx(2 * CARVER.torsional_stiffness)
+    assert ski.width == pytest.approx(CARVER.width)
+
+
+def test_a_text_is_drawn_when_it_is_asked_for(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "2")
+    page.fill("Width (mm) at 0.000 m", "80")
+    page.shows("127 – 80.0 – 111 mm")
+    longer = TEXT.replace("length_mm = 1755", "length_mm = 1800").replace('name = "carver"', 'name = "longer"')
+    page.fill(FILE, longer)
+    why = "the file below was changed since it was drawn; press Draw the file first"
+    page.fill("New name", "early")
+    page.press(SAVE)
+    page.shows(f"[status bad] Not saved: {why}")
+    page.press("Download the file")
+    page.shows(f"[status bad] {why}")
+    assert LabSkis(desk.lab.runs).saved() == []
+    assert downloads(page) == {}
+    page.press("Draw the file")
+    page.shows("100 to 460 (carver, longer)")
+    assert confined_words == [(SKI_BOUNDS, check_ski_texts, longer, "")]
+    lines = page.outline()
+    assert lines[lines.index("Length") : lines.index("Running length")] == ["Length", "1.755 m", "1.800 m"]
+    assert "field EI × = '1' numeric" in lines
+    ski, _ = ski_of_texts(longer, "")
+    assert between(lines, "Position (m)", "field GJ (N m²) at -0.8") == between(
+        cells_of(ski), "Position (m)", "field GJ (N m²) at -0.8"
+    )
+    page.press("Download the file")
+    page.told("download")
+    assert downloads(page) == {"ski.toml": longer}
+    page.press(SAVE)
+    page.shows("[status good] Saved: early.")
+    kept = tomllib.loads(saved_place(desk, "early").read_text(encoding="utf-8"))
+    assert (kept["name"], kept["length_mm"]) == ("early", 1800)
+    page.fill(FILE, longer.replace("mass_kg = 2.246", "mass_kg = -1"))
+    page.press("Draw the file")
+    page.shows("[status bad] ski.toml: mass_kg is -1")
+    assert len(confined_words) == 2
+
+
+def test_a_table_that_was_changed_is_drawn_too(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_ski("mine", replace(CARVER, name="mine"))
+    page = opened(desk, "/skis?ski=mine", "mine")
+    _, table = skis.texts("mine")
+    assert page.field(TABLE_FIELD).value == table
+    page.fill(TABLE_FIELD, "station_m\n")
+    page.press("Download the file")
+    page.shows("[status bad] the file below was changed since it was drawn")
+    page.press("Draw the file")
+    page.shows("[status bad] ski.csv")
+    page.fill(TABLE_FIELD, table)
+    page.press("Draw the file")
+    page.shows("(mine, mine)")
+    page.press("Download the file")
+    page.until(lambda: len(downloads(page)) == 2)
+    assert downloads(page) == {"ski.toml": skis.texts("mine")[0], "ski.csv": table}
+    page.fill("New name", "again")
+    page.press(SAVE)
+    page.shows("Saved: again.")
+    assert skis.texts("again")[1] == table
+
+
+def test_it_is_begun_again_from_the_ski_above(desk: Desk) -> None:
+    page = opened(desk)
+    page.fill("EI ×", "2")
+    page.fill("Width (mm) at 0.000 m", "80")
+    page.shows("127 – 80.0 – 111 mm")
+    page.fill("Ski", "slalom")
+    page.shows("(slalom, carver, edited)")
+    page.press("Begin again from the ski above")
+    page.shows("(slalom, slalom)")
+    page.shows("field Width (mm) at 0.000 m = '68' numeric")
+    lines = page.outline()
+    page.shows("Begun from slalom")
+    assert "field EI × = '1' numeric" in lines
+    assert between(lines, "Position (m)", "field GJ (N m²) at -0.749") == cells_of(SLALOM)
+    assert page.field(FILE).value == LabSkis(desk.lab.runs).texts("slalom")[0]
+    page.press("Download the file")
+    page.told("download")
+
+
+def test_cells_are_written_as_in_the_language_of_the_page(desk: Desk) -> None:
+    page = desk.open("/skis", "de")
+    page.shows("65,0 bis 195 (carver)")
+    assert page.field("Breite (mm) bei 0,537 m").value == "99,33"
+    page.fill("EI ×", "1,5")
+    page.shows("100 bis 690 (carver, carver, edited)")
+    page.shows("field EI (N m²) bei 0,268 m = '529,7' numeric")
+    page.fill("Neuer Name", "meiner")
+    page.press("Im Labor speichern")
+    page.shows("Saved: meiner.")
+    assert list(page.field("Verglichen mit").options.values())[:2] == ["nichts", "der bearbeitete Ski"]

@@ -1,13 +1,10 @@
 """Helpers that the tests of this folder share."""
 
-from __future__ import annotations
-
 import json
 import tomllib
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet
 
 OF, FIRST, SECOND = "What is studied", "First input", "Second input"
 FROM, TO, VALUES, LOG = (f"{FIRST}: {each}" for each in ("from", "to", "number of values", "even in the logarithm"))

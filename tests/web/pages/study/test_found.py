@@ -1,13 +1,12 @@
 """*Study*: the queue's cards, table and map of the results, files."""
 
-from __future__ import annotations
-
 import io
 import json
 import math
 import tomllib
 import zipfile
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import pytest
 
@@ -21,12 +20,8 @@ from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
+from ..desk import Desk
 from .shared import ANGLE, FIRST, LOAD, SPEED, TURN, VALUES, asked, estimate
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ..desk import Desk
 
 TABLE_LINK = "link[main] Table and figure -> /study/a%20study"
 OF_CARVES = {

@@ -1,19 +1,27 @@
-"""*Study*: its questions, and refusals."""
+"""Studies: their form and their cards."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from skisnow._support.errors import ParameterError
+from skisnow.campaign import read_campaign
+from skisnow.estimation import analyse, results_dict
+from skisnow.estimation.results import results_json
+from skisnow.parameters import Quantity
 from skisnow.scenario import scenario_names
-from skisnow.ski import ski_names
+from skisnow.ski import read_ski, ski_names
 from skisnow.studies import read_study
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.study_fields import CARVE, require_few_points
+from skisnow.web.study_fields import CARVE, first_range, require_few_points
 from tests.coded import raises
 
+from ...campaign_texts import HARD, SHEARED, SOFT, pressed
+from ..desk import Desk
 from .shared import (
     ANGLE,
     ENDS,
@@ -40,8 +48,191 @@ from .shared import (
     scenario,
 )
 
-if TYPE_CHECKING:
-    from ..desk import Desk
+
+def campaign(desk: Desk, folder: Path) -> str:
+    """The id of a kept campaign with two sites and no shear test."""
+    rows = pressed({"1": ("A", SOFT), "2": ("B", HARD)})
+    return desk.kept(folder, {"campaign.toml": SHEARED, "penetration.csv": rows})
+
+
+@pytest.mark.parametrize(
+    ("key", "ends"),
+    [
+        (Quantity("a.mass_kg", ""), (60.0, 120.0)),
+        (Quantity("w", "", default=2.0), (1.0, 4.0)),
+        (Quantity("w", "", default=2.0, lowest=1.5, highest=3.0), (1.5, 3.0)),
+        (Quantity("w", "", default=0.0, usual=(1.0, 2.0)), (1.0, 2.0)),
+        (Quantity("w", "", default=1.0, usual=(1.0, 3.0)), (0.5, 2.0)),
+        (Quantity("w", "", usual=(1.0, 2.0)), (1.0, 2.0)),
+        (Quantity("w", "", default=True, kind="switch"), None),
+        (Quantity("n", "", default=5, kind="whole number"), (3.0, 10.0)),
+        (Quantity("n", "", default=5, highest=7.5, kind="whole number"), (3.0, 7.0)),
+        (Quantity("n", "", default=1, lowest=1.0, highest=1.0), None),
+        (Quantity("w", "", default=1e308), None),
+    ],
+)
+def test_an_input_begins_around_what_it_usually_is(key: Quantity, ends: tuple[float, float] | None) -> None:
+    assert first_range(key) == ends
+
+
+def numbers(text: str) -> str:
+    """Number of points and duration of an estimate."""
+    return " ".join(re.findall(r"\d+(?: (?:s|min|h)\b)?", text))
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ({VALUES: "14"}, "14 45 s"),  # 43 s
+        ({WAY: "18"}, "7 15 s"),  # 2 s at 9 m/s, the middle
+        ({WAY: "18", ENDS: ""}, "7 15 s"),
+        ({WAY: "90"}, "7 25 s"),
+        ({TO: "30", WAY: "18"}, "7 10 s"),  # 1 s
+        ({FIRST: "sledge.mass_kg", WAY: "14"}, "7 15 s"),  # 2 s at 7 m/s
+        ({FIRST: "run.duration_s", FROM: "10", TO: "30"}, "7 80 s"),
+        ({SECOND: "run.duration_s", FROM_2: "10", TO_2: "30"}, "70 12 min"),
+        ({ENDS: "1,5"}, "7 15 s"),
+        ({ENDS: "x"}, "7"),
+        ({ENDS: ""}, "7"),
+        ({ENDS: "inf"}, "7"),
+        ({ENDS: "nan"}, "7"),
+        ({FROM: ""}, "7"),
+        ({VALUES: "x"}, ""),
+        ({VALUES: "1" * 400}, ""),
+    ],
+)
+def test_how_long_it_takes_follows_what_is_typed(desk: Desk, typed: dict[str, Any], told: str) -> None:
+    page = scenario(desk)
+    for name, value in typed.items():
+        page.fill(name, value)
+    assert numbers(estimate(page)) == told
+
+
+def test_how_long_it_takes_is_learned_from_studies_with_the_method(desk: Desk) -> None:
+    """4 points of 5 s on two cores in 28 s, 8 of them around: 2 s for each second."""
+    page = scenario(desk)
+    page.fill("Method", "fast")
+    page.fill(VALUES, "4")
+    asked(desk, page)
+    place = next(desk.lab.runs.glob("studies/*/job.json"))
+    job = json.loads(place.read_text(encoding="utf-8"))
+    assert (job["method"], job["unit_s"]) == ("fast", 5.0)
+    place.write_text(json.dumps(job | {"state": "done", "took_s": 28.0}), encoding="utf-8")
+    page.fill(VALUES, "10")
+    assert numbers(estimate(page)) == "10 60 s"  # 58 s
+    page.fill("Method", "default")
+    assert numbers(estimate(page)) == "10 35 s"  # 33 s
+
+
+def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
+    page = scenario(desk)
+    job, text = asked(desk, page)
+    assert text == {
+        "out": "table.csv",
+        "scenario": "carved-46m",
+        "fixed": {},
+        "grid": {"start.speed_m_per_s": {"from": 6.0, "to": 12.0, "n": 7}},
+    }
+    assert [job[key] for key in ("changes", "given", "method", "unit_s", "points")] == [
+        {}, f"{SPEED}: 6 to 12, 7 values", "default", 5.0, 7,
+    ]  # fmt: skip
+    page.fill("Mass of the sledge m (kg)", "90,5")
+    page.fill("Moments of inertia I (kg m²)", "[6, 8, 11]")
+    page.fill("Fixed time step", True)
+    page.fill("Law of shear", "by-angle")
+    job, text = asked(desk, page)
+    assert text["fixed"] == {
+        "sledge.mass_kg": 90.5, "sledge.inertia_kg_m2": [6.0, 8.0, 11.0], "shear.law": "by-angle", "solver.fixed": True,
+    }  # fmt: skip
+    assert job["changes"] == {"sledge.mass_kg": "90.5"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "fixed"),
+    [
+        ({HARDNESS: "0.3"}, {"snow.H_V_N_per_mm3": 0.3, "snow.S_f_N_per_mm2": 0.5}),
+        ({STRESS: "0.3"}, {"snow.H_V_N_per_mm3": 0.2, "snow.S_f_N_per_mm2": 0.3}),
+        ({FIRST: "snow.H_V_N_per_mm3"}, {"snow.S_f_N_per_mm2": 0.5}),
+        ({SECOND: "snow.S_f_N_per_mm2"}, {"snow.H_V_N_per_mm3": 0.2}),
+        ({RATIO: "11"}, {"snow.unloading_ratio": 11.0}),
+    ],
+)
+def test_of_the_two_numbers_of_the_snow_both_or_none_are_given(
+    desk: Desk, typed: dict[str, str], fixed: dict[str, float]
+) -> None:
+    page = scenario(desk)
+    for name, value in typed.items():
+        page.fill(name, value)
+    assert asked(desk, page)[1]["fixed"] == fixed
+
+
+def test_a_ski_goes_with_the_study(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_texts("mine", skis.texts("slalom")[0], "")
+    page = desk.open("/study")
+    page.fill("Ski", "mine")
+    job, text = asked(desk, page)
+    folder = desk.lab.runs / "studies" / job["name"]
+    assert text["fixed"]["ski"] == "ski/ski.toml"
+    assert (folder / "ski" / "ski.toml").read_text(encoding="utf-8") == skis.texts("mine")[0]
+    assert [place.name for place in (folder / "ski").iterdir()] == ["ski.toml"]
+    assert job["given"].endswith("; ski: mine")
+    assert "ski" not in job["changes"]
+    page.fill(OF, "carved-46m")
+    page.fill("Ski", "mine")
+    assert asked(desk, page)[1]["fixed"] == {"ski.file": "ski/ski.toml"}
+    page.fill("Ski", "slalom")
+    job, text = asked(desk, page)
+    assert (text["fixed"], job["changes"]) == ({"ski.name": "slalom"}, {})
+    assert job["given"].endswith("; ski: slalom")
+
+
+def test_the_table_of_a_ski_goes_with_the_study(desk: Desk) -> None:
+    skis = LabSkis(desk.lab.runs)
+    skis.save_texts("mine", skis.texts("slalom")[0], "")
+    ski = read_ski(skis.word("mine"))
+    skis.save_ski("tabled", replace(ski, name="tabled"))
+    page = desk.open("/study")
+    page.fill("Ski", "tabled")
+    job, _ = asked(desk, page)
+    folder = desk.lab.runs / "studies" / job["name"] / "ski"
+    assert (folder / "ski.csv").read_text(encoding="utf-8") == skis.texts("tabled")[1] != ""
+
+
+def test_a_published_snow_takes_the_place_of_both_numbers(desk: Desk) -> None:
+    page = desk.open("/study")
+    page.fill("Snow", "published-glacier")
+    page.until(lambda: not [line for line in page.outline() if line.startswith((f"field {HARDNESS}", "field Fail"))])
+    job, text = asked(desk, page)
+    assert text["fixed"] == {"ski": "carver", "load_N": 800.0, "unloading_ratio": 10.0, "published": "glacier"}
+    assert job["given"].endswith("; snow: glacier")
+    page = scenario(desk)
+    page.fill("Snow", "published-glacier")
+    page.until(lambda: not [line for line in page.outline() if line.startswith((f"field {HARDNESS}", "field Fail"))])
+    assert asked(desk, page)[1]["fixed"] == {"snow.published": "glacier"}
+
+
+@pytest.mark.parametrize(("of", "lead"), [(CARVE, ""), ("carved-46m", "snow.")])
+def test_the_snow_of_a_campaign_goes_with_the_study(desk: Desk, tmp_path: Path, of: str, lead: str) -> None:
+    id_ = campaign(desk, tmp_path / "kept")
+    page = scenario(desk, of)
+    page.fill(STRESS, "0.4")
+    page.fill("Snow", f"kept-{id_}")
+    page.shows("[snow] Snow: H_V = ")
+    page.until(lambda: not [line for line in page.outline() if line.startswith(f"field {HARDNESS}")])
+    assert [line for line in page.outline() if line.startswith(f"field {STRESS}")]
+    job, text = asked(desk, page)
+    snow = {name: value for name, value in text["fixed"].items() if "S_f" in name or "results" in name}
+    assert snow == {f"{lead}S_f_N_per_mm2": 0.4, f"{lead}results": "results.json"}
+    assert job["given"].endswith(f"; snow: Desk ({id_})")
+    kept = desk.lab.runs / "studies" / job["name"] / "results.json"
+    library = json.loads(results_json(results_dict(analyse(read_campaign(tmp_path / "kept")))))
+    assert json.loads(kept.read_text(encoding="utf-8"))["penetration"] == library["penetration"]
+    page.fill("Site", "B")
+    page.shows("[snow] Snow: H_V = 0.1")
+    job, text = asked(desk, page)
+    assert text["fixed"][f"{lead}site"] == "B"
+    assert job["given"].endswith(f"; snow: Desk ({id_}), B")
 
 
 def test_a_study_of_carved_turns_is_asked_about_a_turn(desk: Desk) -> None:

@@ -1,8 +1,14 @@
-"""The closed form across the ski against the point law and adaptive quadrature."""
+"""The compiled core: sources, interruption, the contact of a strip."""
 
-from __future__ import annotations
-
+import importlib
+import math
+import shutil
+import signal
+import subprocess
+import sys
 from dataclasses import astuple, dataclass, replace
+from pathlib import Path
+from types import FrameType
 
 import numpy as np
 import pytest
@@ -10,8 +16,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from skisnow.compiled import core
+import skisnow.compiled
+from skisnow import carve
+from skisnow.compiled import core, require_current
+from skisnow.compiled.sources import fingerprint
 from skisnow.forces.penetration import HypoplasticPoint
+from skisnow.ski import read_ski
+from skisnow.snow import published_snow
 
 FloatArray = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
@@ -140,3 +151,85 @@ def test_its_law_is_the_one_of_forces(ratio: float) -> None:
         for deepest in (0.0, 2e-3, 5e-3, 5e-3 * (1.0 + 1e-4)):
             level = Interval(0.0, 0.02, depth, depth, deepest, deepest, hardness, hardness * (ratio - 1.0))
             assert level.sums()[0] == pytest.approx(0.02 * law.stress(depth, deepest), rel=1e-12, abs=1e-9)
+
+
+SOURCES = Path(skisnow.compiled.__file__).parents[2] / "core"
+
+
+@pytest.mark.skipif(not SOURCES.is_dir(), reason="an installed package has no C++ sources")
+def test_an_edited_source_is_refused(tmp_path: Path) -> None:
+    copied = Path(shutil.copytree(SOURCES, tmp_path / "core"))
+    require_current(core.SOURCE_HASH, copied)
+    edited = copied / "contact" / "pressure_kernels.hpp"
+    edited.write_text(edited.read_text(encoding="utf-8").replace("0.5 * width", "1.5 * width", 1), encoding="utf-8")
+    with pytest.raises(ImportError, match=r"older than its sources in .*core: build it with"):
+        require_current(core.SOURCE_HASH, copied)
+    edited.unlink()
+    assert fingerprint(copied) != core.SOURCE_HASH
+
+
+@pytest.mark.skipif(not SOURCES.is_dir(), reason="an installed package has no C++ sources")
+def test_the_package_looks_when_it_is_imported(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as edited:
+        edited.setattr("skisnow.compiled.sources.fingerprint", lambda _: "another")
+        with pytest.raises(ImportError, match="older than its sources"):
+            importlib.reload(skisnow.compiled)
+    assert importlib.reload(skisnow.compiled).core is core
+
+
+def test_the_build_asks_for_the_fingerprint_by_a_program(tmp_path: Path) -> None:
+    """It needs nothing of the package, which is not built yet; line ends of Windows are those of Unix."""
+    program = Path(skisnow.compiled.__file__).with_name("sources.py")
+    told = []
+    for name, text in (("a", b"one\ntwo\n"), ("b", b"one\r\ntwo\r\n"), ("c", b"one\n")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "core.cpp").write_bytes(text)
+        asked = [sys.executable, "-I", str(program), str(tmp_path / name)]
+        told.append(subprocess.run(asked, check=True, capture_output=True, text=True).stdout)
+        assert told[-1] == f"{fingerprint(tmp_path / name)}\n"
+    assert told[0] == told[1] != told[2]
+
+
+def test_without_sources_there_is_nothing_to_compare(tmp_path: Path) -> None:
+    require_current("anything", tmp_path)
+    (tmp_path / "a.cpp").touch()
+    with pytest.raises(ImportError, match="older than its sources"):
+        require_current("anything", tmp_path)
+
+
+EVERY = 0.01
+"""Processor time (s) between two signals."""
+BEATS = 3
+
+
+class LeftError(Exception):
+    """What the signal raises."""
+
+
+class Beats:
+    """A handler that raises after three signals in a row at one place of a Python program, that is in one call."""
+
+    def __init__(self) -> None:
+        self.place: tuple[FrameType | None, int] = (None, 0)
+        self.count = 0
+
+    def __call__(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002
+        place = (frame, -1 if frame is None else frame.f_lasti)
+        self.count = self.count + 1 if place == self.place else 1
+        self.place = place
+        if self.count == BEATS:
+            raise LeftError
+
+
+@pytest.mark.skipif(not hasattr(signal, "ITIMER_PROF"), reason="this system has no timer of the processor's time")
+def test_a_steady_carve_is_left_at_a_signal() -> None:
+    """Python runs a handler at most once in a call that does not listen, after its end."""
+    ski, snow = read_ski("giant-slalom"), published_snow("race-piste")
+    former = signal.signal(signal.SIGPROF, Beats())
+    try:
+        signal.setitimer(signal.ITIMER_PROF, EVERY, EVERY)
+        with pytest.raises(LeftError):
+            carve(ski, snow, edge_angle=math.radians(60), load=800.0, unloading_ratio=math.inf, elements=12_800)
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, former)
