@@ -19,6 +19,7 @@ from skisnow.campaign import Campaign
 from skisnow.campaign.reference import reference_campaign
 from skisnow.estimation.results import results_json
 from tests.coded import Coded, coded, raises
+from tests.key_names import EDGE_ANGLE
 
 from .conftest import without_png
 from .report.runs import RADIUS, SPEED, circle_run
@@ -107,7 +108,7 @@ def test_snow_of_a_site_by_hand(analysis: Analysis) -> None:
 
 
 def test_an_unknown_site_is_refused_with_those_that_there_are(analysis: Analysis) -> None:
-    with pytest.raises(ParameterError, match=r"of site 'Z'; it has some of 'site A', 'site B', 'site C'"):
+    with pytest.raises(ParameterError, match=r"'Z'; .*'site A', .*C'"):
         analysis.snow("Z")
     with pytest.raises(ParameterError, match=r"unloading_ratio is 0\.5"):
         analysis.snow("C", unloading_ratio=0.5)
@@ -121,7 +122,7 @@ def test_a_report_takes_one_object(campaign: Campaign, analysis: Analysis, tmp_p
     """Results of one campaign beside another one can no longer be asked for."""
     with pytest.raises(TypeError):
         skisnow.write_report(campaign, analysis.results, tmp_path)  # type: ignore[call-arg, arg-type]
-    with pytest.raises(ParameterError, match=r"write_report\(analyse\(campaign\), folder\); given is a Campaign"):
+    with pytest.raises(ParameterError, match=r"write_report\(analyse\(.*Campaign"):
         skisnow.write_report(campaign, tmp_path)  # type: ignore[arg-type]
     assert list(tmp_path.iterdir()) == []
 
@@ -157,8 +158,8 @@ def test_a_snow_takes_its_unloading_ratio_along_only_where_it_has_one() -> None:
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"edge_angel_deg": 3}, coded("unknown_name", similar="sledge.edge_angle_deg")),
-        ({"edge_angle_deg": 91}, coded("out_of_range", name="sledge.edge_angle_deg", value="91")),
+        ({"edge_angel_deg": 3}, coded("unknown_name", similar=EDGE_ANGLE)),
+        ({"edge_angle_deg": 91}, coded("out_of_range", name=EDGE_ANGLE, value="91")),
         (
             {"slope": skisnow.Profile(np.arange(60.0), -0.2 * np.arange(60.0)), "angle_deg": 5},
             coded("wrong_kind", name="slope.angle_deg", part="slope"),

@@ -181,7 +181,7 @@ def test_paper_is_as_long_as_its_journal_asks() -> None:
 
 def test_workflow_runs_what_was_promised() -> None:
     workflow = text_of(".github/workflows/ci.yml")
-    assert "os: [ubuntu-latest, windows-latest, macos-latest]" in workflow
+    assert all(f"{name}-latest" in workflow for name in ("ubuntu", "windows", "macos"))
     assert 'python: ["3.11", "3.14"]' in workflow
     assert all(word in workflow for word in ("cibuildwheel", "make lint", "make test-minimum"))
     makefile = text_of("Makefile")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from benchmarks.turns import clamped_modes, one_process, own_flight, peers, processes, speed, table
 from benchmarks.turns.cases import Case, Runs, fixed
+from tests.key_names import LINE_SPACING
 
 from skisnow.ski import read_ski
 from skisnow.ski.ski import Ski
@@ -56,7 +57,7 @@ def test_rows_of_the_tables_have_the_columns_of_their_heads(found: list[speed.Sp
 
 def test_finer_in_space() -> None:
     found = list(speed.finer(Runs(SECONDS), HALF.changes))
-    assert [each.key for each in found] == ["solver.elements", "solver.line_spacing_mm", "solver.groove_tolerance"]
+    assert [each.key for each in found] == ["solver.elements", LINE_SPACING, "solver.groove_tolerance"]
     assert all(0.0 < each.end_moves_m < 0.01 for each in found)
 
 
@@ -120,7 +121,7 @@ def test_our_sledge_flies() -> None:
         own_flight.flown(on_snow, 0.002)
 
 
-@pytest.mark.skipif(importlib.util.find_spec("mujoco") is None, reason="MuJoCo is not installed: skisnow[peers]")
+@pytest.mark.skipif(importlib.util.find_spec("mujoco") is None, reason="needs MuJoCo")
 def test_ski_in_mujoco_is_ours(ski: Ski) -> None:
     """Bending and torsion within 1 %; with twice our bending stiffness √2 times as fast, and refused."""
     (first, *_) = peers.mujoco_flight(ski, duration_s=SECONDS, repeats=1)
@@ -137,7 +138,7 @@ def test_ski_in_mujoco_is_ours(ski: Ski) -> None:
         peers.agreeing("MuJoCo", (bending, torsion), ours)
 
 
-@pytest.mark.skipif(importlib.util.find_spec("exudyn") is None, reason="Exudyn is not installed: skisnow[peers]")
+@pytest.mark.skipif(importlib.util.find_spec("exudyn") is None, reason="needs Exudyn")
 def test_ski_in_exudyn_is_ours(ski: Ski) -> None:
     """Its swing, of large deflections, has our frequency within 2 %."""
     (found,) = peers.exudyn_swing(ski, duration_s=SECONDS, repeats=1)

@@ -88,14 +88,14 @@ def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
         (HEAD.replace("timestamp", "when") + ROWS, "timestamp"),
         (HEAD.replace("0 273.15 0 0", "0 273.15 0") + ROWS, "row 10.*3 .*4"),
         (HEAD + "2026-02-03T08:00 -4.0 80\n", "row 14.*3 cells"),
-        (HEAD + "2026-02-03T08:00 -4.0 dry 3\n", "row 14, column RH.*'dry'"),
-        (HEAD + "yesterday -4.0 80 3\n", "row 14, column timestamp.*'yesterday'"),
+        (HEAD + "2026-02-03T08:00 -4.0 dry 3\n", "row 14.*RH.*'dry'"),
+        (HEAD + "yesterday -4.0 80 3\n", "row 14.*timestamp.*'yesterday'"),
         (HEAD + "2026-02-03T08:00 1 2 3\n2026-02-03T08:00 1 2 3\n", "row 15.*later time"),
         (HEAD.replace("SMET 1.1", "SMET 2.0") + ROWS, "row 1.*'2.0'"),
         (HEAD + "0001-01-01T00:00 1 2 3\n", "row 14, column timestamp"),
         (HEAD + "9999-12-31T23:59-12:00 1 2 3\n", "row 14, column timestamp"),
-        (HEAD + "2026-02-03T08:00 1 -1e308 3\n", "column RH.*numbers to"),
-        (HEAD.replace("1 1 0.01 1", "1 1e300 1 1") + "2026-02-03T08:00 1e300 2 3\n", "column TA.*numbers to"),
+        (HEAD + "2026-02-03T08:00 1 -1e308 3\n", "RH.*numbers to"),
+        (HEAD.replace("1 1 0.01 1", "1 1e300 1 1") + "2026-02-03T08:00 1e300 2 3\n", "TA.*numbers to"),
     ],
 )
 def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: str) -> None:
@@ -167,4 +167,4 @@ def test_a_written_name_does_not_begin_a_remark(path: Path) -> None:
 def test_shared_cases() -> None:
     assert read_smet(CASES / "v10_fahrenheit.smet").fields["TA"] == pytest.approx([273.15, 283.15], abs=1e-6)
     assert read_smet(CASES / "semicolon_comment.smet").fields["ISWR"].tolist() == [320.0, 340.0]
-    assert refusal(CASES / "tz-out-of-range.smet").row == 9
+    assert refusal(*CASES.glob("tz-out*.smet")).row == 9

@@ -238,7 +238,7 @@ def test_asked_to_end_while_it_writes_it_writes_first(
     assert main(["simulate", *ASKED, "--out", str(tmp_path)]) == status
     assert (tmp_path / "summary.json").is_file() is is_kept
     assert (tmp_path / "track.csv").is_file() is is_kept
-    assert "writing the computed results first" in capfd.readouterr().err
+    assert "computed results first" in capfd.readouterr().err
     assert [each.name for each in tmp_path.iterdir() if each.name.startswith(".")] == []
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 

@@ -156,23 +156,23 @@ def test_its_law_is_the_one_of_forces(ratio: float) -> None:
 SOURCES = Path(skisnow.compiled.__file__).parents[2] / "core"
 
 
-@pytest.mark.skipif(not SOURCES.is_dir(), reason="an installed package has no C++ sources")
+@pytest.mark.skipif(not SOURCES.is_dir(), reason="no C++ sources")
 def test_an_edited_source_is_refused(tmp_path: Path) -> None:
     copied = Path(shutil.copytree(SOURCES, tmp_path / "core"))
     require_current(core.SOURCE_HASH, copied)
     edited = copied / "contact" / "pressure_kernels.hpp"
     edited.write_text(edited.read_text(encoding="utf-8").replace("0.5 * width", "1.5 * width", 1), encoding="utf-8")
-    with pytest.raises(ImportError, match=r"older than its sources in .*core: build it with"):
+    with pytest.raises(ImportError, match=r"older than .*core"):
         require_current(core.SOURCE_HASH, copied)
     edited.unlink()
     assert fingerprint(copied) != core.SOURCE_HASH
 
 
-@pytest.mark.skipif(not SOURCES.is_dir(), reason="an installed package has no C++ sources")
+@pytest.mark.skipif(not SOURCES.is_dir(), reason="no C++ sources")
 def test_the_package_looks_when_it_is_imported(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as edited:
         edited.setattr("skisnow.compiled.sources.fingerprint", lambda _: "another")
-        with pytest.raises(ImportError, match="older than its sources"):
+        with pytest.raises(ImportError, match="older than"):
             importlib.reload(skisnow.compiled)
     assert importlib.reload(skisnow.compiled).core is core
 
@@ -193,7 +193,7 @@ def test_the_build_asks_for_the_fingerprint_by_a_program(tmp_path: Path) -> None
 def test_without_sources_there_is_nothing_to_compare(tmp_path: Path) -> None:
     require_current("anything", tmp_path)
     (tmp_path / "a.cpp").touch()
-    with pytest.raises(ImportError, match="older than its sources"):
+    with pytest.raises(ImportError, match="older than"):
         require_current("anything", tmp_path)
 
 
@@ -221,7 +221,7 @@ class Beats:
             raise LeftError
 
 
-@pytest.mark.skipif(not hasattr(signal, "ITIMER_PROF"), reason="this system has no timer of the processor's time")
+@pytest.mark.skipif(not hasattr(signal, "ITIMER_PROF"), reason="no profiling timer")
 def test_a_steady_carve_is_left_at_a_signal() -> None:
     """Python runs a handler at most once in a call that does not listen, after its end."""
     ski, snow = read_ski("giant-slalom"), published_snow("race-piste")

@@ -227,11 +227,11 @@ def test_bootstrap_agrees_with_refitting_drawn_experiments_one_by_one() -> None:
     np.testing.assert_allclose(fast[MODELS[2]] / width[:, None], slow / width[:, None], atol=0.2)
 
 
-@pytest.mark.parametrize(("at_the_far_angle", "known"), [(1, False), (3, False), (12, True)])
-def test_resamples_without_one_end_of_the_angles_make_the_interval_unknown(at_the_far_angle: int, known: bool) -> None:
+@pytest.mark.parametrize(("n_far", "known"), [(1, False), (3, False), (12, True)])
+def test_resamples_without_one_end_of_the_angles_make_the_interval_unknown(n_far: int, known: bool) -> None:
     """With 1 of 24 experiments at 60° a third of the resamples have none there: no slope, and no interval for it."""
     readings = simulated(11, (30.0,), m=24)
-    angle = np.where(np.arange(24) < at_the_far_angle, math.radians(60.0), math.radians(30.0))
+    angle = np.where(np.arange(24) < n_far, math.radians(60.0), math.radians(30.0))
     volume = TOOL.displaced_volume(readings.penetration_depth, math.radians(30.0))
     depth = TOOL.depth_at_volume(volume, np.repeat(angle, 7))
     tilted = Readings(readings.load, depth, angle, readings.first, readings.largest, readings.tool, readings.tools)

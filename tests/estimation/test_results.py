@@ -16,6 +16,7 @@ from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.results import results_json
 from tests.coded import raises
+from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
 from .conftest import MakeCampaign
 
@@ -100,10 +101,10 @@ def test_regressions_are_the_planned_ones_in_order(results: Json) -> None:
     pooled = [entry[:2] for entry in found if entry[2] == "all"]
     assert pooled == [
         ("S_f_N_per_mm2", "edge_angle_rad"),
-        ("S_f_N_per_mm2", "snow_density_kg_per_m3"),
-        ("S_f_N_per_mm2", "drop_cone_depth_mm"),
-        ("H_V_N_per_mm3", "snow_density_kg_per_m3"),
-        ("H_V_N_per_mm3", "drop_cone_depth_mm"),
+        ("S_f_N_per_mm2", SNOW_DENSITY),
+        ("S_f_N_per_mm2", DROP_CONE_DEPTH),
+        ("H_V_N_per_mm3", SNOW_DENSITY),
+        ("H_V_N_per_mm3", DROP_CONE_DEPTH),
         ("S_f_N_per_mm2", "H_V_N_per_mm3"),
     ]
     assert [row["n"] for row in results["regressions"] if row["group"] != "all"] == [20, 30]

@@ -27,6 +27,7 @@ from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.screening import quality_flags, series_estimates
 from skisnow.estimation.unloading import Unloading, _reciprocal, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
+from tests.key_names import SHEAR_DISPLACEMENT_INTERVAL
 
 from .conftest import MakeCampaign
 
@@ -387,7 +388,7 @@ def test_two_readings_have_no_interval_and_one_has_nothing(make_campaign: MakeCa
     for kept, known in (([1, 2, 6], True), ([1, 6], False)):
         row = analysed_shear_tests(make_campaign, [rows[index] for index in kept]).results["shear"]["experiments"][0]
         assert (row["shear_displacement_mm"] is not None) == known
-        assert row["shear_displacement_interval_mm"] is None
+        assert row[SHEAR_DISPLACEMENT_INTERVAL] is None
 
 
 def test_a_snow_takes_the_shear_displacement_and_the_file_says_the_same(
@@ -401,7 +402,7 @@ def test_a_snow_takes_the_shear_displacement_and_the_file_says_the_same(
     of_A, of_B, of_all = found.results["shear"]["displacement"]
     assert [(row["site"], row["n"]) for row in (of_A, of_B, of_all)] == [("A", 3), ("B", 1), (None, 4)]
     assert of_A["shear_displacement_mm"] == pytest.approx(2.0)
-    assert of_all["shear_displacement_interval_mm"] is None
+    assert of_all[SHEAR_DISPLACEMENT_INTERVAL] is None
     path = tmp_path / "results.json"
     path.write_text(json.dumps(results_dict(found)), encoding="utf-8")
     snow = found.snow("A")

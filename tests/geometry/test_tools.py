@@ -144,7 +144,7 @@ def test_a_tool_without_a_length_is_refused(length: float) -> None:
 def test_each_length_of_each_tool_is_asked_for(shape: type[Tool], name: str) -> None:
     whole = {field.name: 0.1 for field in fields(shape)}  # type: ignore[arg-type]
     shape(**whole)
-    with pytest.raises(ParameterError, match=f"{name}_mm is 0.0; allowed is above 0 mm"):
+    with pytest.raises(ParameterError, match=rf"{name}_mm is 0\.0; "):
         shape(**whole | {name: 0.0})
 
 

@@ -75,7 +75,7 @@ def test_heights_from_the_ground_become_depths(tmp_path: Path) -> None:
     ("changes", "words"),
     [
         ({"direction": "bottom up", "height": ""}, "height of"),
-        ({"temperature": "cold"}, r"snowTemp.*'cold'.*finite number"),
+        ({"temperature": "cold"}, r"snowTemp.*'cold'.*finite"),
         ({"temperature": "nan"}, "finite number"),
         ({"temperature": "missing"}, "snowTemp"),
         ({"top": ""}, "depthTop"),

@@ -3,6 +3,7 @@
 import inspect
 import json
 import math
+import re
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
@@ -78,7 +79,7 @@ def test_the_chain_asks_for_the_turn_with_each_contact_and_for_each_that_was_dra
     assert found.analysis is analysis
     assert said[-1] == "run 13 of 13"
     assert [f"the turn with the contact “{contact}”" for contact in found.runs] == said[:2]
-    assert "is wider than that with" in found.sentences[0]
+    assert "is wider than" in found.sentences[0]
     assert "<" not in "".join(found.sentences)
 
 
@@ -278,7 +279,7 @@ def test_what_is_given_comes_before_what_was_measured(
     if expected[0] == "measured":
         assert [of_measured[RATIO][name] for name in ("value", "low", "high")] == [9.0, 6.0, 16.0]
     sentence = found.sentences[-1]
-    assert sentence.startswith("The band draws the snow hardness H_V, the failure shear stress S_f")
+    assert re.findall(r"\b[HS]_[Vf]\b", sentence)[:2] == ["H_V", "S_f"]
     measured, assumed = sentence.split(" from the intervals that the campaign measured, ")
     assert ("k_u" in measured, "u_y" in measured) == tuple(each == "measured" for each in expected)
     assert ("k_u" in assumed, "u_y" in assumed) == tuple(each == "prior" for each in expected)
@@ -322,7 +323,7 @@ def test_a_turn_near_the_limit_of_grip_is_warned_of(analysis: Analysis, monkeypa
         found = skisnow.turn(analysis, "C", turn, runs=3, workers=1)
         assert bool(found.warnings) is near
     assert (
-        "near the limit of grip: the end moves"
+        "limit of grip"
         in skisnow.turn(
             analysis, "C", skisnow.load_scenario("carved-46m").with_(edge_angle_deg=34.79), runs=3, workers=1
         ).warnings[0]
@@ -334,7 +335,7 @@ def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> 
     found = skisnow.turn(analysis, "C", runs=3, workers=1)
     page = found.report(tmp_path / "turn")
     text = page.read_text(encoding="utf-8")
-    assert "A turn on the snow of site C" in text
+    assert "snow of site C" in text
     assert "Synthetic data." in text
     assert {path.name for path in (tmp_path / "turn" / "figures").glob("*.png")} == {
         "contacts.png", "along_ski.png", "grip.png", "band.png",

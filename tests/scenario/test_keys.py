@@ -14,6 +14,7 @@ from skisnow.scenario.identify_section import Prior, prior_of
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS, free_key, free_keys, short_name
 from skisnow.scenario.schema import scenario_schema
 from tests.coded import Coded, coded, raises
+from tests.key_names import DELAYED_SPACING, EDGE_ANGLE
 
 SCHEMA = scenario_schema()
 
@@ -39,7 +40,7 @@ def test_what_must_be_given() -> None:
         "sledge.inertia_kg_m2",
         "sledge.centre_of_mass_height_m",
         "sledge.stance_width_m",
-        "sledge.edge_angle_deg",
+        EDGE_ANGLE,
         "start.speed_m_per_s",
     }
 
@@ -80,8 +81,8 @@ def test_units_come_from_the_names() -> None:
 def test_factors_lead_to_si() -> None:
     assert SCENARIO_KEYS["snow.H_V_N_per_mm3"].in_si(0.2) == 2e8
     assert SCENARIO_KEYS["snow.S_f_N_per_mm2"].in_si(0.5) == 5e5
-    assert SCENARIO_KEYS["sledge.edge_angle_deg"].in_si(30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
-    assert SCENARIO_KEYS["solver.delayed_spacing_mm"].in_si(4.0) == 0.004
+    assert SCENARIO_KEYS[EDGE_ANGLE].in_si(30.0) == pytest.approx(math.pi / 6.0, rel=1e-15)
+    assert SCENARIO_KEYS[DELAYED_SPACING].in_si(4.0) == 0.004
     assert SCENARIO_KEYS["run.output_ms"].in_si(10.0) == 0.01
 
 

@@ -288,7 +288,7 @@ def test_places_in_feet_become_metres(tif: Any) -> None:
         ({"crs": "EPSG:32632+5715"}, "downwards"),
         ({"crs": "EPSG:32632+6360", "unit": "m"}, "vertical system"),
         ({"unit": "fathom"}, "fathom"),
-        ({"turned": 0.5}, "do not run east"),
+        ({"turned": 0.5}, "not run east"),
         ({"nodata": PLANE[0, 0]}, "row 1, column 1"),
         ({"scale": math.inf}, "scale inf"),
         ({"scale": 1e300}, "row 1, column 1"),

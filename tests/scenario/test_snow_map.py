@@ -19,6 +19,7 @@ from skisnow.scenario.sledge import Shear
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises
+from tests.key_names import DAMPING, IGNORE_RANGE_WARNING
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
 OVER = "x_m,y_m,S_f_N_per_mm2\n0,-5,0.2\n0,5,0.4\n20,-5,0.2\n20,5,0.4\n"
@@ -57,7 +58,7 @@ def test_friction_over_the_place_leaves_the_snow_as_it_is(tmp_path: Path) -> Non
     values = given.contact.snow_map.friction_share.values_at(np.array([0.0, 10.0, 15.0]), 3.0)
     np.testing.assert_allclose(values, [0.5, 2.0, 2.0], atol=1e-12)
     assert given.contact.snow == plain.contact.snow
-    assert repr(given.contact.snow_map).startswith("<SnowMap mu_share 0.5 to 2")
+    assert repr(given.contact.snow_map).startswith("<SnowMap mu_share 0.5")
 
 
 def test_means_stand_for_the_snow(tmp_path: Path) -> None:
@@ -188,7 +189,7 @@ def test_the_law_of_the_keys() -> None:
     [
         {"snow.layer_depth_mm": 5},
         {"snow.lower_H_V_N_per_mm3": 2},
-        LAYERS | {"snow.damping_N_s_per_mm3": 0.01},
+        LAYERS | {DAMPING: 0.01},
         LAYERS | {"snow.delayed_share": 0.1},
     ],
 )
@@ -210,7 +211,7 @@ def test_a_run_on_equal_layers_is_that_on_one() -> None:
 S_F = 0.4e6
 
 
-@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
+@pytest.mark.filterwarnings(IGNORE_RANGE_WARNING)
 def test_each_word_is_its_law_with_the_numbers_given() -> None:
     assert Shear().of(S_F) is None
     assert Shear(law="by-angle", relative_decrease=0.3).of(S_F) == AngleShear(

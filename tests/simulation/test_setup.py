@@ -27,6 +27,7 @@ from skisnow.simulation.verification import (
     verification_dict,
     verify,
 )
+from tests.key_names import DELAYED_SPACING, EDGE_ANGLE, LINE_SPACING, SHEAR_DISPLACEMENT
 
 from ..carving.synthetic import plain_ski
 from .runs.sledges import load, scenario
@@ -126,7 +127,7 @@ def test_elements_and_lines_follow_from_the_waves_of_a_beam_on_an_elastic_founda
         ({"snow.H_V_N_per_mm3": 0.2}, True),
         ({"snow.H_V_N_per_mm3": 1.0}, True),
         ({"snow.H_V_N_per_mm3": 20.0}, False),
-        ({"sledge.edge_angle_deg": 0.0}, False),
+        ({EDGE_ANGLE: 0.0}, False),
     ],
 )
 def test_the_fast_method_has_a_coarse_mesh_on_a_shallow_edge(changes: dict[str, float], is_coarse: bool) -> None:
@@ -218,7 +219,7 @@ def test_each_repetition_refines_one_choice_from_what_was_in_force() -> None:
     assert refined_solvers(run) == {
         "solver.tolerance_mm": replace(plain, tolerance=plain.tolerance / 2.0),
         "solver.elements": replace(plain, elements=80),
-        "solver.line_spacing_mm": replace(plain, line_spacing=0.009),
+        LINE_SPACING: replace(plain, line_spacing=0.009),
         "solver.groove_tolerance": replace(plain, groove_tolerance=5e-5),
     }
 
@@ -233,20 +234,20 @@ def test_a_fixed_step_is_halved_in_place_of_the_tolerance() -> None:
 def test_the_places_of_a_delayed_depth_are_refined_where_there_is_one() -> None:
     run = straight_run(load_scenario("carved-46m", changes={**STRAIGHT, "delayed_share": 0.2}))
     found = refined_solvers(run)
-    assert list(found) == [*KEYS, "solver.delayed_spacing_mm"]
-    assert found["solver.delayed_spacing_mm"].delayed_spacing == pytest.approx(0.5e-3)
+    assert list(found) == [*KEYS, DELAYED_SPACING]
+    assert found[DELAYED_SPACING].delayed_spacing == pytest.approx(0.5e-3)
 
 
 def test_end_moves_by_what_the_choice_changes() -> None:
     """The made-up run misses by 40 mm / elements: from 40 to 80 its end moves by 0.5 mm."""
     found = verification_dict(verify(straight_run(load_scenario("carved-46m", changes=STRAIGHT)), straight_run))
-    assert list(found) == [*KEYS, "snow.shear_displacement_mm", *NUDGED]
+    assert list(found) == [*KEYS, SHEAR_DISPLACEMENT, *NUDGED]
     moved = {key: each["end_moves_cm"] for key, each in found.items() if key in KEYS}
     assert moved == pytest.approx({**dict.fromkeys(KEYS, 0.0), "solver.elements": 0.05}, rel=1e-9, abs=1e-12)
     assert {key: (each["was"], each["now"]) for key, each in found.items() if key in KEYS} == {
         "solver.tolerance_mm": pytest.approx((0.001, 0.0005)),
         "solver.elements": (40.0, 80.0),
-        "solver.line_spacing_mm": pytest.approx((18.0, 9.0)),
+        LINE_SPACING: pytest.approx((18.0, 9.0)),
         "solver.groove_tolerance": pytest.approx((1e-4, 5e-5)),
     }
     assert {each["outcome"] for each in found.values()} == {"finished"}
@@ -256,7 +257,7 @@ def test_half_of_the_shear_displacement_and_a_thousandth_of_the_inputs() -> None
     """In the made-up run a start that is 0.1 % faster than 5 m/s ends 0.005 m/s · 2 s = 1 cm farther; no other does."""
     run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))
     found = {each.key: each for each in verify(run, straight_run)}
-    assert repetitions(run) == (*KEYS, "snow.shear_displacement_mm", *(key for key in NUDGED for _ in "+-"))
+    assert repetitions(run) == (*KEYS, SHEAR_DISPLACEMENT, *(key for key in NUDGED for _ in "+-"))
     half = found["snow.shear_displacement_mm"]
     assert (half.was, half.now) == pytest.approx((0.02, 0.01), rel=1e-12)
     assert found["start.speed_m_per_s"].end_moves == pytest.approx(0.01, rel=1e-9)
@@ -270,7 +271,7 @@ def test_half_of_the_shear_displacement_and_a_thousandth_of_the_inputs() -> None
 def test_none_finer_than_the_range_allows() -> None:
     changes = {**STRAIGHT, "shear_displacement_mm": 0.015, "edge_angle_deg": 0.0}
     run = straight_run(load_scenario("carved-46m", changes=changes))
-    assert not {"snow.shear_displacement_mm", "sledge.edge_angle_deg"} & set(repetitions(run))
+    assert not {SHEAR_DISPLACEMENT, EDGE_ANGLE} & set(repetitions(run))
 
 
 @pytest.mark.parametrize(("moves", "near"), [(0.004, False), (0.006, True)])

@@ -88,9 +88,9 @@ def test_the_base_counts_from_the_boot_still() -> None:
 @pytest.mark.parametrize(
     ("how", "said"),
     [
-        ({"factors": {"EI_N_m2": -1.0}}, "factor of EI_N_m2 is -1; allowed is 0.01 to 100"),
-        ({"values": {"GJ_N_m2": np.full(9, 0.0)}}, r"station .* m: GJ_N_m2 is 0\.0; allowed is from 0\.001"),
-        ({"values": {"width_mm": np.full(9, 0.6)}}, r"station .* m: width_mm is 600\.0; allowed is from 1 to 500 mm"),
+        ({"factors": {"EI_N_m2": -1.0}}, "EI_N_m2 is -1;"),
+        ({"values": {"GJ_N_m2": np.full(9, 0.0)}}, r"station .*GJ_N_m2 is 0\.0;"),
+        ({"values": {"width_mm": np.full(9, 0.6)}}, r"width_mm is 600\.0;"),
     ],
 )
 def test_what_cannot_be_is_refused(how: dict[str, object], said: str) -> None:

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.interpolate import PchipInterpolator
 from tests.coded import Coded, coded, raises, warns
+from tests.key_names import WRONG_CELL_COUNT
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.ski import read_ski
@@ -186,7 +187,7 @@ def test_keys_that_contradict_the_table(with_table: Written, changes: dict[str, 
                 allowed="less than the 0 before it",
             ),
         ),
-        (ROWS.replace("440,", ""), coded("wrong_number_of_cells", line=4, n_cells=5, n_header=6)),
+        (ROWS.replace("440,", ""), coded(WRONG_CELL_COUNT, line=4, n_cells=5, n_header=6)),
         (
             ROWS.replace("0.8,", "800,"),
             coded(

@@ -187,7 +187,7 @@ def test_certified(nist: Callable[[str], Any], digits: Callable[..., float], nam
     y, x = file.data[:, 0], file.data[:, 1] if name != "Nelson" else file.data[:, 1:]
     y = np.log(y) if name == "Nelson" else y
     known_errors = name != SOLE_ROUNDING
-    said = nullcontext() if known_errors else pytest.warns(FitWarning, match="standard errors .* about 2 digits")
+    said = nullcontext() if known_errors else pytest.warns(FitWarning, match="about 2 digits")
     with said:
         fit = nonlinear_fit(MODELS[name], x, y, starts[start])
     assert digits(fit.coefficients, certified) >= 9

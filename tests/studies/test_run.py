@@ -26,6 +26,7 @@ from skisnow.studies import (
     study_state,
 )
 from tests.coded import Coded, coded, raises
+from tests.key_names import GREATEST_EDGE_DEPTH
 
 TEXT = """
 out = "table.csv"
@@ -59,7 +60,7 @@ def test_rows_are_the_equilibria_in_the_order_of_the_grid(study_file: Path) -> N
     assert row["side_force_limit_N"] == alone.side_force_limit
     assert row["total_force_N"] == pytest.approx(math.hypot(800.0, row["side_force_N"]), rel=1e-12)
     assert alone.edge_depth is not None
-    assert row["greatest_edge_depth_mm"] == pytest.approx(1e3 * float(alone.edge_depth.max()), rel=1e-12)
+    assert row[GREATEST_EDGE_DEPTH] == pytest.approx(1e3 * float(alone.edge_depth.max()), rel=1e-12)
     assert row["H_V_N_per_mm3"] == pytest.approx(0.2067, rel=1e-3)  # 2A/cos² 55° of the publication
     flat = table.rows[0]
     assert (flat["side_force_N"], flat["turn_radius_boot_m"]) == (0.0, None)
@@ -232,8 +233,8 @@ def test_at_rest_and_carving_stand_in_one_table(study_file: Path) -> None:
     study_file.write_text(text + grid, encoding="utf-8")
     rests, carves = run_study(read_study(study_file), workers=1).rows
     # sqrt(2 × 490/(0.04 × 200)) mm; the side force bends a rigid tool no deeper
-    assert rests["greatest_edge_depth_mm"] == pytest.approx(math.sqrt(122.5), rel=1e-5)
-    assert carves["greatest_edge_depth_mm"] == pytest.approx(math.sqrt(122.5), rel=1e-5)
+    assert rests[GREATEST_EDGE_DEPTH] == pytest.approx(math.sqrt(122.5), rel=1e-5)
+    assert carves[GREATEST_EDGE_DEPTH] == pytest.approx(math.sqrt(122.5), rel=1e-5)
     assert (rests["side_force_N"], carves["side_force_N"]) == (0.0, pytest.approx(490.0))
 
 

@@ -14,6 +14,7 @@ from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.studies import read_study, read_table, run_study
 from skisnow.studies.subjects import RUN_RESULTS
 from tests.coded import raises
+from tests.key_names import GREATEST_EDGE_DEPTH
 
 from ..simulation.straight_run import straight_run
 
@@ -59,7 +60,7 @@ def test_rows_are_the_runs_in_the_order_of_the_grid(tmp_path: Path) -> None:
     assert row["end_speed_m_per_s"] == row["greatest_speed_m_per_s"] == pytest.approx(speed, rel=1e-12)
     assert row["run_length_m"] == row["end_x_m"] == pytest.approx(speed + 5.0, rel=1e-12)  # mean speed over 2 s
     assert (row["outcome"], row["simulated_s"], row["least_turn_radius_m"]) == ("finished", 2.0, None)
-    assert row["greatest_edge_depth_mm"] == pytest.approx(8.0, rel=1e-12)
+    assert row[GREATEST_EDGE_DEPTH] == pytest.approx(8.0, rel=1e-12)
     assert row["energy_balance_error"] < 1e-12
     assert row["sledge.inertia_kg_m2"] == [5.0, 6.0, 7.0]
     assert row["snow.H_V_N_per_mm3"] == 0.2  # of the scenario

@@ -16,6 +16,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from skisnow.campaign.store import Journals, Store, replay_journal
+from tests.key_names import SNOW_DENSITY
 
 from .conftest import Served, fill, has_text, ready
 from .test_typing import begun, depths
@@ -274,4 +275,4 @@ def test_a_test_that_was_sent_when_the_lab_was_killed_is_stored_once(
     page.get_by_text("Stored: test 2.").wait_for()
     ready(page)
     has_text(page.get_by_label("Density (kg/m³)"), "33")
-    assert rows(served, "density.csv", "sample", "snow_density_kg_per_m3") == [["1", "310"], ["2", "320"]]
+    assert rows(served, "density.csv", "sample", SNOW_DENSITY) == [["1", "310"], ["2", "320"]]

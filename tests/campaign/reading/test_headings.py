@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.coded import raises
+from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
 from skisnow._support.errors import OutputError
 from skisnow.campaign import check_campaign, read_campaign
@@ -80,11 +81,11 @@ def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
             SHEAR,
             ["Versuch Nr.", "Ort", "Scherplatte", "Winkel", "Tiefe", "Hebel [mm]", "M [Nm]", "Drehwinkel", "Dichte"],
             ["experiment", "site", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm", "moment_Nm",
-             "turning_angle_deg", "snow_density_kg_per_m3"],
+             "turning_angle_deg", SNOW_DENSITY],
         ),
-        (DENSITY, ["Proben-Nr.", "Stelle", "ρ", "Schneedichte (kg/m3)"], ["sample", "site", "snow_density_kg_per_m3"]),
-        (DENSITY, ["Versuch", "Ort", "Dichte [kg/m³]"], ["sample", "site", "snow_density_kg_per_m3"]),
-        (DROP_CONE, ["Test", "Ort", "Wdh", "Fallkegel [mm]"], ["test", "site", "drop_cone_depth_mm"]),
+        (DENSITY, ["Proben-Nr.", "Stelle", "ρ", "Schneedichte (kg/m3)"], ["sample", "site", SNOW_DENSITY]),
+        (DENSITY, ["Versuch", "Ort", "Dichte [kg/m³]"], ["sample", "site", SNOW_DENSITY]),
+        (DROP_CONE, ["Test", "Ort", "Wdh", "Fallkegel [mm]"], ["test", "site", DROP_CONE_DEPTH]),
         (PENETRATION, ["Essai", "Lieu", "Outil", "Angle [°]", "Force [N]", "Profondeur [mm]"],
          ["experiment", "site", "tool", "edge_angle_deg", "load_N", "depth_mm"]),
         (PENETRATION, ["Farbe", "Kurs", "x", ""], []),

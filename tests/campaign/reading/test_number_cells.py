@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
 from skisnow import analyse, results_dict, write_reference
 from skisnow.campaign import Problem, check_campaign, read_campaign
@@ -200,8 +201,8 @@ def test_the_reference_campaign_is_not_warned_of(reference: Path) -> None:
         ("shear.csv", "moment_Nm", 1e3, "N mm"),
         ("shear.csv", "moment_Nm", 1e-3, "kN m"),
         ("shear.csv", "depth_mm", 1e-3, "m"),
-        ("density.csv", "snow_density_kg_per_m3", 1e-3, "g/cm³"),
-        ("drop_cone.csv", "drop_cone_depth_mm", 1e-3, "m"),
+        ("density.csv", SNOW_DENSITY, 1e-3, "g/cm³"),
+        ("drop_cone.csv", DROP_CONE_DEPTH, 1e-3, "m"),
     ],
 )
 def test_a_file_in_another_unit(
@@ -218,7 +219,7 @@ def test_a_file_in_another_unit(
         ("penetration.csv", "load_N", 1e-3),
         ("shear.csv", "lever_arm_mm", 1e-3),
         ("shear.csv", "moment_Nm", 1e3),
-        ("density.csv", "snow_density_kg_per_m3", 1e-3),
+        ("density.csv", SNOW_DENSITY, 1e-3),
     ],
 )
 def test_one_row_in_another_unit(reference: Path, tmp_path: Path, file: str, column: str, factor: float) -> None:

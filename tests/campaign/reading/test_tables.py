@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from tests.key_names import DROP_CONE_DEPTH
 
 from skisnow.campaign import Problem, check_campaign
 from skisnow.campaign.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, inspect_csv
@@ -112,7 +113,7 @@ def test_points_in_a_file_of_commas(write_campaign: WriteCampaign, small_campaig
     text = "test;site;repeat;drop_cone_depth_mm\nC1;S;1;12,5\nC1;S;2;13,5\nC2;S;1;1.234\n"
     problems = check_campaign(write_campaign({**small_campaign, CONE: text}))
     errors = [problem for problem in problems if problem.severity == "error"]
-    assert [where(problem) for problem in errors] == [("not_a_number", CONE, 4, "drop_cone_depth_mm", "C2", "1.234")]
+    assert [where(problem) for problem in errors] == [("not_a_number", CONE, 4, DROP_CONE_DEPTH, "C2", "1.234")]
     assert "decimal commas" in errors[0].action
     quoted = 'test,site,repeat,drop_cone_depth_mm\nC1,S,1,"12,5"\nC1,S,2,13\n'
     problems = check_campaign(write_campaign({**small_campaign, CONE: quoted}))
@@ -128,7 +129,7 @@ def test_a_cell_that_is_no_number_in_either_way_of_writing(
     text = "".join(separator.join(row) + "\n" for row in (first, *others))
     problems = check_campaign(write_campaign({**small_campaign, CONE: text}))
     (error,) = [problem for problem in problems if problem.severity == "error"]
-    assert where(error) == ("not_a_number", CONE, 4, "drop_cone_depth_mm", "C2", cell)
+    assert where(error) == ("not_a_number", CONE, 4, DROP_CONE_DEPTH, "C2", cell)
     assert f" 12{mark}5" in error.action
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.key_names import SNOW_DENSITY
 
 from skisnow import write_reference
 from skisnow.campaign import Campaign, Problem, check_campaign, read_campaign
@@ -182,7 +183,7 @@ def test_one_lever_arm_above_five_metres_is_enough(write_campaign: WriteCampaign
 @pytest.mark.parametrize(
     ("heading", "column", "cells", "unit"),
     [
-        ("Dichte", "snow_density_kg_per_m3", "0.41", "g/cm³"),
+        ("Dichte", SNOW_DENSITY, "0.41", "g/cm³"),
         ("Drehmoment", "moment_Nm", "2310", "N mm"),
         ("Tiefe", "depth_mm", "0.0058", "m"),
     ],
@@ -202,10 +203,10 @@ def test_other_quantities_below_silent_headings(
 @pytest.mark.parametrize(
     ("heading", "column", "cell", "value"),
     [
-        ("Dichte [g/cm³]", "snow_density_kg_per_m3", 0.41, 410.0),
-        ("Dichte g/cm3", "snow_density_kg_per_m3", 0.41, 410.0),
-        ("Dichte [kg/l]", "snow_density_kg_per_m3", 0.41, 410.0),
-        ("Dichte [g/l]", "snow_density_kg_per_m3", 410.0, 410.0),
+        ("Dichte [g/cm³]", SNOW_DENSITY, 0.41, 410.0),
+        ("Dichte g/cm3", SNOW_DENSITY, 0.41, 410.0),
+        ("Dichte [kg/l]", SNOW_DENSITY, 0.41, 410.0),
+        ("Dichte [g/l]", SNOW_DENSITY, 410.0, 410.0),
     ],
 )
 def test_densities_are_converted(

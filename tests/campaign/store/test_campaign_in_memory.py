@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.key_names import SNOW_DENSITY
 
 from skisnow._support.errors import FieldDataError
 from skisnow._support.messages import Message
@@ -169,8 +170,8 @@ PENETRATION = FORMS["penetration.csv"]
         ("experiment", " P1 ", "P1"),
         ("spot", "", ""),
         ("remark", "", ""),
-        ("snow_density_kg_per_m3", "350", "350"),
-        ("snow_density_kg_per_m3", " ", ""),
+        (SNOW_DENSITY, "350", "350"),
+        (SNOW_DENSITY, " ", ""),
         ("load_N", "70.5", "70.5"),
         ("load_N", "70,5", "70.5"),
         ("load_N", "70", "70"),
@@ -193,7 +194,7 @@ def test_what_is_written_down(column: str, typed: str, written: str) -> None:
         ("penetration.csv", "air_temperature_C", "nan", "not_allowed", ANY_NUMBER),
         (
             "penetration.csv",
-            "snow_density_kg_per_m3",
+            SNOW_DENSITY,
             "918",
             "not_allowed",
             Message(BETWEEN[True, False], low=0.0, high=917.0),

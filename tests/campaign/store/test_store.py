@@ -10,12 +10,12 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from sqlalchemy import text
+from sqlalchemy import func, select, text
 from tests.coded import raises
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.problems import Problem
-from skisnow.campaign.store import Store, default_path
+from skisnow.campaign.store import Store, default_path, schema
 from skisnow.campaign.store import folder as store_folder
 from skisnow.campaign.store.folder import manifest_sha256
 
@@ -99,7 +99,7 @@ def test_shared_files_are_kept_once(tmp_path: Path, place: Path) -> None:
     with Store.open(place) as store:
         ids = [store.add(one).id, store.add(two).id]
         with store.engine.connect() as connection:
-            assert connection.execute(text("SELECT count(*) FROM content")).scalar_one() == 1
+            assert connection.scalar(select(func.count()).select_from(schema.content)) == 1
         for id_, folder in zip(ids, (one, two), strict=True):
             store.export(id_, tmp_path / f"out {id_}")
             assert contents(tmp_path / f"out {id_}") == contents(folder)

@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sqlalchemy import event, text
+from sqlalchemy import event, func, select, text
 from tests.coded import raises
 
 from skisnow._support.errors import StoreError
-from skisnow.campaign.store import Store
+from skisnow.campaign.store import Store, schema
 from skisnow.campaign.store import engine as store_engine
 from skisnow.campaign.store.engine import writing
 
@@ -69,7 +69,7 @@ def test_writing_takes_the_lock_at_once_and_rolls_back(place: Path) -> None:
                 other.execute("BEGIN IMMEDIATE")
             other.close()
         with store.engine.connect() as connection:
-            assert connection.execute(text("SELECT count(*) FROM content")).scalar_one() == 0
+            assert connection.scalar(select(func.count()).select_from(schema.content)) == 0
 
 
 def test_rows_must_point_somewhere(place: Path) -> None:
@@ -81,7 +81,7 @@ def test_rows_must_point_somewhere(place: Path) -> None:
     ):
         connection.execute(text("INSERT INTO chunk VALUES ('a', 0, x'00')"))
     with Store.open(place) as store, store.engine.connect() as connection:
-        assert connection.execute(text("SELECT count(*) FROM chunk")).scalar_one() == 0
+        assert connection.scalar(select(func.count()).select_from(schema.chunk)) == 0
 
 
 def test_odd_names_of_the_store(tmp_path: Path, folder: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.coded import raises, warns
+from tests.key_names import IGNORE_RANGE_WARNING
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces.friction import (
@@ -132,7 +133,7 @@ def test_friction_switched_off_is_not_warned_of() -> None:
 
 
 @given(st.floats(0.001, 0.2), st.floats(0.1, 5.0), st.floats(1e-5, 2e-2))
-@pytest.mark.filterwarnings("ignore::skisnow._support.errors.RangeWarning")
+@pytest.mark.filterwarnings(IGNORE_RANGE_WARNING)
 def test_the_minimum_is_where_it_is_stated(dry: float, film_speed: float, slope: float) -> None:
     law = WaterFilmFriction(0.02, dry, film_speed, slope)
     best = law.speed_of_least_friction

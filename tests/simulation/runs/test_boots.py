@@ -15,6 +15,7 @@ from skisnow.scenario.boots import read_boots
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_tables import boots_text, write_boots
 from tests.coded import Coded, coded, raises
+from tests.key_names import EDGE_ANGLE, LEFT_EDGE_ANGLE, WRONG_CELL_COUNT
 
 
 def turn(**changes: object) -> Scenario:
@@ -125,11 +126,11 @@ SLOPE = "time_s," + ",".join(
     ("text", "told"),
     [
         ("time_s,left_edge_angel_deg\n0,1\n", coded("missing", name="left_edge_angel_deg")),
-        (f"{HEAD}\n0,1\n1,x\n2,3\n3,4\n", coded("not_a_number", value="x", line=3, head="left_edge_angle_deg")),
+        (f"{HEAD}\n0,1\n1,x\n2,3\n3,4\n", coded("not_a_number", value="x", line=3, head=LEFT_EDGE_ANGLE)),
         (f"{HEAD}\n0,1\n1,2\n", coded("out_of_range", n_rows=2, fewest_poses=4)),
         (f"{HEAD}\n0,1\n1,2\n1,3\n2,4\n", coded("not_rising", line=4, clock="time_s")),
         ("left_edge_angle_deg\n0\n", "missing"),
-        (f"{HEAD}\n0,1,2\n", coded("wrong_number_of_cells", line=2, n_row=3, n_head=2)),
+        (f"{HEAD}\n0,1,2\n", coded(WRONG_CELL_COUNT, line=2, n_row=3, n_head=2)),
         (SLOPE.replace(",left_pitch_deg", "") + "\n", coded("missing", name="left_pitch_deg")),
         (
             SLOPE.replace("time_s", "distance_m") + "\n" + "\n".join(f"{i}" + ",0" * 12 for i in range(4)),
@@ -249,7 +250,7 @@ def test_a_control_that_is_due_within_rounding_of_an_output_ends(short_by: float
 
     def look(at: float, _: float) -> None:
         looks.append(at)
-        assert len(looks) < 100, "the time stands still"
+        assert len(looks) < 100
 
     class Still:
         period = 0.01 - short_by
@@ -292,7 +293,7 @@ def force_by_inertia(run: Run) -> np.ndarray:
     "changes",
     [
         {},
-        {"sledge.edge_angle_deg": -30.0, "start.heading_deg": 30.0},
+        {EDGE_ANGLE: -30.0, "start.heading_deg": 30.0},
         {"friction.mu_0": 0.1, "friction.acts_on": "base-normal"},
         {"snow.S_f_N_per_mm2": 0.1},
     ],

@@ -14,6 +14,7 @@ from skisnow.scenario import load_scenario
 from skisnow.simulation.run import LOST
 from skisnow.simulation.simulated_run import simulate
 from skisnow.simulation.verification import refine, verification_dict
+from tests.key_names import DAMPING, EDGE_ANGLE
 
 from ...carving.synthetic import circular_sidecut
 from ...contact.conftest import edged, straight
@@ -145,11 +146,11 @@ def test_friction_that_falls_with_speed_never_drives_the_ski() -> None:
     "changes",
     [
         # a dashpot whose force changes much within the error of a step
-        {"snow.damping_N_s_per_mm3": 1.6, "snow.compaction_resistance": False, "solver.tolerance_mm": 0.48,
+        {DAMPING: 1.6, "snow.compaction_resistance": False, "solver.tolerance_mm": 0.48,
          "start.heading_deg": -145.0},
         # a start that the dashpot brakes within a first step
-        {"snow.damping_N_s_per_mm3": 4.8, "snow.H_V_N_per_mm3": 0.004, "sledge.mass_kg": 11.0,
-         "sledge.edge_angle_deg": -80.0, "sledge.inertia_kg_m2": [6.6, 6.6, 6.6], "start.speed_m_per_s": 1.0},
+        {DAMPING: 4.8, "snow.H_V_N_per_mm3": 0.004, "sledge.mass_kg": 11.0,
+         EDGE_ANGLE: -80.0, "sledge.inertia_kg_m2": [6.6, 6.6, 6.6], "start.speed_m_per_s": 1.0},
     ],
 )  # fmt: skip
 def test_a_strong_dashpot_closes(changes: dict[str, object]) -> None:

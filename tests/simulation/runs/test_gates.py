@@ -152,6 +152,12 @@ def test_track_with_a_course_on_the_command_line(tmp_path: Path, capsys: pytest.
     assert (told["gates_passed"], told["gates_missed"]) == (2, ["3"])
     assert told["gate_times_s"] == pytest.approx([0.8, 1.7, 2.5], abs=1e-6)
     assert (tmp_path / "o" / "figures" / "course.png").is_file()
-    assert (tmp_path / "o" / "gates.csv").read_text(encoding="utf-8").startswith("gate,side,outcome,time_s,")
+    table = (tmp_path / "o" / "gates.csv").read_text(encoding="utf-8")
+    assert table.split(",")[:4] == [
+        "gate",
+        "side",
+        "outcome",
+        "time_s",
+    ]
     with pytest.raises(SystemExit):
         main(["track", str(tmp_path / "track.csv"), "--discipline", "slalom"])

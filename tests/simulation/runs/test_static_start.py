@@ -16,6 +16,7 @@ from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.run_record import at_nodes
 from skisnow.simulation.run_setup import set_up
 from skisnow.simulation.simulated_run import simulate
+from tests.key_names import EDGE_ANGLE
 
 from ...carving.synthetic import snow
 from ..beyond_ranges import beyond
@@ -63,7 +64,7 @@ HARD_STARTS = ((60.0, 1.0), (50.0, 5.0), (45.0, 10.0), (40.0, 20.0), (45.0, 20.0
 @pytest.mark.parametrize(("edge_angle", "hardness"), [*HARD_STARTS, (0.0, 0.002), (70.0, 0.2)])
 def test_edges_on_hard_snow_find_their_balance(edge_angle: float, hardness: float) -> None:
     """Of 800 N nothing is left but rounding."""
-    assert out_of_balance({"sledge.edge_angle_deg": edge_angle, "snow.H_V_N_per_mm3": hardness}) < 1e-5
+    assert out_of_balance({EDGE_ANGLE: edge_angle, "snow.H_V_N_per_mm3": hardness}) < 1e-5
 
 
 @pytest.mark.slow

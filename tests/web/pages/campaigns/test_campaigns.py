@@ -147,6 +147,7 @@ def stored_description(desk: Desk) -> dict[str, Any]:
     return tomllib.loads(EditSession(desk.lab, head.id).campaign.description)
 
 
+CAMPAIGN_NAME = "Name of the campaign"
 LOADS = "Disc loads (N), with blanks between"
 STORE = "Store and enter tests"
 
@@ -157,7 +158,7 @@ def test_the_form_of_a_new_campaign_has_the_published_discs_and_tool(desk: Desk)
     tool = [page.field(f"{name} of tool 1").value for name in ("Name", "Shape", "Length (mm)", "Width (mm)")]
     assert tool == ["ski piece", "ski", "200", "62"]
     assert [page.field(f"{name} of plate 1").value for name in ("Name", "Length (mm)")] == ["plate", "100"]
-    assert page.focused() is page.field("Name of the campaign")
+    assert page.focused() is page.field(CAMPAIGN_NAME)
     assert list(page.field("Shape of tool 1").options) == ["ski", "disc", "cylinder"]
     assert page.at_first.count("lab.answered(0, true)") == 1
     (status,) = page.of(StatusLine)
@@ -171,7 +172,7 @@ def test_the_form_of_a_new_campaign_has_the_published_discs_and_tool(desk: Desk)
 
 def test_a_new_campaign_is_stored_as_it_is_typed(desk: Desk) -> None:
     page = desk.open("/describe")
-    page.fill("Name of the campaign", " Slope ")
+    page.fill(CAMPAIGN_NAME, " Slope ")
     page.fill("Place", " a hill ")
     page.fill("Observers, with commas between", "Ada, ,Bo ")
     page.fill("Disc loads (N), with blanks between", "20; 40,5")
@@ -191,7 +192,7 @@ def test_a_new_campaign_is_stored_as_it_is_typed(desk: Desk) -> None:
 
 def test_a_campaign_that_is_sent_twice_is_begun_once(desk: Desk) -> None:
     page = desk.open("/describe")
-    page.fill("Name of the campaign", "Slope")
+    page.fill(CAMPAIGN_NAME, "Slope")
     (button,) = (each for each in page.tagged("q-btn") if each.text == "Store and enter tests")
     page.fire(button, "click", {"number": 1, "once": "a"})
     page.fire(button, "click", {"number": 2, "once": "a"})
@@ -203,12 +204,12 @@ def test_a_campaign_that_is_sent_twice_is_begun_once(desk: Desk) -> None:
     ("typed", "code"),
     [
         ({}, "no_name"),
-        ({"Name of the campaign": "  "}, "no_name"),
-        ({"Name of the campaign": "S", LOADS: "20 x"}, "not_a_number"),
-        ({"Name of the campaign": "S", "Uncertainty of the load (N)": "much"}, "not_a_number"),
-        ({"Name of the campaign": "S", "Width (mm) of tool 1": "wide"}, "not_a_number"),
-        ({"Name of the campaign": "S", "Name of tool 1": ""}, "no_name"),
-        ({"Name of the campaign": "S", "Name of plate 1": " "}, "no_name"),
+        ({CAMPAIGN_NAME: "  "}, "no_name"),
+        ({CAMPAIGN_NAME: "S", LOADS: "20 x"}, "not_a_number"),
+        ({CAMPAIGN_NAME: "S", "Uncertainty of the load (N)": "much"}, "not_a_number"),
+        ({CAMPAIGN_NAME: "S", "Width (mm) of tool 1": "wide"}, "not_a_number"),
+        ({CAMPAIGN_NAME: "S", "Name of tool 1": ""}, "no_name"),
+        ({CAMPAIGN_NAME: "S", "Name of plate 1": " "}, "no_name"),
     ],
 )
 def test_a_description_that_cannot_be_stored_is_rejected_and_stays(

@@ -3,6 +3,8 @@
 import pytest
 from nicegui import ui
 
+from tests.key_names import DROP_CONE_DEPTH
+
 from ..desk import Desk, Sheet, values
 from .shared import (
     CANCEL,
@@ -126,7 +128,7 @@ def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=drop_cone.csv")
     store(page, name="c", site="A", cone="12")
-    assert stored(desk, id_, DROP_CONE, "c") == [{"test": "c", "site": "A", "repeat": "1", "drop_cone_depth_mm": "12"}]
+    assert stored(desk, id_, DROP_CONE, "c") == [{"test": "c", "site": "A", "repeat": "1", DROP_CONE_DEPTH: "12"}]
     assert list(values(page.between("h2 New test", "button[main] Store")).values()) == ["c", "A", "2", ""]
     store(page, cone="13")
     assert [entry.position for entry in history(desk, id_)] == [0, 1]
@@ -235,7 +237,7 @@ def test_a_cancelled_test_of_one_row_says_so(desk: Desk) -> None:
     page.fill("Why", "slip")
     page.press("Cancel the test")
     assert page.between("h2 Correct a test")[1] == "[bad] Cancelled: slip"
-    assert "slip" in page.shows("Name of the test 1 · ")
+    assert "slip" in page.shows(f"{NAME} 1 · ")
     page.press(undo_button(page))
     page.press(undo_button(page))
     assert "h2 New test" in page.outline()
