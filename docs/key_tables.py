@@ -64,7 +64,7 @@ def cell(text: str) -> str:
 TABLES = {
     "scenario": page_table(SCENARIO_KEYS.values()),
     "carve": page_table(CARVE_KEYS.values()),
-    "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "left out")),
+    "ski": page_table(SKI_KEYS.values(), ("key", "meaning", "unit", "range", "usual", "default")),
     "campaign": page_table(CAMPAIGN_KEYS.values(), ("key", "unit", "range", "meaning")),
     "snow_micro_pen": page_table(own_quantities(SnowMicroPenSettings), ("key", "unit", "range", "default", "meaning")),
     "weather": page_table(own_quantities(WeatherSettings), ("key", "unit", "range", "default", "meaning")),
