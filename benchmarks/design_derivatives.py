@@ -10,6 +10,7 @@ import time
 from typing import Any, Final
 
 import numpy as np
+import scipy.optimize  # noqa: F401 - its import does not count
 
 from skisnow._support.arrays import FloatArray
 from skisnow.design.evaluation import Evaluator

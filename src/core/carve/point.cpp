@@ -14,30 +14,48 @@ namespace {
 
 constexpr int MOST_PLACES = 11;
 constexpr int MOST_CORRECTIONS = 6;
-constexpr double ALMOST = 1e-10, ROUNDING = 1e-15;  // (m) last corrections
+constexpr double ALMOST = 1e-11, ROUNDING = 1e-15;  // (m) last corrections
 constexpr double FAR_ABOVE = -1e3;                  // depth (m) that marks untouched snow
+constexpr double LEAST_EXCESS = 1e-12;              // k_u - H_V over H_V that elastic snow is differentiated at
 
-// Directions in which the forces on a section are differentiated; GROOVE and above: depth of the groove at each place.
-enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, LINE, REACH, BEVEL_END, ROUND_END, GROOVE };
-constexpr int DIRECTIONS = GROOVE + MOST_PLACES;
-using Number = Slopes<DIRECTIONS>;
+// Numbers of a section that the sum is differentiated by.
+enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, NUMBERS };
+// And those that the places across depend on.
+enum OfPlaces { LINE, REACH, BEVEL_END, ROUND_END, OF_PLACES };
+using Place = Slopes<OF_PLACES>;
 
-// Factors by which a section's force, moment and depths count in a sum.
-struct Shares {
-  double force, moment, edge, other;
+// Growth of a force and of its moment with one number of a piece.
+struct Pair {
+  double force, moment;
+
+  double sum(const Pair& share) const { return share.force * force + share.moment * moment; }
+};
+
+// Growth of a piece's force with its own numbers; the depths of base and groove at both ends, the groove less the drop
+// to the next place.
+struct Piece {
+  std::size_t place;
+  bool cut;  // ends with the base
+  double start, end, drop;
+  Pair depth[2], groove[2], from, length, hardness, excess;
 };
 
 struct Felt {  // a section in the snow, or that deepens the groove
   bool touches = false;
   bool deepens[MOST_PLACES] = {};
-  double sine, cosine, deflection, corner, angle;
-  Number force, moment, edge, other;
-
-  double sum(const Shares& share, int along) const {
-    return share.force * force.by[along] + share.moment * moment.by[along] + share.edge * edge.by[along] +
-           share.other * other.by[along];
-  }
+  double deflection, angle, other;
+  double by_bevel[EdgeShape::HINGES] = {};  // growth of the rises with the bevel
+  CarveSection section;
+  double force = 0.0, moment = 0.0;
+  std::size_t begin = 0, end = 0;  // its pieces
 };
+
+// Growth of an integral over [start, start + length] with a line's values at both ends, by its moments.
+void add_ends(const double (&by)[3], double start, double length, Pair (&ends)[2]) {
+  const double far = (by[1] - start * by[0]) / length, far_moment = (by[2] - start * by[1]) / length;
+  ends[0] = {by[0] - far, by[1] - far_moment};
+  ends[1] = {far, far_moment};
+}
 
 }  // namespace
 
@@ -45,95 +63,154 @@ struct Felt {  // a section in the snow, or that deepens the groove
 struct CarvePoint::Passed {
   const CarvedSki& ski;
   const CarveConditions given;
+  const EdgeShape edges;
+  const bool ground;
   double bevel_width, round_width, sine, cosine;
-  std::vector<Number> place;
+  std::vector<Place> place;
   std::vector<Felt> felt;
+  std::vector<Piece> pieces;
 
   Passed(const CarvedSki& of, const CarveConditions& conditions, const std::vector<double>& own_place,
          const CarveState& at)
       : ski(of),
         given(conditions),
+        edges(conditions.edges()),
+        ground(edges.acts()),
         bevel_width(conditions.bevel > 0.0 ? conditions.bevel_width : 0.0),
-        round_width(conditions.edges().width(1)),
+        round_width(edges.width(1)),
         sine(std::sin(conditions.edge_angle)),
         cosine(std::cos(conditions.edge_angle)) {
     if (own_place.empty())
-      place = places_across(Number::along(straight_waterline(ski, given), LINE),
-                            Number::along(ski.greatest_width * cosine, REACH),
-                            {bevel_width > 0.0 ? Number::along(bevel_width * cosine, BEVEL_END) : Number(0.0),
-                             round_width > 0.0 ? Number::along(round_width * cosine, ROUND_END) : Number(0.0)});
+      place = places_across(Place::along(straight_waterline(ski, given), LINE),
+                            Place::along(ski.greatest_width * cosine, REACH),
+                            {bevel_width > 0.0 ? Place::along(bevel_width * cosine, BEVEL_END) : Place(0.0),
+                             round_width > 0.0 ? Place::along(round_width * cosine, ROUND_END) : Place(0.0)});
     else
       place.assign(own_place.begin(), own_place.end());
     if (place.size() > MOST_PLACES) throw std::invalid_argument("too many places for derivatives");
-    std::vector<Number> groove;
-    for (std::size_t k = 0; k < place.size(); k++) groove.push_back(Number::along(FAR_ABOVE, GROOVE + int(k)));
+    std::vector<double> groove(place.size(), FAR_ABOVE);
     felt.resize(ski.stations.size());
+    pieces.reserve(4 * felt.size());
     for (std::size_t i = 0; i < felt.size(); i++) feel(ski.stations[i], at, groove, felt[i]);
   }
 
-  SectionIn<Number> section(const CarveStation& s, const Felt& f) const {
-    const Number angle = Number::along(f.angle, ANGLE), bevel = Number::along(given.bevel, BEVEL);
-    SectionIn<Number> out(Number::along(f.corner, CORNER), angle, Number::along(s.half_width, HALF), bevel,
-                          bevel_width > 0.0 ? Number::along(bevel_width, BEVEL_WIDTH) : Number(0.0));
-    round_off(out, angle, bevel);
-    return out;
-  }
-
-  template <class T>
-  void round_off(SectionIn<T>& section, const T& angle, const T& bevel) const {
-    if (round_width > 0.0) section.round_off(angle - bevel, T(0.5) * (T(given.side) + bevel), given.radius);
-  }
-
-  void feel(const CarveStation& s, const CarveState& at, std::vector<Number>& groove, Felt& f) {
+  void feel(const CarveStation& s, const CarveState& at, std::vector<double>& groove, Felt& f) {
     const double* u = at.u.data() + s.first;
     f.deflection = 0.0, f.angle = given.edge_angle;
     for (int a = 0; a < 4; a++) f.deflection += s.deflection[a] * u[BENDS[a]];
     for (int a = 0; a < 2 && given.twists; a++) f.angle += s.twist[a] * u[TURNS[a]];
-    f.sine = std::sin(f.angle), f.cosine = std::cos(f.angle);
-    f.corner = at.border[0] + at.border[1] * s.place - cosine * (s.base_height + f.deflection) + s.half_width * f.sine;
-    SectionIn<double> flat(f.corner, f.angle, s.half_width, given.bevel, bevel_width);
-    round_off(flat, f.angle, given.bevel);
-    std::vector<double> depth;
-    for (const Number& each : place) depth.push_back(flat.base_depth(each.value));
-    const bool deep = *std::max_element(depth.begin(), depth.end()) > 0.0 || flat.other_depth() > 0.0;
-    f.touches = deep || flat.edge_depth() > 0.0;
-    if (f.touches) {
-      const auto in_snow = section(s, f);
-      add_strips(in_snow, groove, f);
-      f.edge = in_snow.edge_depth(), f.other = in_snow.other_depth();
-    }
+    CarveSection& section = f.section;
+    section.half = s.half_width;
+    section.sine = std::sin(f.angle), section.cosine = std::cos(f.angle);
+    section.tangent = section.sine / section.cosine;
+    section.corner = section.depth =
+        at.border[0] + at.border[1] * s.place - cosine * (s.base_height + f.deflection) + s.half_width * section.sine;
+    section.reach = 2.0 * section.half * section.cosine;
+    if (ground) section.grind(edges), grow_with_bevel(f);
+    f.other = section.corner - 2.0 * section.half * section.sine;
+    f.touches = section.depth > 0.0 || f.other > 0.0;
+    f.begin = pieces.size();
+    double depth[MOST_PLACES];
     for (std::size_t k = 0; k < place.size(); k++) {
-      f.deepens[k] = depth[k] >= groove[k].value;
-      if (f.deepens[k]) groove[k].value = depth[k];
+      depth[k] = section.base_depth(place[k].value);
+      f.touches = f.touches || depth[k] > 0.0;
+    }
+    if (f.touches) add_pieces(depth, groove, f);
+    f.end = pieces.size();
+    for (std::size_t k = 0; k < place.size(); k++) {
+      f.deepens[k] = depth[k] >= groove[k];
+      if (f.deepens[k]) groove[k] = depth[k];
     }
   }
 
-  // As `strip_across`: each piece is differentiated by its own eight numbers, then these by the section's.
-  void add_strips(const SectionIn<Number>& section, const std::vector<Number>& groove, Felt& f) const {
-    using Local = Slopes<8>;
-    const Number reach = section.reach();
-    for (std::size_t k = 0; k + 1 < place.size() && place[k] < reach; k++) {
-      const bool cut = !(place[k + 1] < reach);
-      const Number &start = place[k], &end = cut ? reach : place[k + 1], length = end - start;
-      const Number depth[2] = {section.base_depth(start), section.base_depth(end)};
-      if (!(depth[0].value > 0.0) && !(depth[1].value > 0.0)) continue;
-      const Number far =
-          cut ? groove[k] + length / (place[k + 1] - start) * (groove[k + 1] - groove[k]) : groove[k + 1];
-      const Number* own[] = {&start, &length, &depth[0], &depth[1], &groove[k], &far};
-      Local local[8];
-      for (int m = 0; m < 6; m++) local[m] = Local::along(own[m]->value, m);
-      local[6] = Local::along(given.hardness, 6), local[7] = Local::along(given.excess, 7);
-      StripIn<Local> sums;
-      sums.add(local[0], local[1], {local[2], local[3]}, {local[4] - local[2], local[5] - local[3]}, local[6],
-               local[7]);
-      const auto chain = [&](const Local& sum, Number& out) {
-        out.value += sum.value;
-        for (int m = 0; m < 6; m++)
-          for (int n = 0; n < DIRECTIONS; n++) out.by[n] += sum.by[m] * own[m]->by[n];
-        out.by[HARDNESS] += sum.by[6], out.by[EXCESS] += sum.by[7];
-      };
-      chain(sums.force, f.force);
-      chain(sums.moment, f.moment);
+  // Growth of the rises with the bevel: the angle of strip and snow falls by it, that of the corner rises by half.
+  void grow_with_bevel(Felt& f) const {
+    if (!(bevel_width > 0.0)) return;
+    const double tangent = given.radius > 0.0 ? given.radius / round_width : 0.0;
+    const double on_strip = f.angle - given.bevel, strip_sine = std::sin(on_strip), strip_cosine = std::cos(on_strip);
+    f.by_bevel[0] = strip_cosine;
+    if (f.section.rise[1] > 0.0)
+      f.by_bevel[1] = strip_sine * tangent - strip_cosine - 0.5 * (1.0 - strip_cosine) * (1.0 + tangent * tangent);
+  }
+
+  void add_pieces(const double (&depth)[MOST_PLACES], const std::vector<double>& groove, Felt& f) {
+    const double reach = f.section.reach;
+    for (std::size_t k = 0; k + 1 < place.size() && place[k].value < reach; k++) {
+      Piece piece;
+      piece.place = k, piece.cut = !(place[k + 1].value < reach);
+      piece.start = place[k].value, piece.end = piece.cut ? reach : place[k + 1].value;
+      const double far = piece.cut ? f.section.base_depth(reach) : depth[k + 1];
+      if (!(depth[k] > 0.0) && !(far > 0.0)) continue;
+      const double length = piece.end - piece.start, spacing = place[k + 1].value - piece.start;
+      piece.drop = groove[k + 1] - groove[k];
+      const double lift[2] = {groove[k] - depth[k],
+                              (piece.cut ? groove[k] + length / spacing * piece.drop : groove[k + 1]) - far};
+      add_piece(piece, length, {depth[k], far}, lift, f);
+      pieces.push_back(piece);
+    }
+  }
+
+  // [piece] Force and moment are linear in H and E, and the force in the length.
+  void add_piece(Piece& piece, double length, const double (&depth)[2], const double (&lift)[2], Felt& f) const {
+    const double excess = std::max(given.excess, LEAST_EXCESS * given.hardness);
+    StripSums sums;
+    sums.add_interval(piece.start, length, depth[0], depth[1], depth[0] + lift[0], depth[1] + lift[1], given.hardness,
+                      excess);
+    f.force += sums.force, f.moment += sums.moment;
+    add_ends(sums.by_depth, piece.start, length, piece.depth);
+    add_ends(sums.by_groove, piece.start, length, piece.groove);
+    piece.from = {0.0, sums.force};
+    piece.length = {sums.force / length, (2.0 * sums.moment - piece.start * sums.force) / length};
+    const double slope = (lift[1] - lift[0]) / length, level = lift[0] - slope * piece.start;
+    const auto lifted = [&](int n) { return (level * sums.by_groove[n] + slope * sums.by_groove[n + 1]) / excess; };
+    piece.excess = {lifted(0), lifted(1)};
+    piece.hardness = {(sums.force - excess * piece.excess.force) / given.hardness,
+                      (sums.moment - excess * piece.excess.moment) / given.hardness};
+  }
+
+  // Add the growth of `weight` times the depth of the base at ξ; returns that with ξ.
+  double add_depth(const Felt& f, double weight, double xi, double (&by)[NUMBERS]) const {
+    const CarveSection& section = f.section;
+    by[CORNER] += weight;
+    by[ANGLE] += weight * section.base_by_angle(xi);
+    double by_place = -section.tangent;
+    if (!ground) return weight * by_place;
+    for (int h = 0; h < EdgeShape::HINGES; h++) {
+      const double left = edges.width(h) - xi / section.cosine;
+      if (!(left > 0.0)) continue;
+      by_place += section.rise[h] / section.cosine;
+      by[BEVEL] -= weight * left * f.by_bevel[h];
+      if (h == 0) by[BEVEL_WIDTH] -= weight * section.rise[0];
+      // the rounding's width, r cot(γ/2), falls with half the bevel
+      if (h == 1 && bevel_width > 0.0)
+        by[BEVEL] += 0.5 * weight * section.rise[1] * (given.radius + round_width * round_width / given.radius);
+    }
+    return weight * by_place;
+  }
+
+  // Growth of a piece's share of the sum, with the section, the groove at each place, and the places.
+  void add_growth(const Felt& f, const Piece& piece, const Pair& share, double (&by)[NUMBERS],
+                  double (&back)[MOST_PLACES], double (&by_place)[MOST_PLACES]) const {
+    const std::size_t k = piece.place;
+    const double groove = piece.groove[1].sum(share);
+    double by_length = piece.length.sum(share), share_of_next = 1.0;
+    if (piece.cut) {
+      const double spacing = place[k + 1].value - piece.start;
+      share_of_next = (piece.end - piece.start) / spacing;
+      by_length += groove * piece.drop / spacing;
+      by_place[k + 1] -= groove * piece.drop * share_of_next / spacing;
+      by_place[k] += groove * piece.drop * share_of_next / spacing;
+    }
+    back[k] += piece.groove[0].sum(share) + groove * (1.0 - share_of_next);
+    back[k + 1] += groove * share_of_next;
+    by[HARDNESS] += piece.hardness.sum(share), by[EXCESS] += piece.excess.sum(share);
+    by_place[k] += piece.from.sum(share) - by_length + add_depth(f, piece.depth[0].sum(share), piece.start, by);
+    const double by_end = by_length + add_depth(f, piece.depth[1].sum(share), piece.end, by);
+    if (piece.cut) {
+      by[HALF] += 2.0 * by_end * f.section.cosine;
+      by[ANGLE] -= 2.0 * by_end * f.section.half * f.section.sine;
+    } else {
+      by_place[k + 1] += by_end;
     }
   }
 
@@ -141,7 +218,7 @@ struct CarvePoint::Passed {
   CarveGradient backward(const CarveState& at, CarveState adjoint, const CarveSeed& seed, CarveState& by_state) const;
 
  private:
-  void through_places(CarveGradient& out, const double (&by)[GROOVE]) const;
+  void through_places(CarveGradient& out, const double (&by)[OF_PLACES]) const;
 };
 
 // [backward] From tail to tip. `back`: how the sum grows with the groove's depth at each place, behind the station.
@@ -155,17 +232,15 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
   const double *mu = adjoint.border.data(), stress = at.border[2], shears = given.side_force_bending ? 1.0 : 0.0;
   const double by_force = given.pitch_of_force, by_shear = given.pitch_of_shear;
   const bool reacts = given.by_reaction;
-  double back[MOST_PLACES] = {}, by_places[GROOVE] = {};
+  double back[MOST_PLACES] = {}, by_place[MOST_PLACES] = {};
   for (std::size_t i = n; i-- > 0;) {
     const CarveStation& s = ski.stations[i];
     const Felt& f = felt[i];
-    double by[GROOVE] = {};  // growth of the sum with the section's own numbers
+    const CarveSection& section = f.section;
+    double by[NUMBERS] = {};  // growth of the sum with the section's own numbers
     for (std::size_t k = 0; k < places; k++) {
       if (!f.deepens[k]) continue;
-      if (back[k] != 0.0) {
-        const Number depth = section(s, f).base_depth(place[k]);
-        for (int along = 0; along < GROOVE; along++) by[along] += back[k] * depth.by[along];
-      }
+      if (back[k] != 0.0) by_place[k] += add_depth(f, back[k], place[k].value, by);
       back[k] = 0.0;
     }
     if (f.touches) {
@@ -173,23 +248,26 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
       double bends = 0.0, turns = 0.0;
       for (int a = 0; a < 4; a++) bends += s.deflection[a] * l[BENDS[a]];
       for (int a = 0; a < 2 && given.twists; a++) turns += s.twist[a] * l[TURNS[a]];
-      const double w = s.weight, half = s.half_width, force = f.force.value;
-      const double bite = reacts ? force : std::max(f.edge.value, 0.0);
-      const double turned = reacts ? bite : bite - 2.0 * std::max(f.other.value, 0.0);
+      const double w = s.weight, half = s.half_width, force = f.force;
+      const double bite = reacts ? force : std::max(section.depth, 0.0);
+      const double turned = reacts ? bite : bite - 2.0 * std::max(f.other, 0.0);
       const double normal = cosine * force + shears * sine * stress * bite;
-      const double moment = f.moment.value - half * f.cosine * force - shears * half * f.sine * stress * turned;
+      const double moment = f.moment - half * section.cosine * force - shears * half * section.sine * stress * turned;
       const double pitch = by_force * force + by_shear * stress * bite;
       const double held = reacts ? 0.0 : stress * bite;  // by reaction the load alone draws the side force
       const double by_bite = w * stress * (mu[1] * s.place * by_shear - bends * shears * sine + (reacts ? 0.0 : mu[2]));
-      const double by_turned = w * stress * turns * shears * half * f.sine;
-      const double by_load = w * (mu[0] + mu[1] * s.place * by_force - bends * cosine + turns * half * f.cosine);
-      const Shares share{by_load + seed.force[i] + (reacts ? by_bite + by_turned : 0.0), -w * turns,
-                         seed.depth[i] + (!reacts && f.edge.value > 0.0 ? by_bite + by_turned : 0.0),
-                         !reacts && f.other.value > 0.0 ? -2.0 * by_turned : 0.0};
-      for (int along = 0; along < GROOVE; along++) by[along] += f.sum(share, along);
-      for (std::size_t k = 0; k < places; k++) back[k] += f.sum(share, GROOVE + int(k));
-      by[ANGLE] -= w * turns * half * (f.sine * force - shears * f.cosine * stress * turned);
-      by[HALF] += w * turns * (f.cosine * force + shears * f.sine * stress * turned);
+      const double by_turned = w * stress * turns * shears * half * section.sine;
+      const double by_load = w * (mu[0] + mu[1] * s.place * by_force - bends * cosine + turns * half * section.cosine);
+      const Pair share{by_load + seed.force[i] + (reacts ? by_bite + by_turned : 0.0), -w * turns};
+      for (std::size_t m = f.begin; m < f.end; m++) add_growth(f, pieces[m], share, by, back, by_place);
+      add_depth(f, seed.depth[i] + (!reacts && section.depth > 0.0 ? by_bite + by_turned : 0.0), 0.0, by);
+      if (!reacts && f.other > 0.0) {
+        by[CORNER] -= 2.0 * by_turned;
+        by[HALF] += 4.0 * by_turned * section.sine;
+        by[ANGLE] += 4.0 * by_turned * half * section.cosine;
+      }
+      by[ANGLE] -= w * turns * half * (section.sine * force - shears * section.cosine * stress * turned);
+      by[HALF] += w * turns * (section.cosine * force + shears * section.sine * stress * turned);
       out.weight[i] = mu[0] * force + mu[1] * s.place * pitch + mu[2] * held - bends * normal - turns * moment;
       out.place[i] = w * mu[1] * pitch;
       out.normal[i] = w * normal;
@@ -197,33 +275,34 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
       out.pitch_of_force += w * mu[1] * s.place * force;
       out.pitch_of_shear += w * mu[1] * s.place * stress * bite;
       by_state.border[2] += w * ((mu[1] * s.place * by_shear - bends * shears * sine) * bite +
-                                 turns * shears * half * f.sine * turned + (reacts ? 0.0 : mu[2] * bite));
+                                 turns * shears * half * section.sine * turned + (reacts ? 0.0 : mu[2] * bite));
     } else if (seed.depth[i] != 0.0) {  // a prescribed depth above the snow
-      const Number edge = section(s, f).edge_depth();
-      for (int along = 0; along < GROOVE; along++) by[along] += seed.depth[i] * edge.by[along];
+      add_depth(f, seed.depth[i], 0.0, by);
     }
-    const double corner = by[CORNER], angle = by[ANGLE] + corner * s.half_width * f.cosine;
-    out.width[i] = 0.5 * (by[HALF] + corner * f.sine);
+    const double corner = by[CORNER], angle = by[ANGLE] + corner * s.half_width * section.cosine;
+    out.width[i] = 0.5 * (by[HALF] + corner * section.sine);
     out.base_height[i] = -cosine * corner;
     out.deflection[i] = -cosine * corner;
     out.place[i] += corner * at.border[1];
     out.edge_angle += angle + corner * sine * (s.base_height + f.deflection);
     out.hardness += by[HARDNESS], out.excess += by[EXCESS];
     out.bevel += by[BEVEL], out.bevel_width += by[BEVEL_WIDTH];
-    for (int along = LINE; along < GROOVE; along++) by_places[along] += by[along];
     by_state.border[0] += corner, by_state.border[1] += corner * s.place;
     for (int a = 0; a < 4; a++) by_state.u[std::size_t(s.first + BENDS[a])] -= cosine * s.deflection[a] * corner;
     for (int a = 0; a < 2 && given.twists; a++) by_state.u[std::size_t(s.first + TURNS[a])] += s.twist[a] * angle;
   }
   out.load -= mu[0], out.moment -= mu[1], out.side_force -= mu[2];
   if (reacts) out.load += mu[2] * stress, by_state.border[2] += mu[2] * given.load;
-  through_places(out, by_places);
+  double by_origins[OF_PLACES] = {};
+  for (std::size_t k = 0; k < places; k++)
+    for (int m = 0; m < OF_PLACES; m++) by_origins[m] += by_place[k] * place[k].by[m];
+  through_places(out, by_origins);
   out.adjoint = std::move(adjoint);
   return out;
 }
 
 // The places across depend on the question: the chain rule through `straight_waterline` and the widths.
-void CarvePoint::Passed::through_places(CarveGradient& out, const double (&by)[GROOVE]) const {
+void CarvePoint::Passed::through_places(CarveGradient& out, const double (&by)[OF_PLACES]) const {
   const double line = straight_waterline(ski, given), tangent = std::tan(given.edge_angle), by_line = by[LINE];
   out.load += 0.5 * by_line * line / given.load;
   out.hardness -= 0.5 * by_line * line / given.hardness;
@@ -269,7 +348,6 @@ void CarvePoint::refine() {
     for (std::size_t a = 0; a < CARVE_BORDER; a++) state_.border[a] += step.border[a];
     if (last_correction_ < ROUNDING) break;
   }
-  factor();
 }
 
 CarveGradient CarvePoint::gradient(const CarveSeed& seed) {

@@ -165,6 +165,8 @@ void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, co
             [](Long) {});
   for (std::size_t j = 0; j < sum.residual.size(); j++) system.residual[j] = double(sum.residual[j]);
   for (int a = 0; a < CARVE_BORDER; a++) system.border_residual[a] = double(sum.border[a]);
+  for (std::size_t i = 0; i < sum.depth.size(); i++)
+    system.depth[i] = double(sum.depth[i]), system.force[i] = double(sum.force[i]);
 }
 
 CarveGrowth growth_along(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& own_place,

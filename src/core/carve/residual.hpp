@@ -164,7 +164,7 @@ StripIn<T> strip_across(const SectionIn<T>& section, const std::vector<T>& place
   return out;
 }
 
-// Residual of all equations in more digits than they are solved in, rounded at the end into `system`.
+// Residual of all equations, depth and force in more digits than they are solved in, rounded at the end into `system`.
 void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& place,
                      const CarveState& at, CarveEquations& system);
 

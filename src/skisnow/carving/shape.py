@@ -132,26 +132,37 @@ def _stiffer(here: Shape, ski: Ski, attribute: str, growth: FloatArray) -> Shape
     return replace(here.combined(here, 0.0, 0.0), **{column: table})
 
 
+@functools.lru_cache(maxsize=32)
+def _curvature(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
+    """Lengths of the elements, and their shapes of curvature at the Gauss points."""
+    length = _lengths(model)
+    return length, curvature_shape(GAUSS_POINTS[None, :], length[:, None])
+
+
 def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
     """Growth of the beam's elastic forces at the same unknowns (size,)."""
+    out, lengthens = np.zeros(model.size), growth.length.any()
+    if not (lengthens or growth.bending.any() or growth.torsion.any()):
+        return out
     value = _values(model, u)
-    length = _lengths(model)
-    curvature = curvature_shape(GAUSS_POINTS[None, :], length[:, None])
-    stiff = model.ski.at(model.node[:-1, None] - length[:, None] * GAUSS_POINTS)
+    length, curvature = _curvature(model)
     kappa = np.einsum("ngi,ni->ng", curvature, value)
-    stretch = (growth.length / length)[:, None, None]
-    # shapes of curvature fall as 1/ℓ² with deflections and as 1/ℓ with slopes
-    falls = -stretch * np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
     weight = GAUSS_WEIGHTS * length[:, None]
-    moment = stiff.bending_stiffness * kappa
-    grown = growth.bending * kappa + stiff.bending_stiffness * np.einsum("ngi,ni->ng", falls, value)
-    force = np.einsum("ng,ngi->ni", weight * (grown + moment * stretch[:, :, 0]), curvature)
-    force += np.einsum("ng,ngi->ni", weight * moment, falls)
     turn = (value[:, 5] - value[:, 2]) / length
-    torque = (growth.torsion - stiff.torsional_stiffness * stretch[:, :, 0]) @ GAUSS_WEIGHTS * turn
+    force = np.einsum("ng,ngi->ni", weight * growth.bending * kappa, curvature)
+    torsion = growth.torsion
+    if lengthens:
+        stiff = model.ski.at(model.node[:-1, None] - length[:, None] * GAUSS_POINTS)
+        stretch = (growth.length / length)[:, None, None]
+        # shapes of curvature fall as 1/ℓ² with deflections and as 1/ℓ with slopes
+        falls = -stretch * np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
+        moment = stiff.bending_stiffness * kappa
+        grown = stiff.bending_stiffness * np.einsum("ngi,ni->ng", falls, value) + moment * stretch[:, :, 0]
+        force += np.einsum("ng,ngi->ni", weight * grown, curvature) + np.einsum("ng,ngi->ni", weight * moment, falls)
+        torsion = torsion - stiff.torsional_stiffness * stretch[:, :, 0]
+    torque = torsion @ GAUSS_WEIGHTS * turn
     force[:, 5] += torque
     force[:, 2] -= torque
-    out = np.zeros(model.size)
     np.add.at(out, model.dof[model.dof >= 0], force[model.dof >= 0])
     return out
 

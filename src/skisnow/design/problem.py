@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached."""
 _NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
-_FTOL: Final = 3e-7  # of the objective: at a kink it does not fall smoothly
+_FTOL: Final = 5e-6  # of the objective: at a kink it does not fall smoothly
 _NEAREST_FTOL: Final = 1e-8  # of changes, and of relative deviations where all targets are reached
 _PERCENT: Final = 1e4  # squares of deviations count in %
 _MOST_ITERATIONS: Final = 60

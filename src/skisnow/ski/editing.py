@@ -198,6 +198,7 @@ _STEP: Final = 1e-3  # relative change of one row of a list
 _ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
 
 
+@functools.lru_cache(maxsize=64)
 def shape_parameters(ski: Ski) -> tuple[str, ...]:
     """Names of the parameters of a ski: numbers of its file, rows of its lists (`ski.EI_N_m2[2]`), factors."""
     numbers = []
@@ -286,7 +287,9 @@ def stiffness_growth(ski: Ski, name: str) -> tuple[str, FloatArray] | None:
         ends = [stiffness_table(listed + side * h * np.eye(len(listed))[place], where, layout) for side in (1.0, -1.0)]
         return np.asarray((ends[0].at(ski.station) - ends[1].at(ski.station)) / (2.0 * h))
 
-    h = _STEP * listed[place]
+    # the slope of the curve changes its form where two neighbours are equal
+    apart = np.abs(np.delete(listed, place)[max(0, place - 1) : place + 1] - listed[place])
+    h = min([_STEP * listed[place], *(0.1 * apart[apart > 0.0])])
     return EDITED_COLUMNS[column], (4.0 * central(h / 2.0) - central(h)) / 3.0
 
 
