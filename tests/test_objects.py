@@ -107,14 +107,14 @@ def test_snow_of_a_site_by_hand(analysis: Analysis) -> None:
     assert analysis.snow("C").snow_hardness == pytest.approx(by_hand, rel=1e-12)
 
 
-def test_an_unknown_site_is_refused_with_those_that_there_are(analysis: Analysis) -> None:
+def test_an_unknown_site_is_rejected_with_those_that_there_are(analysis: Analysis) -> None:
     with pytest.raises(ParameterError, match=r"'Z'; .*'site A', .*C'"):
         analysis.snow("Z")
     with pytest.raises(ParameterError, match=r"unloading_ratio is 0\.5"):
         analysis.snow("C", unloading_ratio=0.5)
 
 
-def test_results_of_one_analysis_are_the_same_whenever_they_are_asked_for(analysis: Analysis) -> None:
+def test_results_of_one_analysis_are_the_same_whenever_they_are_requested(analysis: Analysis) -> None:
     assert skisnow.results_dict(analysis) == skisnow.results_dict(analysis) == analysis.results
 
 
@@ -229,7 +229,7 @@ def test_a_missing_package_is_named(package: str, ask: Any, monkeypatch: pytest.
         ask(circle_run())
 
 
-def test_a_figure_that_cannot_be_is_refused() -> None:
+def test_a_figure_that_cannot_be_is_rejected() -> None:
     run = circle_run(count=3)
     assert run.plot("energies").axes
     with raises(ParameterError, "unknown_figure", similar="energies"):

@@ -72,7 +72,7 @@ def test_each_file_is_named_by_its_hashes_and_no_place(name: str) -> None:
 
 @pytest.mark.parametrize("python", PYTHONS)
 @pytest.mark.parametrize(("name", "extras", "groups"), [("run", ("web",), ()), ("dev", TESTED, ("dev",))])
-def test_what_is_asked_for_is_locked(name: str, extras: tuple[str, ...], groups: tuple[str, ...], python: str) -> None:
+def test_what_is_requested_is_locked(name: str, extras: tuple[str, ...], groups: tuple[str, ...], python: str) -> None:
     locked = chosen(name, python)
     in_groups = [each for group in groups for each in of_group(group)]
     build = [Requirement(line) for line in PROJECT["build-system"]["requires"]]
@@ -84,7 +84,7 @@ def test_what_is_asked_for_is_locked(name: str, extras: tuple[str, ...], groups:
     assert missing == []
 
 
-def test_what_builds_the_package_is_asked_for_in_one_way() -> None:
+def test_what_builds_the_package_is_requested_in_one_way() -> None:
     lines = (ROOT / "requirements" / "build.in").read_text(encoding="utf-8").splitlines()
     asked_for = [line for line in lines if not line.startswith("#")]
     # CMake and Ninja are asked for by scikit-build-core, where the machine has none

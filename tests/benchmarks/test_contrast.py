@@ -92,7 +92,7 @@ def test_a_run_that_does_not_cover_the_length_makes_no_pair(monkeypatch: pytest.
     assert asked == [pytest.approx(10.0)]
 
 
-def test_a_part_is_a_study_that_goes_on(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_part_is_a_study_that_continues(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     calls: list[str] = []
 
     def row(self: Pairs, point: dict[str, Any]) -> dict[str, Any]:

@@ -118,7 +118,7 @@ def test_any_values_are_those_of_a_scenario() -> None:
     assert {allowed_keys.changes(seed)["shear.law"] for seed in range(50)} == set(allowed_keys.LAWS)
 
 
-def test_what_stands_in_the_file_is_not_computed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_in_the_file_is_not_computed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rows.jsonl"
     scenarios.print_table(QUICK, 1, path)
     first, told = path.read_text(encoding="utf-8"), capsys.readouterr().out
@@ -127,7 +127,7 @@ def test_what_stands_in_the_file_is_not_computed_again(tmp_path: Path, capsys: p
     assert (path.read_text(encoding="utf-8"), capsys.readouterr().out) == (first, told)
 
 
-def test_one_that_does_not_end_is_told_and_the_next_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_that_does_not_end_is_reported_and_the_next_are_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The process begins anew behind it; here every one takes too long."""
     monkeypatch.setattr(scenarios, "_work", _sleep)
     assert [each["outcome"] for each in scenarios.rows([1, 2], limit=0.05)] == ["hangs", "hangs"]

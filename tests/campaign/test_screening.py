@@ -255,7 +255,7 @@ def test_flags_come_by_experiment_and_say_what_follows() -> None:
     assert ["not included" in each.action for each in problems] == [True, True, False, True]
 
 
-def test_a_flag_that_was_added_is_told_at_the_largest_load() -> None:
+def test_a_flag_that_was_added_is_reported_at_the_largest_load() -> None:
     campaign = campaign_of(GOOD, GOOD)
     (problem,) = flag_problems(campaign, {"hardness_outlier": np.array([False, True])}, {})
     assert (problem.code, problem.row, problem.experiment) == ("hardness_outlier", 7, "P1")

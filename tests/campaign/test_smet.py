@@ -98,7 +98,7 @@ def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
         (HEAD.replace("1 1 0.01 1", "1 1e300 1 1") + "2026-02-03T08:00 1e300 2 3\n", "TA.*numbers to"),
     ],
 )
-def test_what_does_not_fit_is_told_with_its_line(path: Path, text: str, words: str) -> None:
+def test_what_does_not_fit_is_reported_with_its_line(path: Path, text: str, words: str) -> None:
     path.write_text(text)
     with pytest.raises(FieldDataError, match=rf"station\.smet.*{words}"):
         read_smet(path)
@@ -117,7 +117,7 @@ def test_a_faulty_value_of_a_station_is_kept(path: Path) -> None:
     assert read_smet(path).fields["TA"][-1] == 0.0
 
 
-def test_a_missing_file_is_said(tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(FieldDataError, match=r"gone\.smet"):
         read_smet(tmp_path / "gone.smet")
 
@@ -151,7 +151,7 @@ def test_zones_in_range_are_subtracted(path: Path, zone: str, utc: float) -> Non
 
 
 @pytest.mark.parametrize("zone", ["14.1", "-24", "24", "99999", "1e300", "nan", "UTC"])
-def test_zones_out_of_range_are_refused_with_their_line(path: Path, zone: str) -> None:
+def test_zones_out_of_range_are_rejected_with_their_line(path: Path, zone: str) -> None:
     path.write_text(HEAD.replace("tz               = 1", f"tz = {zone}") + ROWS)
     problem = refusal(path)
     assert (problem.row, problem.column, problem.value) == (9, "tz", zone)

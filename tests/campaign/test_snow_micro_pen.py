@@ -130,7 +130,7 @@ def test_real_forces_are_those_of_snow(name: str) -> None:
     assert profile.force.min() > -0.05
 
 
-def test_a_recording_cut_off_is_refused(tmp_path: Path) -> None:
+def test_a_recording_cut_off_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "cut.pnt"
     path.write_bytes(built([1] * 300)[: 512 + 2 * 200])
     with pytest.raises(FieldDataError, match=r"cut\.pnt.*912.*1112"):
@@ -148,7 +148,7 @@ def test_a_recording_cut_off_is_refused(tmp_path: Path) -> None:
         (built([]), "unreadable_file"),
     ],
 )
-def test_foreign_files_are_refused(tmp_path: Path, content: bytes, code: str) -> None:
+def test_foreign_files_are_rejected(tmp_path: Path, content: bytes, code: str) -> None:
     path = tmp_path / "foreign.PNT"
     path.write_bytes(content)
     with pytest.raises(FieldDataError, match=r"foreign\.PNT") as caught:
@@ -156,7 +156,7 @@ def test_foreign_files_are_refused(tmp_path: Path, content: bytes, code: str) ->
     assert [problem.code for problem in caught.value.problems] == [code]  # type: ignore[attr-defined]
 
 
-def test_a_missing_file_is_said(tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(FieldDataError, match=r"gone\.pnt"):
         read_snow_micro_pen(tmp_path / "gone.pnt")
 
@@ -251,7 +251,7 @@ def test_a_missing_column_is_named(tmp_path: Path) -> None:
         read_density_layers(written(tmp_path, "ID,TOP,BOTTOM\n1,52,49\n"))
 
 
-def test_empty_missing_and_binary_files_are_refused(tmp_path: Path) -> None:
+def test_empty_missing_and_binary_files_are_rejected(tmp_path: Path) -> None:
     with pytest.raises(FieldDataError, match="empty_file"):
         read_density_layers(written(tmp_path, ""))
     with pytest.raises(FieldDataError, match=r"gone\.csv"):

@@ -327,12 +327,12 @@ def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed)
         ([*ASKED, *SNOW, "--figure", "picture.bmp"], "unknown_ending"),
     ],
 )
-def test_bad_input_is_refused(words: list[str], code: str, capsys: Printed, noted_errors: list[SkisnowError]) -> None:
+def test_bad_input_is_rejected(words: list[str], code: str, capsys: Printed, noted_errors: list[SkisnowError]) -> None:
     assert refusal(words, capsys).count("\n") == 1
     assert noted_errors[-1].code == code
 
 
-def test_a_clamp_that_is_too_long_is_refused_in_a_sentence_with_its_option(capsys: Printed) -> None:
+def test_a_clamp_that_is_too_long_is_rejected_in_a_sentence_with_its_option(capsys: Printed) -> None:
     assert "--clamp-length-m 0, or 0.3 " in refusal([*ASKED, *SNOW, "--clamp-length-m", "300"], capsys)
 
 
@@ -355,7 +355,7 @@ def test_wrong_words_exit_2(words: list[str]) -> None:
         ([*ASKED, "--elements", "8.5"], "'8.5'"),
     ],
 )
-def test_misspelt_options_and_numbers_are_told(words: list[str], told: str, capsys: Printed) -> None:
+def test_misspelt_options_and_numbers_are_reported(words: list[str], told: str, capsys: Printed) -> None:
     with pytest.raises(SystemExit) as left:
         main(["carve", *words])
     assert left.value.code == 2

@@ -81,7 +81,7 @@ def test_what_cannot_be_compared_is_null_with_a_reason(straight: Path, capsys: P
     assert by_first_point["time"]["max_m"] == pytest.approx(0.25)
 
 
-def test_a_fit_is_told_with_what_was_before(straight: Path, capsys: Printed) -> None:
+def test_a_fit_is_reported_with_what_was_before(straight: Path, capsys: Printed) -> None:
     along = np.linspace(0.0, 40.0, 200)
     place = np.column_stack([along, 3.0 * np.sin(along / 5.0), 0.1 * along])
     one = write(straight.parent / "one.csv", place)

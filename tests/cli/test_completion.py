@@ -93,7 +93,7 @@ def test_in_the_shell_itself(shell: str, tmp_path: Path) -> None:
 PAGE = manual_page(build_parser(), "0.1.0")
 
 
-def test_every_command_and_option_stands_there() -> None:
+def test_every_command_and_option_is_listed() -> None:
     commands = re.findall(r"^\.SS skisnow (.*)$", PAGE, re.MULTILINE)
     assert {"new campaign", "check", "store verify", "simulate", "serve", "completion"} <= set(commands)
     plain = PAGE.replace("\\-", "-")

@@ -48,7 +48,7 @@ def test_a_model_as_asked(
         assert float(speed[0].attrib["start"]) == 3.0
 
 
-def test_wrong_words_and_names_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_words_and_names_are_rejected(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = str(tmp_path / "sledge.zip")
     assert main(["export", "fmu", "carved-46m", "--out", out]) == 1
     assert ".fmu" in capsys.readouterr().err
@@ -78,7 +78,7 @@ def missing(monkeypatch: pytest.MonkeyPatch) -> Any:
     return put
 
 
-def test_it_says_what_to_install(missing: Any, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_extra_is_named_with_its_installation(missing: Any, capsys: pytest.CaptureFixture[str]) -> None:
     missing("nicegui")
     assert main(["serve"]) == 1
     told = capsys.readouterr()

@@ -97,7 +97,7 @@ def test_too_few_points_exit_with_1_and_say_so(cells: Path, capsys: Printed) -> 
 @pytest.mark.parametrize(
     ("words", "code"), [(["--free", "mu_9"], "unknown_name"), (["--free", "S_f"], "unused_key"), ([], "nothing_free")]
 )
-def test_what_is_wrong_is_told(
+def test_a_fault_is_reported(
     cells: Path, capsys: Printed, noted_errors: list[SkisnowError], words: list[str], code: str
 ) -> None:
     assert main(["identify", "carved-46m", str(cells), *words, *SETS]) == 1

@@ -68,7 +68,7 @@ def test_check_of_a_ski_file_says_what_checks_it(tmp_path: Path, capsys: pytest.
     assert "carve --ski" not in capsys.readouterr().out
 
 
-def test_analyse_refuses_a_campaign_with_errors_and_writes_nothing(
+def test_analyse_rejects_a_campaign_with_errors_and_writes_nothing(
     campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (campaign / "shear.csv").write_bytes(b"")
@@ -191,7 +191,7 @@ def test_a_seed_is_a_whole_number_that_every_file_can_hold(seed: str, capsys: py
         (["compare", "x", "y", "--fall-line-azimuth-deg=-1e9"], "from -360 to 360"),
     ],
 )
-def test_numbers_outside_their_range_are_refused_at_once(
+def test_numbers_outside_their_range_are_rejected_at_once(
     words: list[str], allowed: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as stop:
@@ -203,7 +203,7 @@ def test_numbers_outside_their_range_are_refused_at_once(
     assert len(said) < 4000
 
 
-def test_a_load_that_is_no_quantity_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_load_that_is_no_quantity_is_rejected(capsys: pytest.CaptureFixture[str]) -> None:
     words = "carve --ski slalom --edge-angle-deg 45 --published race-piste --unloading-ratio 10 --load-N 1e-320"
     assert main(words.split()) == 1
     told = "load_N is 1e-320, not a quantity; allowed are 0 and sizes from 1e-100 to 1e+100"

@@ -53,7 +53,7 @@ def test_page_and_both_models_are_those_of_the_library(folder: Path, capsys: Pri
     assert told[2].read_bytes() == replay_model(replay, 1.5, exaggeration=4.0)
 
 
-def test_a_second_run_and_a_track_stand_in_the_page(folder: Path, tmp_path: Path) -> None:
+def test_a_second_run_and_a_track_are_in_the_page(folder: Path, tmp_path: Path) -> None:
     track = tmp_path / "measured.csv"
     track.write_text("time_s,x_m,y_m\n10,0,0\n11,4,1\n12,8,3\n", encoding="utf-8")
     words = ["--over", str(folder), "--track", str(track), "--starts-at-s", "0.5", "--title", "Both"]
@@ -128,7 +128,7 @@ def test_a_track_in_latitude_and_longitude_needs_the_fall_line(folder: Path, tmp
         (["other", "--ghost", "another"], "--ghost"),
     ],
 )
-def test_wrong_words_are_refused_before_anything_is_read(words: list[str], said: str, capsys: Printed) -> None:
+def test_wrong_words_are_rejected_before_anything_is_read(words: list[str], said: str, capsys: Printed) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["replay", "nowhere", *words])
     assert ended.value.code == 2
@@ -172,7 +172,7 @@ def table(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def test_a_search_is_told_and_written(tmp_path: Path, capsys: Printed) -> None:
+def test_a_search_is_reported_and_written(tmp_path: Path, capsys: Printed) -> None:
     pytest.importorskip("cmaes")
     assert race(tmp_path / "a", "--evaluations", "25", "--seed", "3") == 0
     out, _ = capsys.readouterr()
@@ -241,7 +241,7 @@ def test_interrupted_it_says_where_the_races_are(tmp_path: Path, monkeypatch: py
         (["--against", "spoon", "--evaluations", "1"], "unknown_name"),
     ],
 )
-def test_what_is_refused(more: list[str], code: str, tmp_path: Path, noted_errors: list[SkisnowError]) -> None:
+def test_rejected_input(more: list[str], code: str, tmp_path: Path, noted_errors: list[SkisnowError]) -> None:
     assert race(tmp_path, "--evaluations", "1", *more) == 1
     assert noted_errors[-1].code == code
 
@@ -291,7 +291,9 @@ def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:
     assert (smoothing["window_s"], smoothing["place_noise_m"]) == (2.0, 0.05)
 
 
-def test_tracks_without_enough_points_are_refused(turn: Path, tmp_path: Path, noted_errors: list[SkisnowError]) -> None:
+def test_tracks_without_enough_points_are_rejected(
+    turn: Path, tmp_path: Path, noted_errors: list[SkisnowError]
+) -> None:
     short = tmp_path / "short.csv"
     short.write_text("\n".join(turn.read_text(encoding="utf-8").splitlines()[:5]) + "\n", encoding="utf-8")
     absent = tmp_path / "absent.csv"

@@ -253,7 +253,7 @@ def test_every_outcome_is_an_answer_with_its_remedy(outcome: Any, capsys: Printe
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_an_open_balance_is_told(tmp_path: Path, capsys: Printed, replaced: Replaced) -> None:
+def test_an_open_balance_is_reported(tmp_path: Path, capsys: Printed, replaced: Replaced) -> None:
     """In the terminal, in summary.json and in the report."""
 
     def opened(scenario: Scenario, **told: Any) -> Run:
@@ -333,14 +333,14 @@ def test_list_names_the_built_in_scenarios_and_prints_one(capsys: Printed) -> No
         (["carved-46m", "--set", "step_ms=1000"], "out_of_range"),
     ],
 )
-def test_bad_input_is_refused(words: list[str], code: str, capsys: Printed, noted_errors: list[SkisnowError]) -> None:
+def test_bad_input_is_rejected(words: list[str], code: str, capsys: Printed, noted_errors: list[SkisnowError]) -> None:
     assert main(["simulate", *words]) == 1
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert noted_errors[-1].code == code
 
 
-def test_out_that_cannot_be_written_is_told_before_the_work(
+def test_out_that_cannot_be_written_is_reported_before_the_work(
     tmp_path: Path, capsys: Printed, replaced: Replaced
 ) -> None:
     def never(*_: object, **__: object) -> Run:

@@ -109,7 +109,7 @@ def test_from_add_to_export_in_words(shell: Shell, folder: Path, tmp_path: Path)
 
 
 @pytest.mark.parametrize(("counts", "lists"), [((0, 0), False), ((1, 0), True), ((0, 2), True)])
-def test_whoever_has_something_to_look_at_is_told_where(
+def test_an_import_with_problems_names_the_check_to_run(
     counts: tuple[int, int], lists: bool, shell: Shell, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     add = Store.add
@@ -157,7 +157,7 @@ def test_damage_is_exit_code_one(shell: Shell, folder: Path, place: Path) -> Non
     assert shell.json("verify") == {"findings": []}
 
 
-def test_a_check_that_breaks_is_told(shell: Shell, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_check_that_breaks_is_reported(shell: Shell, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def breaks(_: Path) -> None:
         raise ZeroDivisionError("by zero")
 

@@ -97,7 +97,7 @@ def test_slip_in_what_is_fixed_touches_nothing(tmp_path: Path, capsys: Printed) 
     assert [(each.name, each.read_bytes()) for each in (tmp_path / "a/tables").iterdir()] == [("table.csv", finished)]
 
 
-def test_another_studys_table_is_kept_and_it_is_said_where(tmp_path: Path, capsys: Printed) -> None:
+def test_another_studys_table_is_kept_and_it_is_reported_where(tmp_path: Path, capsys: Printed) -> None:
     path = study_in(tmp_path / "a", SMALL)
     assert main(["study", str(path), "--workers", "1"]) == 0
     path.write_text(SMALL.replace("to = 60", "to = 50"), encoding="utf-8")
@@ -106,7 +106,7 @@ def test_another_studys_table_is_kept_and_it_is_said_where(tmp_path: Path, capsy
     assert sorted(each.name for each in (tmp_path / "a/tables").iterdir()) == ["table.csv", "table.previous.csv"]
 
 
-def test_warnings_of_points_are_counted_and_the_first_is_said(tmp_path: Path, capsys: Printed) -> None:
+def test_warnings_of_points_are_counted_and_the_first_is_reported(tmp_path: Path, capsys: Printed) -> None:
     path = study_in(tmp_path / "a", SMALL.replace(ANGLES, "[0.5, 30, 0.785]"))
     assert main(["study", str(path), "--workers", "1"]) == 0
     told = "warning: 4 points carry warnings; the first, row 1: edge_angle_deg is 0.5: that looks like radians"
@@ -121,7 +121,7 @@ def test_warnings_of_points_are_counted_and_the_first_is_said(tmp_path: Path, ca
         (SMALL.replace("tables/table.csv", "study.toml"), [], "wrong_ending"),
     ],
 )
-def test_bad_input_is_refused(
+def test_bad_input_is_rejected(
     text: str, words: list[str], code: str, tmp_path: Path, noted_errors: list[SkisnowError]
 ) -> None:
     assert main(["study", str(study_in(tmp_path / "a", text)), *words]) == 1

@@ -131,7 +131,7 @@ def test_the_next_turn_of_a_slalom_is_a_rival_where_both_have_the_whole_track_be
     assert round(apart) in (1, 2)
 
 
-def test_less_overlap_is_no_advantage() -> None:
+def test_an_alignment_with_less_overlap_is_not_preferred() -> None:
     """The next turn fits 55 % of the track about as well; the place with all of it beside counts, without a rival."""
     simulated, measured = two_thirds_turned(0.9)
     noise = 0.06 * np.random.default_rng(4).normal(size=measured.place.shape)

@@ -199,7 +199,7 @@ def test_times_that_are_missing_or_run_backwards_leave_the_rest() -> None:
         assert numbers(found.nearest).max == pytest.approx(0.0, abs=ROUNDING)
 
 
-def test_tracks_with_nothing_in_common_are_refused() -> None:
+def test_tracks_with_nothing_in_common_are_rejected() -> None:
     place = slalom(np.linspace(0.0, 40.0, 30))
     with raises(ParameterError, "nothing_common"):
         compare_tracks(build_track(place + np.array([0.0, 2100.0, 0.0])), build_track(place))
@@ -245,7 +245,7 @@ def test_the_fit_says_by_how_much_and_keeps_what_was_before() -> None:
     assert numbers(plain.nearest).max > 2.0
 
 
-def test_points_that_are_float_among_fixed_ones_are_told() -> None:
+def test_points_that_are_float_among_fixed_ones_are_reported() -> None:
     one = Track(
         "a", np.arange(4.0), np.arange(12.0).reshape(4, 3), np.full(4, np.nan), "local", "made",
         solution=np.array(["fixed", "float", "code", "fixed"]),

@@ -109,7 +109,7 @@ def test_distance_beside_has_none_without_a_path_or_a_place() -> None:
     assert np.isnan(distance_from_path(np.array([[1.0, 1.0]]), np.zeros((3, 2)))).all()
 
 
-def test_a_path_in_one_place_is_refused() -> None:
+def test_a_path_in_one_place_is_rejected() -> None:
     with raises(ParameterError, "one_place"):
         Path(np.ones((4, 3)))
 

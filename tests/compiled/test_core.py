@@ -135,7 +135,7 @@ def test_a_groove_unloads_by_hand() -> None:
     assert Interval(0.0, 5.0, 1.4, 1.4, 2.0, 2.0, 1.0, 3.0).sums()[0] == 0.0
 
 
-def test_it_adds() -> None:
+def test_forces_of_strips_add_up() -> None:
     """Two halves are the whole."""
     whole = Interval(0.5, 4.0, 3.0, -1.0, 2.0, 1.0, 1.0, 4.0)
     halves = Interval(0.5, 2.0, 3.0, 1.0, 2.0, 1.5, 1.0, 4.0), Interval(2.5, 2.0, 1.0, -1.0, 1.5, 1.0, 1.0, 4.0)
@@ -157,7 +157,7 @@ SOURCES = Path(skisnow.compiled.__file__).parents[2] / "core"
 
 
 @pytest.mark.skipif(not SOURCES.is_dir(), reason="no C++ sources")
-def test_an_edited_source_is_refused(tmp_path: Path) -> None:
+def test_an_edited_source_is_rejected(tmp_path: Path) -> None:
     copied = Path(shutil.copytree(SOURCES, tmp_path / "core"))
     require_current(core.SOURCE_HASH, copied)
     edited = copied / "contact" / "pressure_kernels.hpp"

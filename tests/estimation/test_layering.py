@@ -78,7 +78,7 @@ def test_a_gap_that_is_too_long_leaves_it_open(make_campaign: MakeCampaign) -> N
     np.testing.assert_allclose(analysis.weather.quantities["air_temperature_C"], [nan, nan, nan, nan, -6.0])
 
 
-def test_without_the_section_nothing_is_said(make_campaign: MakeCampaign) -> None:
+def test_without_the_section_nothing_is_reported(make_campaign: MakeCampaign) -> None:
     analysis = skisnow.analyse(campaign(make_campaign, ""), n_resamples=100)
     assert analysis.weather is None
     assert "weather" not in analysis.results
@@ -101,11 +101,11 @@ def refused_cells(folder: Path) -> list[tuple[str | None, str | None]]:
         ("longest_gap = 2", "longest_gap", "longest_gap"),
     ],
 )
-def test_a_wrong_section_refuses_the_campaign(make_campaign: MakeCampaign, lines: str, column: str, value: str) -> None:
+def test_a_wrong_section_rejects_the_campaign(make_campaign: MakeCampaign, lines: str, column: str, value: str) -> None:
     assert (f"weather.{column}", value) in refused_cells(campaign(make_campaign, f"\n[weather]\n{lines}\n"))
 
 
-def test_a_damaged_file_refuses_the_campaign(make_campaign: MakeCampaign) -> None:
+def test_a_damaged_file_rejects_the_campaign(make_campaign: MakeCampaign) -> None:
     folder = campaign(make_campaign)
     (folder / "s.smet").write_text(SMET.replace("0.7", "wet"))
     assert refused_cells(folder) == [("RH", "wet")]

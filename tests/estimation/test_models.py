@@ -23,7 +23,6 @@ from .conftest import MakeCampaign
 
 TOOL = SkiPiece(0.2, 0.062)
 LOADS = np.linspace(12.0, 492.0, 7)
-MM_UNITS = {"H_e": 1e-3, "H_A": 1e-6, "H_V": 1e-9}
 
 
 def simulated(seed: int, angles_deg: tuple[float, ...], *, exponent: float = 1.0, m: int = 40) -> Readings:
@@ -326,5 +325,5 @@ def test_only_the_selected_model_or_all_models_are_warned_of(
     ("a", "b", "terms"),
     [("linear", "linear", 2), ("constant", "constant", 2), ("none", "linear", 1), ("none", "one", 1)],
 )
-def test_terms_are_those_that_stand_in_the_law(a: Any, b: Any, terms: int) -> None:
+def test_terms_are_those_that_are_in_the_law(a: Any, b: Any, terms: int) -> None:
     assert Model("H_V", a, b).n_terms == terms

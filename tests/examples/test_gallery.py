@@ -186,7 +186,7 @@ def test_every_script_has_its_place() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_short_and_of_public_names(name: str) -> None:
+def test_examples_are_short_and_use_public_names(name: str) -> None:
     source = (builder().EXAMPLES / f"{name}.py").read_text(encoding="utf-8")
     assert len(source.splitlines()) < 60
     tree = ast.parse(source)

@@ -70,7 +70,7 @@ def test_the_ranking_and_the_active_bound(tmp_path: Path) -> None:
     assert rows["H_V:a=linear,b=linear"]["b1"] is None
 
 
-def test_an_existing_folder_is_refused(tmp_path: Path) -> None:
+def test_an_existing_folder_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="exists already"):
         example("plates_in_sand.py")["write_campaign"](DATA, tmp_path)
     assert list(tmp_path.iterdir()) == []

@@ -100,7 +100,7 @@ def test_no_drag_is_not_warned_of() -> None:
 
 
 @pytest.mark.parametrize(("drag_area", "air_density"), [(-0.1, 1.2), (0.4, 0.0), (math.nan, 1.2), (0.4, math.inf)])
-def test_impossible_parameters_are_refused(drag_area: float, air_density: float) -> None:
+def test_impossible_parameters_are_rejected(drag_area: float, air_density: float) -> None:
     with raises(ParameterError, "out_of_range", kind="AirDrag"):
         AirDrag(drag_area, air_density)
 
@@ -178,7 +178,7 @@ def test_every_law_has_a_row_and_a_reference(law: type) -> None:
     ],
     ids=lambda law: type(law).__name__,
 )
-def test_every_exception_stands_in_the_table(law: Any) -> None:
+def test_every_exception_is_in_the_table(law: Any) -> None:
     assert law.exceptions
     for check, reason in law.exceptions.items():
         rows = [line for line in PAGE.splitlines() if line.startswith(f"| `{type(law).__name__}`")]
@@ -206,7 +206,7 @@ def test_the_committed_figure_is_that_which_the_script_draws(name: str, tmp_path
 
 
 @pytest.mark.parametrize("name", published_names())
-def test_every_named_snow_stands_in_the_table(name: str) -> None:
+def test_every_named_snow_is_in_the_table(name: str) -> None:
     snow = published_snow(name)
     (row,) = [line for line in PAGE.splitlines() if line.startswith(f"| `{name}` |")]
     _, _, hardness, stress, *_ = (cell.strip() for cell in row.split("|"))

@@ -97,7 +97,7 @@ def test_a_case_that_kills_its_process_or_takes_memory_is_named_and_the_others_g
     assert (rows[-1]["first"], rows[-1]["count"], rows[-1]["read"]) == (5, 5, 4)
 
 
-def test_a_shard_goes_on_behind_the_rows_that_are_there(tmp_path: Path) -> None:
+def test_a_shard_continues_behind_the_rows_that_are_there(tmp_path: Path) -> None:
     rows, said = tmp_path / "rows.jsonl", []
     readers = [made_up(lambda _: 1, "one"), made_up(raising(KeyError("x")), "other")]
 

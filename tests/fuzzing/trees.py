@@ -13,7 +13,6 @@ _SCALARS: Final[tuple[Any, ...]] = (
     float("nan"), float("inf"), float("-inf"), True, False, None, "", " ", "x", "nan", "1e309", "\0", "a" * 3000,
     "../../x", "/dev/zero", "/dev/null", ".", "/", "ä☃", [], {}, [[]], [{}], {"": 0}, [None], [1, "x"], ["1", "2"],
 )  # fmt: skip
-_PLACE = list[Any]
 
 
 def _places(value: Any, found: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:

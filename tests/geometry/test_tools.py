@@ -131,7 +131,7 @@ def test_paper_form_is_a_wedge_at_every_depth() -> None:
 
 
 @pytest.mark.parametrize("length", [0.0, -0.2, math.nan, math.inf])
-def test_a_tool_without_a_length_is_refused(length: float) -> None:
+def test_a_tool_without_a_length_is_rejected(length: float) -> None:
     with pytest.raises(ParameterError, match="length"):
         SkiPiece(length=length, width=0.062)
 
@@ -141,7 +141,7 @@ def test_a_tool_without_a_length_is_refused(length: float) -> None:
     [(SkiPiece, "width"), (PlainWedge, "length"), (PlainWedge, "width"), (Disc, "diameter"), (LyingCylinder, "radius"),
      (LyingCylinder, "width")],
 )  # fmt: skip
-def test_each_length_of_each_tool_is_asked_for(shape: type[Tool], name: str) -> None:
+def test_each_length_of_each_tool_is_requested(shape: type[Tool], name: str) -> None:
     whole = {field.name: 0.1 for field in fields(shape)}  # type: ignore[arg-type]
     shape(**whole)
     with pytest.raises(ParameterError, match=rf"{name}_mm is 0\.0; "):
@@ -179,7 +179,7 @@ def test_one_place_is_enough() -> None:
         ([0.0, 1.0], [0.0], [[1.0, 2.0]], coded("wrong_shape", shape="(1, 2)", n_x=2, n_y=1)),
     ],
 )  # fmt: skip
-def test_what_is_no_grid_is_refused(
+def test_an_invalid_grid_is_rejected(
     x: list[float], y: list[float], values: list[list[float]], said: str | Coded
 ) -> None:
     with raises(ParameterError, said):

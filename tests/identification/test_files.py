@@ -136,7 +136,7 @@ def test_names_are_those_of_the_reader() -> None:
 
 
 @pytest.mark.parametrize("line", ["begin = 0.04", 'start = "0.04"'])
-def test_what_the_reader_refuses_the_schema_refuses(line: str) -> None:
+def test_what_the_reader_rejects_the_schema_rejects(line: str) -> None:
     parsed = with_section(f'[identify."friction.mu_0"]\n{line}\n')
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(parsed, SCHEMA)
@@ -148,6 +148,6 @@ def test_what_the_reader_refuses_the_schema_refuses(line: str) -> None:
     "text",
     ["[identify]\nclock = 'stopped'", "[identify.site]\nlatitude_deg = 47", "[identify.'drag_area']\nprior_mean = 0.4"],
 )
-def test_words_and_halves_are_refused(text: str) -> None:
+def test_words_and_halves_are_rejected(text: str) -> None:
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(with_section(text), SCHEMA)

@@ -203,7 +203,7 @@ def test_six_that_a_track_tells() -> None:
 
 
 @pytest.mark.slow
-def test_six_that_a_track_does_not_tell_are_said_to_be_untold() -> None:
+def test_six_that_a_track_does_not_tell_are_reported_to_be_untold() -> None:
     """One carved turn on one slope: three that brake alike, two that bend alike, and a strength that holds anyway."""
     found = identify(SCENARIO, twin(OF_THE_SNOW, 4.0), list(OF_THE_SNOW))
     assert found.outcome == "not_identifiable"

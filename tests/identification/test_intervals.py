@@ -66,7 +66,7 @@ def resampled(by: BootstrapBy, seed: int) -> tuple[Decay, Identification]:
     return decay, add_bootstrap_intervals(found, solution, 80, by, np.random.default_rng(4), lambda _: None)
 
 
-def test_what_is_drawn_scatters_about_nothing() -> None:
+def test_drawn_errors_have_zero_mean() -> None:
     """Each series without its own mean: of constant ones nothing is left."""
     residuals = np.concatenate([np.full(7, 3.0), np.full(5, -2.0)])
     assert _resample(residuals, [7, 5], np.random.default_rng(1)).tolist() == [0.0] * 12
@@ -173,7 +173,7 @@ class TestTracks:
         assert found["S_f"].bootstrap_interval is None
         assert found["mu_0"].bootstrap_interval is not None
 
-    def test_too_few_resamples_are_refused(self) -> None:
+    def test_too_few_resamples_are_rejected(self) -> None:
         with raises(ParameterError, "too_few_resamples"):
             found_from(track(), bootstrap=39)
         with raises(ParameterError, "unknown_bootstrap"):
@@ -219,7 +219,7 @@ def test_likelihoods_of_normal_noise(likelihood: Any) -> None:
     assert np.isfinite(found(np.array([[2.0, -2.0]]))).all()
 
 
-def test_where_there_are_no_residuals_nothing_is_likely() -> None:
+def test_without_residuals_there_is_no_likelihood() -> None:
     assert intervals._true(solution("marks"))(np.array([[-1.5, 0.0], [-0.5, 0.0]])).tolist()[0] == -np.inf
 
 
@@ -276,7 +276,7 @@ def test_a_parameter_that_is_open_has_no_posterior(sampler: list[Sampler]) -> No
     assert sampler == []
 
 
-def test_what_to_install_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_sampler_is_named_with_its_installation(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "emcee", None)
     with pytest.raises(ParameterError, match=r"skisnow\[posterior\]"):
         intervals.require_emcee()

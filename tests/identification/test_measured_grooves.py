@@ -183,7 +183,7 @@ class TestFile:
         with pytest.raises(ParameterError, match="depth_sd_mm"):
             read_measured_grooves(path)
 
-    def test_a_depth_of_nothing_is_refused(self, tmp_path: Path) -> None:
+    def test_a_depth_of_nothing_is_rejected(self, tmp_path: Path) -> None:
         path = tmp_path / "marks.csv"
         path.write_text("depth_mm,depth_sd_mm\n0,0.1\n", encoding="utf-8")
         with pytest.raises(ParameterError, match="above 0"):

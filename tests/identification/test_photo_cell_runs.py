@@ -114,7 +114,7 @@ class TestWeights:
         away = [each.value - true for each, true in zip(found.parameters, (MU, AREA), strict=True) if each.value]
         assert np.array(away) / error == pytest.approx(wanted / error, abs=0.02)
 
-    def test_runs_that_state_nothing_beside_runs_that_do_are_refused(self) -> None:
+    def test_runs_that_state_nothing_beside_runs_that_do_are_rejected(self) -> None:
         with raises(ParameterError, "partial_accuracy"):
             found_from("carved-46m", (run("one"), replace(run("other"), time_sd=None)), "mu_0")
 
@@ -181,7 +181,7 @@ class TestTwoSlopes:
         changes = CHANGES | {"slope.angle_deg": 8.0}
         return identify(with_section(folder, section), PhotoCells("cells", runs), "mu_0,drag_area", changes=changes)
 
-    def test_they_tell_friction_and_drag_apart_better_than_either(self, tmp_path: Path) -> None:
+    def test_two_runs_together_separate_friction_from_drag_better_than_one(self, tmp_path: Path) -> None:
         """As the Fisher information of the closed form says: r is -0.927, of one of them -0.97 to -0.98."""
         gentle, steep = self.run("gentle", 8.0), self.run("steep", 22.0)
         both = self.found(tmp_path, gentle, steep)

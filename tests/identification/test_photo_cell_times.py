@@ -219,12 +219,12 @@ def test_four_points_for_three_parameters_are_warned_of_and_two_are_too_few() ->
     assert all(each.value is None and each.interval is None for each in found.parameters)
 
 
-def test_a_key_that_plays_no_part_is_refused() -> None:
+def test_a_key_that_plays_no_part_is_rejected() -> None:
     with raises(ParameterError, "unused_key"):
         found_from(cells(truth()), "mu_0,S_f")
 
 
-def test_mass_and_drag_area_cannot_be_told_apart() -> None:
+def test_mass_and_drag_area_cannot_be_distinguished() -> None:
     """Only C_dA/m acts: the columns are parallel, and both are named."""
     found = found_from(cells(truth()), "drag_area,mass")
     assert found.outcome == "not_identifiable"

@@ -159,17 +159,17 @@ def test_every_key_is_found_by_its_short_name_alone(key: str) -> None:
         ("ski.name", "a text"),
     ],
 )
-def test_unknown_words_are_refused_with_near_ones(word: str, told: str) -> None:
+def test_unknown_words_are_rejected_with_near_ones(word: str, told: str) -> None:
     with pytest.raises(ParameterError, match=told):
         free_key(word)
 
 
-def test_a_key_named_twice_is_refused() -> None:
+def test_a_key_named_twice_is_rejected() -> None:
     with pytest.raises(ParameterError, match="named twice"):
         free_keys("mu_0, friction.mu_0")
 
 
-def test_bounds_that_exclude_the_start_are_refused() -> None:
+def test_bounds_that_exclude_the_start_are_rejected() -> None:
     section = given_parameters({"mu_0": {"lower": 0.02, "upper": 0.3}})
     with raises(ParameterError, "start_outside_bounds"):
         parameter_table(["friction.mu_0"], VALUES, section)
@@ -207,7 +207,7 @@ def test_start_bounds_and_prior_come_from_the_section(tmp_path: Path) -> None:
     assert scenario_file(path).scenario.contact.snow.failure_shear_stress == 0.5e6  # a run does not heed it
 
 
-def test_a_section_that_is_no_table_is_refused(tmp_path: Path) -> None:
+def test_a_section_that_is_no_table_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text("identify = 3\n" + scenario_text("carved-46m"), encoding="utf-8")
     with pytest.raises(ParameterError, match="identify is 3"):

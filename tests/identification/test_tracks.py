@@ -97,7 +97,7 @@ class TestStraight:
         assert any("Student's t" in method and "estimated" in method for method in found.methods)
         assert any("normal distribution" in method and "stated" in method for method in known.methods)
 
-    def test_noise_beyond_the_stated_accuracy_widens_the_intervals_and_is_told(self) -> None:
+    def test_noise_beyond_the_stated_accuracy_widens_the_intervals_and_is_reported(self) -> None:
         one = track(seed=3)
         assert one.place_sd is not None
         proud = replace(one, place_sd=one.place_sd / 10.0)
@@ -157,7 +157,7 @@ class TestStraight:
         assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
         assert any("1 points are marked" in text for text in found.warnings)
 
-    def test_a_track_of_another_place_is_refused(self) -> None:
+    def test_a_track_of_another_place_is_rejected(self) -> None:
         one = track()
         far = replace(one, place=one.place + np.array([350_000.0, 20_000.0, 0.0]))
         with raises(ParameterError, "other_place") as caught:
@@ -177,7 +177,7 @@ class TestStraight:
         assert found.outcome == "too_few_points"
         assert found["mu_0"].value is None
 
-    def test_points_that_are_float_among_fixed_ones_are_told(self) -> None:
+    def test_points_that_are_float_among_fixed_ones_are_reported(self) -> None:
         one = track()
         solution = np.where(np.arange(len(one)) < 3, "float", "fixed")
         told = "one: of 41 points 3 float (decimetres off); the others are fixed"
@@ -283,7 +283,7 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     assert re.search(r" 14\d\d km ", str(caught.value))
 
 
-def test_times_that_run_backwards_are_refused(tmp_path: Path) -> None:
+def test_times_that_run_backwards_are_rejected(tmp_path: Path) -> None:
     path = tmp_path / "track.csv"
     path.write_text("time_s,x_m,y_m\n0,0,0\n0.2,1,0\n0.1,2,0\n", encoding="utf-8")
     with pytest.raises((ParameterError, FieldDataError), match=r"0\.1"):

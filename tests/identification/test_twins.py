@@ -157,7 +157,7 @@ def test_a_seed_of_the_shear_is_the_same_truth_for_ever() -> None:
     assert 0.45 < displacement.max() < 0.5
 
 
-def test_the_shear_is_told_by_whether_the_edge_slips(tmp_path: Path) -> None:
+def test_the_shear_is_reported_by_whether_the_edge_slips(tmp_path: Path) -> None:
     kept = KeptTwins.opened(tmp_path / "shears.csv")
     row = {"outcome": "converged", "correlation": "-0.5", "near the limit": "0"}
     for seed, slips in enumerate("011"):

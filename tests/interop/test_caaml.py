@@ -102,7 +102,7 @@ OUTSIDE = """<!DOCTYPE b [<!ENTITY a SYSTEM "file:///etc/passwd">]><SnowProfile>
         ('<gpx xmlns="http://www.topografix.com/GPX/1/1"/>', "gpx"),
     ],
 )
-def test_bombs_and_foreign_files_are_refused(tmp_path: Path, content: str, words: str) -> None:
+def test_bombs_and_foreign_files_are_rejected(tmp_path: Path, content: str, words: str) -> None:
     path = tmp_path / "pit.caaml"
     path.write_text(content, encoding="utf-8")
     with pytest.raises(FieldDataError, match=words):
@@ -122,7 +122,7 @@ def test_bombs_and_foreign_files_are_refused(tmp_path: Path, content: str, words
         ({"temperatures": (DepthTemperature(0.0, 1.5),)}, "cannot_write"),
     ],
 )
-def test_what_the_standard_cannot_hold_is_refused(changes: dict[str, object], words: str | Coded) -> None:
+def test_what_the_standard_cannot_hold_is_rejected(changes: dict[str, object], words: str | Coded) -> None:
     with raises(ParameterError, words):
         caaml_text(replace(full_pit(), **changes))  # type: ignore[arg-type]
 
@@ -259,7 +259,7 @@ def test_an_unknown_unit_is_an_error(tmp_path: Path, place: str, unit: str) -> N
 
 
 @pytest.mark.parametrize("number", ["1e101", "-1e308", "1e309", "nan"])
-def test_impossible_numbers_are_refused(tmp_path: Path, number: str) -> None:
+def test_impossible_numbers_are_rejected(tmp_path: Path, number: str) -> None:
     path = in_units(tmp_path)
     path.write_text(path.read_text(encoding="utf-8").replace(">8200<", f">{number}<"), encoding="utf-8")
     assert refusal(path).column == "position"

@@ -173,7 +173,7 @@ def test_the_source_is_not_written_over(tmp_path: Path, capsys: pytest.CaptureFi
     assert source.read_bytes() == before
 
 
-def test_a_missing_source_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_source_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("gone.caaml", "gone.pnt"):
         assert main(["convert", str(tmp_path / name), str(tmp_path / "x.csv")]) == 1
         assert name in told(capsys)[1]

@@ -97,7 +97,7 @@ def test_a_sledge_goes_as_the_run_does(sledge: Fmu) -> None:
             steps(instance, number, number + 1)
 
 
-def test_a_sledge_is_pushed_and_begins_when_and_as_fast_as_it_is_told(sledge: Fmu) -> None:
+def test_a_sledge_is_pushed_and_begins_when_and_as_fast_as_it_is_reported(sledge: Fmu) -> None:
     one, pushed = sledge.instance(), sledge.instance()
     one.begin(5.0, {"start.speed": 3.0})
     pushed.begin(5.0, {"start.speed": 3.0, "push.force[1]": 800.0})
@@ -194,7 +194,7 @@ def test_the_state_of_a_contact_as_bytes_serves_another_instance_over_older_trac
     assert found.min() < 0.97 * np.median(found)  # the older tracks carry less
 
 
-def test_bytes_of_another_fmu_and_damaged_ones_are_refused(pair: Fmu, made: Made) -> None:
+def test_bytes_of_another_fmu_and_damaged_ones_are_rejected(pair: Fmu, made: Made) -> None:
     instance = pair.instance()
     instance.begin()
     data = instance.to_bytes(instance.state())
@@ -268,7 +268,7 @@ def test_one_ski_in_snow_that_is_set(tmp_path: Path) -> None:
     assert forces[1] == pytest.approx(2.0 * forces[0], rel=0.01)  # but for the compaction resistance, which S_f has
 
 
-def test_what_cannot_be_is_refused_in_words(pair: Fmu, made: Made) -> None:
+def test_impossible_input_is_rejected(pair: Fmu, made: Made) -> None:
     assert pair.instance("{another}").at.value is None
     instance = pair.instance()
     with pytest.raises(AssertionError, match="not allowed"):
@@ -334,7 +334,7 @@ def test_the_description_defines_every_unit_by_base_units(tmp_path: Path) -> Non
     assert told == UNITS
 
 
-def test_an_importer_that_is_told_nothing_begins_at_0_in_steps_that_suit_the_model(tmp_path: Path) -> None:
+def test_an_importer_that_is_reported_nothing_begins_at_0_in_steps_that_suit_the_model(tmp_path: Path) -> None:
     """A contact is read at a fifth of a millisecond, the outputs of a sledge are 10 ms apart."""
     for write, step in ((write_contact_fmu, "0.0002"), (write_sledge_fmu, "0.01")):
         with zipfile.ZipFile(write(SCENARIO, tmp_path / "a.fmu")) as archive:
@@ -375,7 +375,7 @@ def test_what_varies_over_the_place_is_not_offered() -> None:
 
 
 @pytest.mark.parametrize("own", ["penetration", "friction_in_python", "shear_in_python"])
-def test_laws_of_python_are_refused(own: str) -> None:
+def test_laws_of_python_are_rejected(own: str) -> None:
     snow = SimpleNamespace(penetration=None, friction_in_python=None, shear_in_python=None)
     _require_own_laws(cast("SnowField", snow))
     setattr(snow, own, lambda: None)
@@ -399,7 +399,7 @@ def test_no_model_is_made_of_laws_in_python(model: Callable[..., object], monkey
         model(SCENARIO, step=STEP)
 
 
-def test_wrong_names_numbers_and_scenarios_are_refused(tmp_path: Path) -> None:
+def test_wrong_names_numbers_and_scenarios_are_rejected(tmp_path: Path) -> None:
     with raises(ParameterError, "wrong_ending", ending=".fmu"):
         write_sledge_fmu(SCENARIO, tmp_path / "sledge.zip")
     with raises(ParameterError, "unknown_name", fmi=1):

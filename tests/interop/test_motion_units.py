@@ -56,7 +56,7 @@ def test_a_head_is_believed(tmp_path: Path, word: str, answer: bool) -> None:
 @pytest.mark.parametrize(
     "head", ["a\n", "a\nnRows=2\n", "a\nversion=1\ninDegrees=maybe\n", "a\nversion=1\ninDegrees=\n"]
 )
-def test_a_head_that_leaves_it_open_is_refused(tmp_path: Path, head: str) -> None:
+def test_a_head_that_leaves_it_open_is_rejected(tmp_path: Path, head: str) -> None:
     with pytest.raises(ParameterError, match="inDegrees"):
         degrees(tmp_path, head, "a.mot")
 
@@ -120,7 +120,7 @@ def test_each_block_and_each_point_may_have_its_unit(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, np.nan])
-def test_a_rate_that_is_none_is_refused(tmp_path: Path, rate: float) -> None:
+def test_a_rate_that_is_none_is_rejected(tmp_path: Path, rate: float) -> None:
     capture(tmp_path / "a.c3d", {"LABELS": ["a"], "UNITS": ["mm"]}, rate=rate)
     with raises(ParameterError, "out_of_range"):
         read_c3d(tmp_path / "a.c3d")
@@ -139,7 +139,7 @@ def test_ezc3d_gives_blocks_as_they_are_read_here(tmp_path: Path) -> None:
     assert found.of("m298")[0] == pytest.approx([0.298] * 3)
 
 
-def test_names_that_are_there_twice_are_refused(tmp_path: Path) -> None:
+def test_names_that_are_there_twice_are_rejected(tmp_path: Path) -> None:
     capture(tmp_path / "a.c3d", {"LABELS": ["a", "b", "a"], "UNITS": ["mm"]})
     with raises(ParameterError, "damaged"):
         read_c3d(tmp_path / "a.c3d")
@@ -257,7 +257,7 @@ def test_a_name_with_signs_of_xml_comes_back() -> None:
     assert ET.fromstring(ski_mjcf(replace(read_ski("carver"), name=name))).attrib["model"] == name
 
 
-def test_what_cannot_be_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_impossible_input_is_rejected(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ski = read_ski("carver")
     changes: tuple[dict[str, Any], ...] = ({"segments": 2}, {"clamp_length": 3.0}, {"damping": -1.0})
     for change in changes:
@@ -307,7 +307,7 @@ def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
     }
 
 
-def test_snow_that_does_not_fit_is_refused(tmp_path: Path) -> None:
+def test_snow_that_does_not_fit_is_rejected(tmp_path: Path) -> None:
     elastic = load_scenario("carved-46m", changes={"snow.unloading_ratio": 1.0})
     with raises(ParameterError, "out_of_range", unloading_ratio=1.0):
         write_chrono_terrain(elastic, tmp_path)

@@ -83,7 +83,7 @@ def test_a_table_of_another_program(tmp_path: Path) -> None:
         (MOT.replace("time\t", "t\t"), "line 9"),
     ],
 )
-def test_a_wrong_table_is_refused_in_words(tmp_path: Path, text: str, words: str) -> None:
+def test_a_wrong_table_is_rejected(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "a.mot").write_text(text, encoding="utf-8")
     with pytest.raises(ParameterError) as refused:
         read_motion(tmp_path / "a.mot")
@@ -116,7 +116,7 @@ def test_markers_are_read_as_they_were_written_and_in_metres(tmp_path: Path) -> 
         ("".join(TRC.splitlines(keepends=True)[:5]), "markers: "),
     ],
 )
-def test_wrong_markers_are_refused_in_words(tmp_path: Path, text: str, words: str) -> None:
+def test_wrong_markers_are_rejected(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "two.trc").write_text(text, encoding="utf-8")
     with pytest.raises(ParameterError) as refused:
         read_trc(tmp_path / "two.trc")
@@ -154,7 +154,7 @@ def test_boots_are_where_their_markers_say(tmp_path: Path, slope: float) -> None
     assert alone.axes[0, 1] == pytest.approx(axes_of(-0.3, 0.0, 0.0), abs=1e-14)
 
 
-def test_markers_that_tell_no_pose_are_refused() -> None:
+def test_markers_that_tell_no_pose_are_rejected() -> None:
     markers, _ = captured(0.0)
     one = BootMarkers("Lheel", "Ltoe", "Lleft")
     with raises(ParameterError, "out_of_range"):
@@ -198,14 +198,14 @@ def test_axes_with_z_up_need_no_turn() -> None:
         ({"rate": np.inf}, "out_of_range"),
     ],
 )
-def test_markers_that_do_not_fit_are_refused(changes: dict[str, object], words: str | Coded) -> None:
+def test_markers_that_do_not_fit_are_rejected(changes: dict[str, object], words: str | Coded) -> None:
     sound = {"time": np.array([0.0, 0.1]), "names": ("a", "b"), "place": np.zeros((2, 2, 3)), "rate": 10.0}
     assert repr(Markers(**sound)).endswith("2 frames at 10 Hz>")  # type: ignore[arg-type]
     with raises(ParameterError, words):
         Markers(**sound | changes)  # type: ignore[arg-type]
 
 
-def test_tables_that_do_not_fit_are_refused(tmp_path: Path) -> None:
+def test_tables_that_do_not_fit_are_rejected(tmp_path: Path) -> None:
     with raises(ParameterError, "wrong_shape", name="a", shape="(3,)", shape_2="(4,)"):
         MotionTable(TIME, {"b": np.zeros(4), "a": np.zeros(3)})
     table = MotionTable(TIME, {"b": np.zeros(4)})
@@ -323,7 +323,7 @@ def test_c3d_is_written_and_read_back_with_the_bits_of_single_precision(
     assert ".c3d file" in capsys.readouterr().err
 
 
-def test_what_c3d_cannot_hold_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_c3d_cannot_hold_is_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "a.c3d"
 
     def at(time: np.ndarray, rate: float = 100.0, count: int = 1) -> Markers:

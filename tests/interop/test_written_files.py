@@ -131,7 +131,7 @@ def test_a_station_without_a_place_has_999(tmp_path: Path) -> None:
     assert "station_id = station\n" in nameless
 
 
-def test_a_value_that_stands_for_none_is_refused(tmp_path: Path) -> None:
+def test_a_value_that_stands_for_none_is_rejected(tmp_path: Path) -> None:
     with raises(ParameterError, "out_of_range", file="s.smet", no_data=-999.0, when="2026-02-03T05:30:00"):
         write_smet(series(1.0, -999.0), tmp_path / "s.smet")
     assert not (tmp_path / "s.smet").exists()

@@ -59,7 +59,7 @@ def planted(source: str, kind: str) -> set[str]:
         ("f'{a + b}'", "arithmetic", set()),
     ],
 )
-def test_what_is_planted(source: str, kind: str, expected: set[str]) -> None:
+def test_planted_errors_of_each_kind(source: str, kind: str, expected: set[str]) -> None:
     assert planted(source, kind) == expected
 
 
@@ -158,7 +158,7 @@ def test_what_no_test_asks_for_survives(tree: Path, trials: Trials) -> None:
     assert trials.status() == 0
 
 
-def test_every_equivalent_stands_in_its_file() -> None:
+def test_every_equivalent_is_in_its_file() -> None:
     """For a line that was changed since, nothing is known."""
     package = Path(__file__).resolve().parents[2] / "src" / "skisnow"
     named = tomllib.loads(EQUIVALENTS.read_text(encoding="utf-8"))["equivalent"]

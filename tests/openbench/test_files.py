@@ -73,7 +73,7 @@ def test_pages_are_those_that_the_command_writes(name: str) -> None:
     assert (FOLDER / "v1" / name / "drawing.svg").exists()
 
 
-def test_no_measured_number_stands_in_the_set() -> None:
+def test_no_measured_number_is_in_the_set() -> None:
     answer = read_answer("05-sand")
     assert "values" not in answer
     assert set(answer["values_from"]["sha256"]) == set(read_case("05-sand")["data"]["files"])

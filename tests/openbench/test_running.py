@@ -55,7 +55,7 @@ def test_fifty_lines_of_python_are_right(plain: Path) -> None:
         jsonschema.validate(written, schema("result"))
 
 
-def test_a_missing_case_is_told(plain: Path) -> None:
+def test_a_missing_case_is_reported(plain: Path) -> None:
     missing = [each for each in score(plain) if each.outcome == "missing"]
     assert len(missing) == 6
     words = "case 03-cycles is missing from the run of plain-python: run it, or let the program decline it"
@@ -83,13 +83,13 @@ def test_scores_are_the_same_again(plain: Path, tmp_path: Path) -> None:
         ('{"openbench": "v1", "case": "01-plate"}', "'declined'"),
     ],
 )
-def test_what_is_wrong_is_told_in_words(tmp_path: Path, text: str, words: str) -> None:
+def test_a_fault_is_reported(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "result.json").write_text(text, encoding="utf-8")
     found = checking.problems(read_case("01-plate"), tmp_path / "result.json")
     assert any(words in each for each in found), found
 
 
-def test_a_program_that_fails_is_told_with_its_last_line(tmp_path: Path) -> None:
+def test_a_program_that_fails_is_reported_with_its_last_line(tmp_path: Path) -> None:
     command = [sys.executable, "-c", "raise SystemExit('no snow today')"]
     record = run("broken", command, tmp_path, Asked(PLATE), quiet)
     told = "; ".join(record["cases"]["01-plate"]["problems"])
@@ -132,7 +132,7 @@ def test_table_says_what_was_not_done() -> None:
     assert table.reasons(scores) == "- a, 02-edge: declined: no edges\n"
 
 
-def test_what_cannot_run_here_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_run_here_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("openbench.programs.find_spec", lambda _: None)
     monkeypatch.setattr("openbench.programs.compiler", lambda: None)
     assert "mujoco" in str(why_not("mujoco"))
@@ -165,12 +165,12 @@ def test_sand_is_split_and_nothing_held_back_is_shown() -> None:
     jsonschema.validate(shown, schema("given"))
 
 
-def test_data_that_are_not_there_are_told(tmp_path: Path) -> None:
+def test_data_that_are_not_there_are_reported(tmp_path: Path) -> None:
     with pytest.raises(OpenbenchError, match=r"level\.csv"):
         sand.split(read_case("05-sand"), tmp_path)
 
 
-def test_no_run_and_no_case_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_run_and_no_case_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert __main__.main(["score", str(tmp_path)]) == 1
     assert "openbench run" in capsys.readouterr().err
     with pytest.raises(OpenbenchError, match="01-plate"):
@@ -222,7 +222,7 @@ def test_each_entry_runs_and_is_as_near_as_it_should_be(name: str, tmp_path: Pat
 
 
 @pytest.mark.slow
-def test_twins_agree_within_the_uncertainty_that_is_told(tmp_path: Path) -> None:
+def test_twins_agree_within_the_uncertainty_that_is_reported(tmp_path: Path) -> None:
     """Both programs at their finest, again; each half of their difference from the answer."""
     from openbench.making.__main__ import FINEST, TWIN_CASES
 

@@ -104,7 +104,7 @@ def test_what_a_dataclass_holds_is_made_with_it() -> None:
     assert found.snow == Snow(hardness=2e8, strength=5e5)
 
 
-def test_values_are_told_back_in_the_units_of_their_keys() -> None:
+def test_values_are_reported_back_in_the_units_of_their_keys() -> None:
     told = values_of(bench(parts=8))
     assert told.pop("bench.inertia_kg_m2") == [1.0, 2.0, 3.0]
     given = {name: value for name, value in GIVEN.items() if name in told}
@@ -161,7 +161,7 @@ def test_values_are_told_back_in_the_units_of_their_keys() -> None:
         ),
     ],
 )
-def test_constructor_refuses_what_a_file_could_not_give(changes: dict[str, object], told: str | Coded) -> None:
+def test_constructor_rejects_what_a_file_could_not_give(changes: dict[str, object], told: str | Coded) -> None:
     with raises(ParameterError, told):
         replace(bench(), **changes)  # type: ignore[arg-type]
 
@@ -171,7 +171,7 @@ def test_numbers_of_numpy_and_ends_of_ranges_are_taken() -> None:
     assert (changed.parts, changed.angle) == (8, math.radians(85.0))
 
 
-def test_schema_refuses_what_the_constructor_refuses() -> None:
+def test_schema_rejects_what_the_constructor_rejects() -> None:
     schema = table_schema(key for key in quantities(Bench) if key.name.startswith("bench."))
     good = {"inertia_kg_m2": [1, 2, 3], "height_mm": 50}
     jsonschema.validate(good, schema)

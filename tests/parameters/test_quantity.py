@@ -139,5 +139,5 @@ def test_three_numbers_are_three() -> None:
     }  # fmt: skip
 
 
-def test_a_schema_stands_in_its_file_as_people_read_it() -> None:
+def test_a_schema_is_in_its_file_as_people_read_it() -> None:
     assert schema_text({"unit": "°", "type": "number"}) == '{\n "unit": "°",\n "type": "number"\n}\n'

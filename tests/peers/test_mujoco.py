@@ -115,7 +115,7 @@ def test_a_ski_as_mjcf_swings_and_weighs_as_ours(name: str) -> None:
     assert model.body_mass.sum() == pytest.approx(np.trapezoid(ski.at(along).mass_per_length, along), rel=1e-6)
 
 
-def test_what_cannot_be_is_refused() -> None:
+def test_impossible_input_is_rejected() -> None:
     model, _, snow = EXAMPLE["sledge"]()
     with pytest.raises(ParameterError, match=r"middle.*left, right"):
         SnowForces(model, snow.contact, ["left", "middle"])

@@ -77,7 +77,7 @@ def test_forces_of_a_run_are_external_loads(tmp_path: Path) -> None:
     assert up == pytest.approx(run.boots.force[:, 1, 2].tolist())
 
 
-def test_markers_both_ways(tmp_path: Path) -> None:
+def test_markers_survive_export_and_import(tmp_path: Path) -> None:
     ours = Markers(TIME, ("heel", "toe"), np.random.default_rng(1).normal(size=(5, 2, 3)), 100.0)
     write_trc(ours, tmp_path / "ours.trc")
     theirs = opensim.MarkerData(str(tmp_path / "ours.trc"))

@@ -120,7 +120,7 @@ def test_the_ensemble_is_computed_quickly_whatever_the_turn_asks_for(asked: list
     assert json.loads(json.dumps(row)) == row
 
 
-def test_how_far_quick_ends_beside_the_turn_is_told(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_how_far_quick_ends_beside_the_turn_is_reported(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
     """3 cm down and 4 cm aside: 5 cm."""
 
     def beside(scenario: Scenario) -> Run:
@@ -356,7 +356,7 @@ def test_the_report_is_that_of_the_chain(analysis: Analysis, tmp_path: Path) -> 
     ],
 )
 @pytest.mark.usefixtures("asked")
-def test_what_cannot_be_is_refused_in_words(analysis: Analysis, named: dict[str, Any], told: str | Coded) -> None:
+def test_impossible_input_is_rejected(analysis: Analysis, named: dict[str, Any], told: str | Coded) -> None:
     with raises(ParameterError, told):
         skisnow.turn(analysis, **{"site": "C", "workers": 1, **named})
 
@@ -416,7 +416,7 @@ def test_the_json_keeps_to_its_schema(analysis: Analysis, asked: list[Scenario])
     assert set(schema["properties"]) == set(found)
 
 
-def test_the_command_refuses_in_words(tmp_path: Path, capsys: Printed) -> None:
+def test_the_command_rejects_in_words(tmp_path: Path, capsys: Printed) -> None:
     assert main(["turn", str(tmp_path / "nowhere"), "--site", "C"]) == 1
     assert "a folder that exists" in capsys.readouterr().err
     for words in (["--runs", "2"], ["--prior", "mu_0=2"], ["--unloading-ratio", "1"], ["--set", "mas=3"]):
@@ -434,7 +434,7 @@ def test_defaults_of_the_command_are_those_of_the_call() -> None:
     assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (64, None, "carved-46m")
 
 
-def test_a_site_that_is_not_there_is_told_before_the_analysis(
+def test_a_site_that_is_not_there_is_reported_before_the_analysis(
     analysis: Analysis, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pipeline_turn, "analyse", lambda *_, **__: pytest.fail("analysed for nothing"))

@@ -208,7 +208,7 @@ def test_a_skier_is_scored_by_its_run() -> None:
     assert Racer(short, "skier").score(line).value > 1000.0
 
 
-def test_what_is_just_allowed() -> None:
+def test_values_at_the_limits_are_accepted() -> None:
     _require(evaluations=1, population=4, spread=1.0, settled=0.0, room=1.0)
     _require(evaluations=2, population=None, spread=0.01, settled=999.0, room=0.0)
     for wrong in ({"spread": 1.01}, {"settled": 1000.0}, {"room": -0.1}):

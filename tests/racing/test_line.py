@@ -84,7 +84,7 @@ def test_numbers_from_a_gate_on() -> None:
         ((LineTurn(aside=0.5, along=0.6), LineTurn(aside=0.5, along=-0.6)), "gate 2: its apex"),
     ],
 )
-def test_what_is_no_line(turns: tuple[LineTurn, ...], words: str) -> None:
+def test_invalid_racing_lines_are_rejected(turns: tuple[LineTurn, ...], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
         RacingLine(first_gates(FOLLOWED, 2).course, (0.0, 0.0), turns)
 

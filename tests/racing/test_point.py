@@ -139,7 +139,7 @@ def test_a_line_tighter_than_the_ski_fails_by_how_much() -> None:
     assert 1000.0 < found[0] < found[1]
 
 
-def test_of_a_scenario() -> None:
+def test_point_model_of_a_scenario() -> None:
     slalom = load_scenario("slalom-20-gates")
     racer = PointRacer.of(slalom)
     assert racer.mass == pytest.approx(75.0 + 2.0 * slalom.ski.mass)

@@ -150,7 +150,7 @@ def score(time: float | None, *gates: tuple[str, float | None]) -> Score:
     return Score(value=1500.0 if time is None else time, time=time, passed=0, words="", gates=gates)
 
 
-def test_what_differences_are_worth() -> None:
+def test_differences_are_rated_by_their_noise() -> None:
     """Of five snows two on which one of them fails: -0.2, 0.1 and -0.05 s."""
     mine, base = (9.0, 10.0, None, 8.0, 7.95), (9.2, 9.9, 9.0, None, 8.0)
     found = Worth(name="wax", scores=tuple(map(score, mine)), base=tuple(map(score, base)))
@@ -178,7 +178,7 @@ def test_gaps_at_gates_are_those_on_the_own_snow() -> None:
     assert [each.gap for each in found] == pytest.approx([-0.2, 0.5])
 
 
-def test_a_comparison_is_told_and_kept(tmp_path: Path) -> None:
+def test_a_comparison_is_reported_and_kept(tmp_path: Path) -> None:
     line = RacingLine(straight_course(), (0.0, 0.0), (LineTurn(aside=1.0),) * 3)
     told: list[str] = []
     base, kept = load_scenario("slalom-20-gates"), tmp_path / "kept"

@@ -169,7 +169,7 @@ def test_a_window_that_moves_on_finds_what_the_whole_search_finds() -> None:
         ({"window": 2, "step": 3}, "step is 3"),
     ],
 )
-def test_what_is_refused(named: dict[str, Any], words: str) -> None:
+def test_rejected_input(named: dict[str, Any], words: str) -> None:
     with pytest.raises(ParameterError, match=words):
         race(SLALOM, **({"gates": 2} | named))
 
@@ -180,7 +180,7 @@ def test_without_cmaes_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) 
         race(SLALOM, gates=2, model="point")
 
 
-def test_a_scenario_without_a_skier_is_refused() -> None:
+def test_a_scenario_without_a_skier_is_rejected() -> None:
     with pytest.raises(ParameterError, match="no skier"):
         race(replace(SLALOM, skier=None))
 

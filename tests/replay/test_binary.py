@@ -106,7 +106,7 @@ def test_five_seconds_are_below_a_megabyte() -> None:
     assert len(replay_bytes(replay_of_run(circle_run(count=501, duration=5.0)))) < 1_000_000
 
 
-def test_one_moment_is_enough_and_none_is_refused() -> None:
+def test_one_moment_is_enough_and_none_is_rejected() -> None:
     one = replay_of_run(circle_run(count=3))
     over = {
         name: getattr(one, name)[:1] for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
@@ -128,7 +128,7 @@ def test_one_moment_is_enough_and_none_is_refused() -> None:
         (lambda content: content.replace(b'"format": 2', b'"format": 3'), coded("unknown_format", readable=2)),
     ],
 )
-def test_damaged_bytes_are_refused(replay: Replay, damage: Any, words: str | Coded) -> None:
+def test_damaged_bytes_are_rejected(replay: Replay, damage: Any, words: str | Coded) -> None:
     with raises(ParameterError, words):
         replay_of_bytes(damage(replay_bytes(replay)))
 
@@ -175,7 +175,7 @@ def test_titles_go_to_whom_has_none_yet(tmp_path: Path) -> None:
     assert not (tmp_path / "y.html").exists()
 
 
-def test_three_js_is_the_version_that_is_said_and_has_its_licence() -> None:
+def test_three_js_is_the_version_that_is_reported_and_has_its_licence() -> None:
     assert 'const t="180"' in static_text("three.core.min.js")
     licence = (STATIC / "LICENSE-three.txt").read_text(encoding="utf-8")
     assert "MIT License" in licence

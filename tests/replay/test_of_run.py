@@ -94,7 +94,7 @@ def test_a_ski_file_is_found_beside_the_run_and_asked_for_where_it_is_not(tmp_pa
 
 
 @pytest.mark.parametrize("content", [b"", b"no NetCDF at all", b"CDF\x01" + b"\0" * 60])
-def test_what_is_no_run_is_refused_with_its_name(tmp_path: Path, content: bytes) -> None:
+def test_what_is_no_run_is_rejected_with_its_name(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "run.nc").write_bytes(content)
     with raises(ParameterError, "not_a_run"):
         replay_of_file(tmp_path)
@@ -102,7 +102,7 @@ def test_what_is_no_run_is_refused_with_its_name(tmp_path: Path, content: bytes)
         replay_of_file(tmp_path / "gone.nc")
 
 
-def test_a_damaged_run_is_refused_in_words(tmp_path: Path) -> None:
+def test_a_damaged_run_is_rejected(tmp_path: Path) -> None:
     folder = written(circle_run(count=5), tmp_path)
     sound, random_ = (folder / "run.nc").read_bytes(), random.Random(1)
     refused = 0
@@ -151,7 +151,7 @@ def test_a_measured_track_keeps_its_places_and_moves_in_time() -> None:
         measured_track(replace(track(), place=np.array([[0.0, 1.0, 0.0], [np.nan] * 3, [2.0, np.nan, 0.5]])))
 
 
-def test_a_course_of_the_catalogue_stands_in_a_run_of_a_file(tmp_path: Path) -> None:
+def test_a_course_of_the_catalogue_is_in_a_run_of_a_file(tmp_path: Path) -> None:
     run = circle_run(count=3)
     written(run, tmp_path, **{"course.name": "slalom-20-gates"})
     gates = replay_of_file(tmp_path).gates

@@ -133,7 +133,7 @@ def test_skis_are_where_their_boots_have_them() -> None:
             assert across == pytest.approx(2.0 * replay.skis.half_width[:, None] * left, abs=1e-12)
 
 
-def test_moving_boots_stand_in_the_moving_model() -> None:
+def test_moving_boots_are_in_the_moving_model() -> None:
     replay = replay_of_run(run_with_boots())
     model = GlbFile(moving_replay_model(replay))
     for frame, time in enumerate(replay.time):

@@ -78,7 +78,7 @@ def test_the_terminal_has_every_number(found: Identification) -> None:
         assert part in text
 
 
-def test_what_is_not_known_is_said(found: Identification) -> None:
+def test_what_is_not_known_is_reported(found: Identification) -> None:
     nothing = replace(
         found, parameters=(Identified(parameter=MU), Identified(parameter=AREA, value=0.41)), data=(),
         correlation=np.full((2, 2), np.nan), effort=Effort(simulations=12, wall_s=1.25),

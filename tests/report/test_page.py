@@ -252,7 +252,7 @@ def test_names_are_text_and_never_markup(campaign: Campaign, tmp_path: Path) -> 
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_what_is_not_stated_is_said(campaign: Campaign, tmp_path: Path) -> None:
+def test_what_is_not_stated_is_reported(campaign: Campaign, tmp_path: Path) -> None:
     silent = replace(
         campaign,
         gauge_resolution=None,

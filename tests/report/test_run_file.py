@@ -95,7 +95,7 @@ def test_it_says_after_which_conventions_and_in_which_units(file: Any) -> None:
     assert text(file.variables["z"].positive) == "up"
 
 
-def test_scenario_and_outcome_stand_in_the_file(run: Run, file: Any) -> None:
+def test_scenario_and_outcome_are_in_the_file(run: Run, file: Any) -> None:
     assert json.loads(text(file.scenario))["snow"]["S_f_N_per_mm2"] == 0.5
     assert json.loads(text(file.scenario_keys))["snow.S_f_N_per_mm2"].endswith("S_f (N/mm²)")
     assert text(file.outcome) == run.outcome
@@ -121,7 +121,7 @@ def test_run_that_ended_at_once_has_a_file(tmp_path: Path) -> None:
     assert file.variables["groove_width"].shape == (0,)
 
 
-def test_every_variable_is_told_with_its_unit() -> None:
+def test_every_variable_is_reported_with_its_unit() -> None:
     for variable in RUN_VARIABLES:
         row = next(line for line in VARIABLES if line.startswith("|") and f"`{variable.name}`" in line)
         cells = [cell.strip() for cell in row.split("|")[1:-1]]

@@ -81,7 +81,7 @@ def test_page_needs_nothing_else(html: str) -> None:
     assert "nan" not in re.findall(r">([^<]*)<", html)
 
 
-def test_every_key_of_the_scenario_stands_in_its_table(run: Run, html: str) -> None:
+def test_every_key_of_the_scenario_is_in_its_table(run: Run, html: str) -> None:
     rows = {row[0]: row for row in scenario_table(summary_of(run)["scenario"]).rows}
     assert set(rows) == set(SCENARIO_KEYS)
     assert rows[EDGE_ANGLE][1:3] == ("30", "°")
@@ -138,7 +138,7 @@ def test_energies_add_up(run: Run) -> None:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_verification_is_told_where_it_was_asked(run: Run, html: str, tmp_path: Path) -> None:
+def test_verification_is_reported_where_it_was_asked(run: Run, html: str, tmp_path: Path) -> None:
     assert "Computed again" not in html
     write_run_report(run, summary_of(run) | {"verification": CHECKED}, tmp_path)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -188,7 +188,7 @@ def test_no_word_in_german_figures_of_tracks_is_left_in_english() -> None:
         assert {each for each in english & german if re.search("[a-z]{4}", each)} == set()
 
 
-def test_a_language_without_texts_is_refused_before_anything_is_written(reference: Reported, tmp_path: Path) -> None:
+def test_a_language_without_texts_is_rejected_before_anything_is_written(reference: Reported, tmp_path: Path) -> None:
     with pytest.raises(ParameterError):
         write_report(reference.analysis, tmp_path / "out", language="xx")
     assert not (tmp_path / "out").exists()

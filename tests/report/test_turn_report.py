@@ -112,7 +112,7 @@ def test_parameters_are_in_the_units_of_the_field() -> None:
     assert stress[3] == pytest.approx((0.4, 0.6))
 
 
-def test_what_was_measured_beside_them_stands_in_the_table_and_is_narrowed_by_further_readings(
+def test_what_was_measured_beside_them_is_in_the_table_and_is_narrowed_by_further_readings(
     chain: TurnChain,
 ) -> None:
     snow = replace(
@@ -250,7 +250,7 @@ def test_few_runs_tell_no_shares(chain: TurnChain) -> None:
     assert band_shares(middle_track(chain.nominal), chain.ensemble) is None  # the draws are unknown
 
 
-def test_too_little_to_compare_is_refused(chain: TurnChain, tmp_path: Path) -> None:
+def test_too_little_to_compare_is_rejected(chain: TurnChain, tmp_path: Path) -> None:
     with raises(ParameterError, "too_few_runs", contacts=2, runs=2):
         write_turn_report(replace(chain, ensemble=chain.ensemble[:2]), tmp_path)
     assert not list(tmp_path.iterdir())

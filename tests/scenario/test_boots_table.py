@@ -54,7 +54,7 @@ def test_four_poses_are_enough() -> None:
         ({"frame": "slope", "over": "distance"}, "contradiction"),
     ],
 )
-def test_poses_that_are_none_are_refused(changes: dict[str, Any], told: str | Coded) -> None:
+def test_poses_that_are_none_are_rejected(changes: dict[str, Any], told: str | Coded) -> None:
     with raises(ParameterError, told):
         Boots(**FLAT | changes)
 
@@ -101,7 +101,7 @@ EDGES = "time_s,left_edge_angle_deg,left_up_m\n0,0,0\n0.1,1,0\n0.2,2,0\n0.3,3,0\
 
 @pytest.mark.parametrize("number", ["1e308", "-1e308", "1e309", "1.1e7"])
 @pytest.mark.parametrize("column", [0, 1, 2])
-def test_impossible_numbers_are_refused_with_row_and_column(tmp_path: Path, number: str, column: int) -> None:
+def test_impossible_numbers_are_rejected_with_row_and_column(tmp_path: Path, number: str, column: int) -> None:
     cells = ["0.2", "2", "0"]
     cells[column] = number
     text = EDGES.replace("0.2,2,0", ",".join(cells))
@@ -111,7 +111,7 @@ def test_impossible_numbers_are_refused_with_row_and_column(tmp_path: Path, numb
 
 
 @pytest.mark.parametrize("number", ["5e-324", "1e-300", "9e-7"])
-def test_steps_too_short_for_a_spline_are_refused(tmp_path: Path, number: str) -> None:
+def test_steps_too_short_for_a_spline_are_rejected(tmp_path: Path, number: str) -> None:
     with raises(ParameterError, "out_of_range", line=3, clock="time_s"):
         read_boots(table(tmp_path, EDGES.replace("0.1,", f"{number},")))
 
@@ -184,7 +184,7 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
         (MOT, "a.trc", "wrong_ending"),
     ],
 )
-def test_tables_that_are_none_are_refused_with_their_place(
+def test_tables_that_are_none_are_rejected_with_their_place(
     tmp_path: Path, text: str, name: str, told: str | Coded
 ) -> None:
     with raises(ParameterError, told):
@@ -227,7 +227,7 @@ def test_a_scenario_given_in_python_is_changed_as_a_file() -> None:
         ("distance_m", (-1.0, 1.0, 2.0, 9.5), {"run.length_m": 9.0}, ""),
     ],
 )
-def test_boots_that_rest_in_a_run_are_told(
+def test_boots_that_rest_in_a_run_are_reported(
     tmp_path: Path, clock: str, rows: tuple[float, ...], end: dict[str, float], said: str
 ) -> None:
     path = table(tmp_path, f"{clock},left_up_m\n" + "".join(f"{at},0\n" for at in rows))

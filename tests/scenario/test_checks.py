@@ -51,7 +51,7 @@ def changed(part: str, **values: Any) -> Scenario:
         ("stop", {"length": np.nan}, coded("out_of_range", value="nan")),
     ],
 )
-def test_part_out_of_its_limits_is_refused(part: str, values: dict[str, Any], told: str | Coded) -> None:
+def test_part_out_of_its_limits_is_rejected(part: str, values: dict[str, Any], told: str | Coded) -> None:
     with raises(ParameterError, told):
         changed(part, **values)
 
@@ -66,7 +66,7 @@ def test_part_out_of_its_limits_is_refused(part: str, values: dict[str, Any], to
         ({"slope": Profile(np.arange(1.0, 5.0), np.zeros(4))}, "contradiction"),
     ],
 )
-def test_scenario_out_of_its_limits_is_refused(values: dict[str, Any], told: str | Coded) -> None:
+def test_scenario_out_of_its_limits_is_rejected(values: dict[str, Any], told: str | Coded) -> None:
     with raises(ParameterError, told):
         replace(load_scenario("carved-46m"), **values)
 
@@ -148,7 +148,7 @@ def said(error: pytest.ExceptionInfo[ParameterError]) -> str:
 
 
 @pytest.mark.parametrize(("part", "field", "value", "key", "given"), OUT_OF_RANGE)
-def test_python_refuses_what_a_file_refuses(part: str, field: str, value: object, key: str, given: object) -> None:
+def test_python_rejects_what_a_file_rejects(part: str, field: str, value: object, key: str, given: object) -> None:
     scenario = load_scenario("carved-46m")
     with pytest.raises(ParameterError, match=rf"{re.escape(key)} is ") as in_file:
         load_scenario("carved-46m", changes={key: given})
@@ -158,7 +158,7 @@ def test_python_refuses_what_a_file_refuses(part: str, field: str, value: object
 
 
 @pytest.mark.parametrize("values", [(-2e8, 5e5), (2e8, 0.0), (math.inf, 5e5), (2e8, math.nan)])
-def test_snow_that_is_none_is_refused(values: tuple[float, float]) -> None:
+def test_snow_that_is_none_is_rejected(values: tuple[float, float]) -> None:
     with raises(ParameterError, "out_of_range", low=0.0, allowed="above 0"):
         SnowProperties(*values, source="given as numbers")
 

@@ -25,7 +25,7 @@ def test_switches_and_words_have_pythons_defaults() -> None:
     assert (Solver().method, Solver().fixed) == ("default", False)
 
 
-def test_defaults_stand_in_the_unit_of_their_key() -> None:
+def test_defaults_are_in_the_unit_of_their_key() -> None:
     told = {key: SCENARIO_KEYS[key].default for key in ("solver.step_ms", "solver.tolerance_mm", "run.output_ms")}
     assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.001, "run.output_ms": 10.0})
     assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 1e-6, 0.01)
@@ -86,7 +86,7 @@ def test_factors_lead_to_si() -> None:
     assert SCENARIO_KEYS["run.output_ms"].in_si(10.0) == 0.01
 
 
-def test_a_word_that_may_mean_two_keys_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_word_that_may_mean_two_keys_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     """No two keys that can be looked for share a word now; a further one may."""
     two = ("friction.mu_0", "snow.S_f_N_per_mm2")
     monkeypatch.setattr(keys, "_KEYS_BY_WORD", {"both": two, "one": two[:1]})
@@ -110,7 +110,7 @@ def test_built_in_scenarios_hold_to_the_schema(name: str) -> None:
         {"sledge": {"mass": 80}},
     ],
 )
-def test_schema_refuses_what_the_reader_refuses(changes: dict[str, dict[str, Any]]) -> None:
+def test_schema_rejects_what_the_reader_rejects(changes: dict[str, dict[str, Any]]) -> None:
     parsed = tomllib.loads(scenario_text("carved-46m"))
     for section, values in changes.items():
         parsed[section].update(values)
@@ -138,7 +138,7 @@ def test_schema_refuses_what_the_reader_refuses(changes: dict[str, dict[str, Any
         ("published", " "),
     ],
 )
-def test_values_outside_their_range_are_refused_by_the_key(key: str, value: object) -> None:
+def test_values_outside_their_range_are_rejected_by_the_key(key: str, value: object) -> None:
     with pytest.raises(ParameterError, match=rf"\.{key} is "):
         load_scenario("carved-46m", changes={key: value})
 
@@ -175,7 +175,7 @@ def test_what_is_no_key_to_look_for(word: str, told: str | Coded) -> None:
         free_keys(word)
 
 
-def test_where_nothing_is_near_all_are_told() -> None:
+def test_where_nothing_is_near_all_are_reported() -> None:
     with pytest.raises(ParameterError) as refused:
         free_key("quark")
     told = str(refused.value).partition("There are ")[2].split(", ")
@@ -217,7 +217,7 @@ def test_about_the_scenarios_own_value() -> None:
         ("mew_0=0.1:0.2", "unknown_name"),
     ],
 )
-def test_what_is_no_prior_is_refused_in_words(word: str, told: str | Coded) -> None:
+def test_what_is_no_prior_is_rejected(word: str, told: str | Coded) -> None:
     with raises(ParameterError, told):
         prior_of(word)
 

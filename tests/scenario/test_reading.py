@@ -130,7 +130,7 @@ def test_a_word_without_an_equals_sign_changes_nothing() -> None:
         parse_change("mass_kg 90")
 
 
-def test_a_first_turn_that_never_comes_is_refused() -> None:
+def test_a_first_turn_that_never_comes_is_rejected() -> None:
     with raises(
         ParameterError, "out_of_range", low=0.0, name="skier.first_turn_s", value="inf", allowed="0 or more", unit="s"
     ):
@@ -138,7 +138,7 @@ def test_a_first_turn_that_never_comes_is_refused() -> None:
 
 
 @pytest.mark.parametrize("word", ["mass_kg=90,5", "sledge.mass_kg = 90,5", "mu_0=0,04"])
-def test_a_decimal_comma_is_told_how_to_write(word: str) -> None:
+def test_a_decimal_comma_is_reported_how_to_write(word: str) -> None:
     with pytest.raises(ParameterError, match=f"Write {word.replace(',', '.')}$"):
         parse_change(word)
 
@@ -146,7 +146,7 @@ def test_a_decimal_comma_is_told_how_to_write(word: str) -> None:
 @pytest.mark.parametrize(
     "word", ["mass_kg=80\nspeed_m_per_s=3", "mass_kg=80\n[x]", "mass_kg=" + "[" * 3000, "mass_kg=1" + "0" * 400]
 )
-def test_change_that_is_not_one_value_is_refused_in_a_short_sentence(word: str) -> None:
+def test_change_that_is_not_one_value_is_rejected_in_a_short_sentence(word: str) -> None:
     with raises(ParameterError, "wrong_kind", name="sledge.mass_kg") as error:
         load_scenario("carved-46m", changes=dict([parse_change(word)]))
     assert len(str(error.value)) < 200
@@ -170,7 +170,7 @@ def test_elastic_snow_needs_no_unloading_ratio_and_takes_no_other() -> None:
         load_scenario("carved-46m", changes={**elastic, "unloading_ratio": 2})
 
 
-def test_drag_acts_at_the_centre_of_mass_where_nothing_else_is_said(tmp_path: Path) -> None:
+def test_drag_acts_at_the_centre_of_mass_where_nothing_else_is_reported(tmp_path: Path) -> None:
     path = written(
         tmp_path, replaced={"centre_of_pressure": "", "centre_of_mass_height": "centre_of_mass_height_m = 0.2"}
     )
@@ -356,7 +356,7 @@ def test_scenario_tells_its_values_back(name: str) -> None:
         ({"mu_1_s_per_m": -0.01}, "contradiction"),
     ],
 )
-def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: str | Coded) -> None:
+def test_bad_change_is_rejected_in_a_sentence(changes: dict[str, object], told: str | Coded) -> None:
     with raises(ParameterError, told):
         load_scenario("carved-46m", changes=changes)
 
@@ -389,21 +389,21 @@ def test_bad_change_is_refused_in_a_sentence(changes: dict[str, object], told: s
         ),
     ],
 )
-def test_bad_file_is_refused_with_its_name(tmp_path: Path, replaced: dict[str, str], told: str | Coded) -> None:
+def test_bad_file_is_rejected_with_its_name(tmp_path: Path, replaced: dict[str, str], told: str | Coded) -> None:
     path = written(tmp_path, replaced=replaced)
     with raises(ParameterError, told) as error:
         load_scenario(path)
     assert str(error.value).startswith(str(path))
 
 
-def test_value_in_place_of_a_section_is_refused(tmp_path: Path) -> None:
+def test_value_in_place_of_a_section_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "flat.toml"
     path.write_text("slope = 10\n", encoding="utf-8")
     with raises(ParameterError, "wrong_kind", section="slope"):
         load_scenario(path)
 
 
-def test_scenario_that_is_not_there_is_told_with_the_nearest(tmp_path: Path) -> None:
+def test_scenario_that_is_not_there_is_reported_with_the_nearest(tmp_path: Path) -> None:
     with raises(ParameterError, "unknown_name", similar="carved-46m"):
         load_scenario("carved-46")
     with raises(ParameterError, "cannot_read"):
@@ -425,12 +425,12 @@ def test_a_file_of_the_current_folder_needs_no_ending(tmp_path: Path, monkeypatc
     assert load_scenario("mine").sledge.mass == 71.0
 
 
-def test_the_text_of_a_scenario_that_is_not_built_in_is_refused() -> None:
+def test_the_text_of_a_scenario_that_is_not_built_in_is_rejected() -> None:
     with raises(ParameterError, "unknown_name", similar="carved-46m", name="carved-46"):
         scenario_text("carved-46")
 
 
-def test_start_off_the_profile_is_refused(tmp_path: Path) -> None:
+def test_start_off_the_profile_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "down.csv").write_text(PROFILE, encoding="utf-8")
     changes = {"slope.kind": "profile", "slope.profile": str(tmp_path / "down.csv")}
     with raises(ParameterError, "contradiction"):

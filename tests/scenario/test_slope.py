@@ -80,12 +80,12 @@ def test_tables_are_copied_and_read_only() -> None:
         ([0, 1, 2, 3, 4], [0, 0, 9, 9, 9], coded("out_of_range", x=1.0, end=2.0)),
     ],
 )
-def test_what_is_no_profile_is_refused_with_its_place(x: list[float], height: list[float], told: str | Coded) -> None:
+def test_what_is_no_profile_is_rejected_with_its_place(x: list[float], height: list[float], told: str | Coded) -> None:
     with raises(ParameterError, told):
         Profile(np.array(x), np.array(height))
 
 
-def test_cliff_is_told_by_the_steepest_place_between_the_points() -> None:
+def test_cliff_is_reported_by_the_steepest_place_between_the_points() -> None:
     """A cubic that starts and ends flat is 1.5 times as steep half-way as its chord: 1.5 × 3 = tan 77.5 degrees."""
     with raises(ParameterError, "out_of_range"):
         Profile(np.arange(4.0), np.array([0.0, 0.0, -3.0, -3.0]))
@@ -104,7 +104,7 @@ def test_measured_profile_is_read_as_it_stands() -> None:
 
 
 @measured
-def test_measured_gap_is_refused_unless_asked_for() -> None:
+def test_measured_gap_is_rejected_unless_asked_for() -> None:
     with raises(ParameterError, "out_of_range", x=13.96747455795386, end=24.384):
         read_profile(CALIFORNIA)
     profile = read_profile(CALIFORNIA, gap="interpolate")
@@ -136,7 +136,7 @@ def test_profile_with_decimal_commas(tmp_path: Path, separator: str) -> None:
         ("x,y\n0,0\n1,-0.2,7\n", coded("too_many_cells", row=3, count=3, columns=2)),
     ],
 )
-def test_what_is_wrong_in_a_file_is_told_with_row_and_column(tmp_path: Path, text: str, told: str | Coded) -> None:
+def test_what_is_wrong_in_a_file_is_reported_with_row_and_column(tmp_path: Path, text: str, told: str | Coded) -> None:
     path = tmp_path / "profile.csv"
     path.write_text(text, encoding="utf-8")
     with raises(ParameterError, told) as error:
@@ -144,7 +144,7 @@ def test_what_is_wrong_in_a_file_is_told_with_row_and_column(tmp_path: Path, tex
     assert str(error.value).startswith(str(path))
 
 
-def test_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with raises(ParameterError, "cannot_read"):
         read_profile(tmp_path / "nowhere.csv")
     (tmp_path / "image.csv").write_bytes(b"\xff\xfe\x00\x81")
@@ -291,7 +291,7 @@ def _without_slope() -> str:
         ),
     ],
 )
-def test_what_is_wrong_in_a_table_is_told_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:
+def test_what_is_wrong_in_a_table_is_reported_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:
     path = written(tmp_path, text)
     with raises(ParameterError, said) as error:
         read_terrain(path)
@@ -299,7 +299,7 @@ def test_what_is_wrong_in_a_table_is_told_with_its_place(tmp_path: Path, text: s
 
 
 @pytest.mark.parametrize(("rows", "refused"), [(10, False), (11, True)])
-def test_rows_that_lie_on_no_grid_are_told(tmp_path: Path, rows: int, refused: bool) -> None:
+def test_rows_that_lie_on_no_grid_are_reported(tmp_path: Path, rows: int, refused: bool) -> None:
     """Ten and more different places along both axes for each row: a line across the grid."""
     text = "x_m,y_m,z_m\n" + "".join(f"{i},{i},0\n" for i in range(rows))
     with pytest.raises(ParameterError) as error:
@@ -317,7 +317,7 @@ def test_a_profile_is_a_table_of_places_two_centimetres_apart_or_nearer() -> Non
     assert grid.heights(places, 0.0 * places) == pytest.approx(profile.heights(places), abs=1e-12)
 
 
-def test_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     for name in ("none.csv", "none.asc", "none.tif"):
         with raises(ParameterError, "cannot_read"):
             read_terrain(tmp_path / name)

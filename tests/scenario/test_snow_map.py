@@ -128,7 +128,7 @@ def test_hardness_where_it_matters(tmp_path: Path) -> None:
         (OVER + "20,5,0.3\n", "row 6"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str) -> None:
+def test_a_fault_is_reported_with_its_place(tmp_path: Path, text: str, said: str) -> None:
     path = written(tmp_path, text)
     with pytest.raises(ParameterError, match=said) as error:
         read_snow_map(path)
@@ -136,7 +136,7 @@ def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: s
 
 
 @pytest.mark.parametrize("step", [0.1, 1.0, 20.0])
-def test_curve_that_falls_below_zero_is_refused(step: float) -> None:
+def test_curve_that_falls_below_zero_is_rejected(step: float) -> None:
     """From 4 to 0.01 and on as flat: central differences let the curve swing 0.3 below, however far apart they are."""
     values = np.array([4.0, 4.0, 0.01, 0.01]) * N_PER_MM3
     with pytest.raises(ParameterError, match="goes below 0 at x = "):
@@ -145,7 +145,7 @@ def test_curve_that_falls_below_zero_is_refused(step: float) -> None:
         SnowMap(hardness=Grid(np.zeros(1), step * np.arange(4.0), values[None, :]))
 
 
-def test_a_map_of_nothing_is_refused() -> None:
+def test_a_map_of_nothing_is_rejected() -> None:
     with raises(ParameterError, "missing"):
         SnowMap()
 
@@ -163,7 +163,7 @@ def test_a_large_map_is_looked_through_as_finely() -> None:
         SnowMap(hardness=Grid(np.zeros(1), np.arange(30_000.0), row[None, :]))
 
 
-def test_given_twice_is_refused(tmp_path: Path) -> None:
+def test_given_twice_is_rejected(tmp_path: Path) -> None:
     path = written(tmp_path, ALONG)
     with raises(ParameterError, "contradiction"):
         load_scenario("carved-46m", changes={"snow.map_file": str(path), "snow.H_V_N_per_mm3": 0.3})

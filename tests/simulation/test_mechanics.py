@@ -237,7 +237,9 @@ def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
         (0.79, 0.28, "at rest"),
     ],
 )
-def test_where_the_weight_passes_is_told(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_the_weight_passes_is_reported(
+    ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("skisnow.simulation.static_start.weight_meets_base", lambda _: (ahead, left))
     assert told in str(no_start(stood(12.5e6, 45.0)))
 

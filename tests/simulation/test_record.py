@@ -78,7 +78,7 @@ def test_forces_of_friction_are_sums_over_the_sections() -> None:
         assert pushes == pytest.approx(sums, rel=1e-12)
 
 
-def test_what_is_told_of_the_skis_is_what_the_beams_and_boots_have() -> None:
+def test_what_is_reported_of_the_skis_is_what_the_beams_and_boots_have() -> None:
     """Deflection and twist at the free nodes; a stance between the edges at the boots."""
     scenario = load_scenario("carved-46m", changes={"start.x_m": 3.0, "start.y_m": -2.0, "start.heading_deg": 0.0})
     setup = set_up(scenario)

@@ -57,7 +57,7 @@ def test_what_is_straight_or_stands_has_no_radius() -> None:
     assert turn_radius(time[:2], turning[:2], up[:2]) == pytest.approx(np.ones(2), rel=1e-2)
 
 
-def test_the_heading_goes_on_beyond_half_a_turn() -> None:
+def test_the_heading_continues_beyond_half_a_turn() -> None:
     """From where x points, seen from above, on a slope that falls to the left as well."""
     normal = np.array([0.3, 0.4, 1.0]) / math.sqrt(1.25)
     down = np.array([1.0, 0.0, -0.3]) / math.sqrt(1.09)

@@ -317,7 +317,7 @@ def test_what_is_not_finite_is_null() -> None:
     json.dumps(found, allow_nan=False)
 
 
-def test_scenario_stands_in_sections_with_every_key() -> None:
+def test_scenario_is_in_sections_with_every_key() -> None:
     found = summary_dict(straight_run(ASKED.scenario), ASKED.values)["scenario"]
     assert found["snow"]["H_V_N_per_mm3"] == 0.2
     assert found["sledge"]["inertia_kg_m2"] == [6.0, 8.0, 10.0]

@@ -291,7 +291,7 @@ def test_near_the_limit_a_thousandth_moves_the_end_by_more_than_five_of_the_run(
 
 
 @pytest.mark.slow
-def test_a_run_at_the_limit_of_its_grip_is_told() -> None:
+def test_a_run_at_the_limit_of_its_grip_is_reported() -> None:
     """On H_V = 1, with u_y = 0.5 mm, a turn that holds gives way to a skid near S_f = 0.339, within a thousandth."""
     skidded = 30.0  # energy of shear (J): 11 where the edge holds, 50 and more where it does not
 

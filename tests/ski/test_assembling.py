@@ -248,7 +248,7 @@ def test_rows_stand_as_they_are_and_nothing_swings_beyond_them() -> None:
         ([0.84, 0.3, 0.2, 0.1, 0.0, -0.2, -0.74], "500 mm apart"),
     ],
 )
-def test_too_few_rows_in_the_sidecut_are_refused(station: list[float], told: str) -> None:
+def test_too_few_rows_in_the_sidecut_are_rejected(station: list[float], told: str) -> None:
     with pytest.raises(ParameterError, match=f"width_mm has .*{told}.*3 rows"):
         width_of_table(table(station, [80.0] * len(station)), SIDE_LAYOUT)
 

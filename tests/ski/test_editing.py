@@ -93,7 +93,7 @@ def test_the_base_counts_from_the_boot_still() -> None:
         ({"values": {"width_mm": np.full(9, 0.6)}}, r"width_mm is 600\.0;"),
     ],
 )
-def test_what_cannot_be_is_refused(how: dict[str, object], said: str) -> None:
+def test_impossible_input_is_rejected(how: dict[str, object], said: str) -> None:
     with pytest.raises(ParameterError, match=said):
         edited(ski_named("slalom"), **how)  # type: ignore[arg-type]
 

@@ -121,7 +121,7 @@ def test_a_file_names_a_shape(design: Callable[..., Path]) -> None:
         ({"taper": "8cm"}, coded("invalid_ski", waist=93.00000000000001)),
     ],
 )
-def test_shapes_that_are_refused(design: Callable[..., Path], changes: dict[str, Any], named: str | Coded) -> None:
+def test_shapes_that_are_rejected(design: Callable[..., Path], changes: dict[str, Any], named: str | Coded) -> None:
     with raises(ParameterError, named):
         ski_of(design(**changes))
 
@@ -143,6 +143,6 @@ def test_a_sidecut_radius_must_be_that_of_a_ski(design: Callable[..., Path], rad
 
 
 @pytest.mark.parametrize("text", ["1" * 300_000 + "?", "1" + " " * 300_000 + "?", "1cm" + " " * 300_000 + "?"])
-def test_a_long_text_is_refused_after_one_pass(design: Callable[..., Path], text: str) -> None:
+def test_a_long_text_is_rejected_after_one_pass(design: Callable[..., Path], text: str) -> None:
     with raises(ParameterError, "text_too_long"):  # with backtracking this would take minutes
         ski_of(design(waist_width=text))

@@ -165,7 +165,7 @@ def test_bad_files_name_file_key_value_and_remedy(
 
 
 @pytest.mark.filterwarnings(IGNORE_RANGE_WARNING)
-def test_lengths_in_centimetres_are_refused(ski_file: Written) -> None:
+def test_lengths_in_centimetres_are_rejected(ski_file: Written) -> None:
     path = ski_file(length_mm=159.3, running_length_mm=139.6, sidecut_length_mm=145.8)
     with raises(ParameterError, "out_of_range", least=290.00000000000006, place="length_mm", value="159.3"):
         read_ski(path)

@@ -304,12 +304,12 @@ def test_boot_away_from_the_middle_is_still_at_zero() -> None:
         (BaseShape(tip_rocker_length=0.1, tip_rocker_height=0.03, shovel_height=0.05), "contradiction"),
     ],
 )
-def test_impossible_bases_are_refused(shape: BaseShape, named: str | Coded) -> None:
+def test_impossible_bases_are_rejected(shape: BaseShape, named: str | Coded) -> None:
     with raises(ParameterError, named):
         shape.height_at(np.zeros(1), LAYOUT)
 
 
-def test_shovel_height_without_a_shovel_is_refused() -> None:
+def test_shovel_height_without_a_shovel_is_rejected() -> None:
     piece = layout_of_lengths(length=0.2, running_length=0.2, sidecut_length=0.2, tail_overhang=0.0)
     assert np.all(BaseShape().height_at(np.linspace(0.1, -0.1, 5), piece) == 0.0)
     with raises(ParameterError, "contradiction", name="shovel", given_height=50.0):

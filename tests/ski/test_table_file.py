@@ -47,7 +47,7 @@ def with_table(ski_file: Written) -> Callable[..., Path]:
     return written
 
 
-def test_the_rows_stand_in_the_ski(with_table: Written) -> None:
+def test_the_rows_are_in_the_ski(with_table: Written) -> None:
     ski = read_ski(with_table())
     at = ski.at([0.8, 0.4, 0.0, -0.4, -0.8])
     assert at.width * 1e3 == pytest.approx([110, 80, 68, 78, 100], abs=1e-9)

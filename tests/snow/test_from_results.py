@@ -135,7 +135,7 @@ def test_what_is_no_results_file_is_named(tmp_path: Path, contents: bytes, told:
 
 
 @pytest.mark.parametrize("hardness", [0.0, -0.2])
-def test_a_hardness_without_logarithm_is_told(tmp_path: Path, hardness: float) -> None:
+def test_a_hardness_without_logarithm_is_reported(tmp_path: Path, hardness: float) -> None:
     with raises(ParameterError, "out_of_range"):
         snow_from_results(results_file(tmp_path, [penetration(0.2), penetration(hardness)], []))
 
@@ -148,7 +148,7 @@ def test_shear_tests_without_any_moment_give_no_strength(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(("hardness", "stress"), [(0.9e-9, 0.1), (1.1e9, 0.1), (0.1, 1.1e9)])
-def test_numbers_that_no_snow_has_are_refused(tmp_path: Path, hardness: float, stress: float) -> None:
+def test_numbers_that_no_snow_has_are_rejected(tmp_path: Path, hardness: float, stress: float) -> None:
     with raises(ParameterError, "out_of_range"):
         snow_from_results(results_file(tmp_path, [penetration(hardness)], [shear(stress)]))
 
@@ -193,7 +193,7 @@ def test_a_share_of_one_half_is_the_middle_and_more_is_more() -> None:
     assert (low.failure_shear_stress, high.failure_shear_stress) == pytest.approx((1.0e5, 1.8e5), rel=1e-6)
 
 
-def test_snow_without_interval_is_refused() -> None:
+def test_snow_without_interval_is_rejected() -> None:
     with raises(ParameterError, "no_data", quantity="S_f"):
         drawn_snows(replace(SNOW, failure_shear_stress_interval=None), np.full((3, 2), 0.5))
     with raises(ParameterError, "out_of_range", stress=0.0):

@@ -101,13 +101,13 @@ def test_all_names() -> None:
         ("fresh", coded("unknown_name", name="fresh", similar="fresh-snow")),
     ],
 )
-def test_a_misspelt_name_is_told_the_nearest_and_all(misspelt: str, nearest: str | Coded) -> None:
+def test_a_misspelt_name_is_reported_the_nearest_and_all(misspelt: str, nearest: str | Coded) -> None:
     with raises(ParameterError, nearest) as caught:
         published_snow(misspelt)
     assert all(name in str(caught.value) for name in published_names())
 
 
-def test_a_name_like_none_is_told_all() -> None:
+def test_a_name_like_none_is_reported_all() -> None:
     with raises(ParameterError, "unknown_name", name="xyz", problem="no published snow is named 'xyz'."):
         published_snow("xyz")
 

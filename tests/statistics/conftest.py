@@ -10,7 +10,6 @@ import numpy.typing as npt
 import pytest
 
 FloatArray = npt.NDArray[np.float64]
-CERTIFIED_DIGITS = 9.0
 
 NONLINEAR = Path(__file__).resolve().parent / "nist"
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "regression"

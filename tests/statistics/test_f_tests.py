@@ -126,7 +126,7 @@ def test_undefined() -> None:
             one_way_anova(groups)
 
 
-def test_a_value_that_is_no_number_is_told_with_its_group() -> None:
+def test_a_value_that_is_no_number_is_reported_with_its_group() -> None:
     with raises(ParameterError, "not_a_number", name="group 2"):
         one_way_anova([[1.0, 2.0], [3.0, float("nan")], [4.0]])
 

@@ -301,6 +301,6 @@ def test_an_output_that_does_not_vary_has_no_shares() -> None:
     assert (found.share.tolist(), found.left) == ([0.0, 0.0], 0.0)
 
 
-def test_an_input_that_does_not_vary_is_refused() -> None:
+def test_an_input_that_does_not_vary_is_rejected() -> None:
     with pytest.raises(FitError):
         variance_shares([1.0, 2.0, 4.0], [[1.0], [1.0], [1.0]])

@@ -196,7 +196,7 @@ def test_certified(nist: Callable[[str], Any], digits: Callable[..., float], nam
     assert digits(fit.rmse_dof, file.numbers_after("Residual Standard Deviation:")) >= (9 if known_errors else 2)
 
 
-def test_data_that_hardly_tell_two_parameters_apart_are_said_to() -> None:
+def test_data_that_hardly_tell_two_parameters_apart_are_reported_to() -> None:
     x = np.linspace(0.0, 1.0, 12)
     y = 2.0 + 3.0 * x + np.random.default_rng(2).normal(0.0, 0.1, 12)
     with warns(FitWarning, "few_digits"):
@@ -244,7 +244,7 @@ def test_what_cannot_be_fitted_is_an_error() -> None:
         nonlinear_fit(lambda x, a: a * x[:3], x, y, [1.0])
 
 
-def test_a_model_that_refuses_a_step_of_the_search_is_an_error() -> None:
+def test_a_model_that_rejects_a_step_of_the_search_is_an_error() -> None:
     """It is defined at the start, and not where the search goes: towards 1000."""
     x = np.linspace(1.0, 2.0, 6)
 

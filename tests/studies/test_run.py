@@ -117,7 +117,7 @@ def test_finished_study_is_not_computed_again(study_file: Path) -> None:
     assert not study.partial.exists()
 
 
-def test_finished_points_of_a_changed_study_are_refused(study_file: Path) -> None:
+def test_finished_points_of_a_changed_study_are_rejected(study_file: Path) -> None:
     KeptRows.opened(read_study(study_file).partial, read_study(study_file).fingerprint()).close()
     study_file.write_text(TEXT.replace("[400, 800]", "[400, 900]"), encoding="utf-8")
     changed = read_study(study_file)
@@ -146,7 +146,7 @@ def test_table_of_another_study_is_kept_beside_and_anything_else_is_not_replaced
     assert study.out.read_text(encoding="utf-8").startswith("experiment")
 
 
-def test_an_earlier_table_that_cannot_be_moved_is_told(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_earlier_table_that_cannot_be_moved_is_reported(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_study(read_study(study_file), workers=1)
     before = read_study(study_file).out.read_bytes()
     study_file.write_text(TEXT.replace("[400, 800]", "[900]"), encoding="utf-8")
@@ -189,7 +189,7 @@ def test_table_in_which_no_point_could_be_asked_is_not_written(study_file: Path,
     assert sorted((path.name, path.read_bytes()) for path in study_file.parent.glob("table*")) == before
 
 
-def test_no_workers_are_refused_for_a_finished_study_too(study_file: Path) -> None:
+def test_no_workers_are_rejected_for_a_finished_study_too(study_file: Path) -> None:
     run_study(read_study(study_file), workers=1)
     with raises(ParameterError, "too_few_workers", workers=0):
         run_study(read_study(study_file), workers=0)
@@ -207,7 +207,7 @@ def test_no_workers_are_refused_for_a_finished_study_too(study_file: Path) -> No
         (lambda _: ["station_mm,width_mm", "0,60", "10,61,3"], "wrong_kind"),
     ],
 )
-def test_damaged_table_is_told_with_its_line(
+def test_damaged_table_is_reported_with_its_line(
     study_file: Path, damage: Callable[[list[str]], list[str]], told: str | Coded
 ) -> None:
     study = read_study(study_file)
@@ -227,7 +227,7 @@ def test_infinite_ratio_may_be_written_as_a_text(study_file: Path) -> None:
     assert {row["unloading_ratio"] for row in run_study(read_study(study_file), workers=1).rows} == {1000.0}
 
 
-def test_at_rest_and_carving_stand_in_one_table(study_file: Path) -> None:
+def test_at_rest_and_carving_are_in_one_table(study_file: Path) -> None:
     text = 'out = "t.csv"\n[fixed]\nski = "paper-tool"\nH_V_N_per_mm3 = 0.04\nS_f_N_per_mm2 = 0.3\nclamp_length_m = 0\n'
     grid = "unloading_ratio = 1\nload_N = 490\nedge_angle_deg = 45\n[grid]\nat_rest = [true, false]\n"
     study_file.write_text(text + grid, encoding="utf-8")
@@ -280,7 +280,7 @@ def test_parts_that_overlap_are_taken_once(study_file: Path) -> None:
     assert out.read_bytes() == wanted
 
 
-def test_missing_parts_and_foreign_ones_are_refused(study_file: Path) -> None:
+def test_missing_parts_and_foreign_ones_are_rejected(study_file: Path) -> None:
     out = study_file.parent / "merged.csv"
     first = run_shard(study_file, "1/3", workers=1)
     with raises(ParameterError, "missing", missing=8, count=12, first=2):
@@ -304,7 +304,7 @@ def test_missing_parts_and_foreign_ones_are_refused(study_file: Path) -> None:
     assert not out.exists()
 
 
-def test_rows_of_a_point_that_differ_are_refused(study_file: Path) -> None:
+def test_rows_of_a_point_that_differ_are_rejected(study_file: Path) -> None:
     parts = [run_shard(study_file, word, workers=1) for word in ("1/2", "2/2", "1/1")]
     kept = KeptRows.read(parts[2])
     (text,) = (text for number, text in kept.texts() if number == 3)
@@ -316,7 +316,7 @@ def test_rows_of_a_point_that_differ_are_refused(study_file: Path) -> None:
 
 
 @pytest.mark.parametrize("word", ["0/3", "4/3", "3", "a/b", "1/0", "1/20000"])
-def test_what_is_no_part_is_refused(word: str) -> None:
+def test_an_invalid_part_is_rejected(word: str) -> None:
     with raises(ParameterError, "out_of_range"):
         Shard.of(word)
 

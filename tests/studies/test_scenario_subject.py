@@ -89,7 +89,7 @@ def test_two_workers_write_the_bytes_of_one(tmp_path: Path, monkeypatch: pytest.
     assert tables[0].count(b"finished") == 3
 
 
-def test_study_without_one_good_point_is_refused_before_the_work(tmp_path: Path) -> None:
+def test_study_without_one_good_point_is_rejected_before_the_work(tmp_path: Path) -> None:
     text = TEXT.replace("[0, 10]", "[80, 81]")
     with raises(ParameterError, "out_of_range", name="slope.angle_deg"):
         read_study(study_file(tmp_path, text))
@@ -167,7 +167,7 @@ def test_scenario_of_a_file_and_files_of_points_count_in_the_fingerprint(tmp_pat
         ("[5, 6, 7]", "[[5, 6, 7], [6, 7, 8]]", "[a, b, c]"),
     ],
 )
-def test_mistakes_are_told(tmp_path: Path, old: str, new: str, told: str) -> None:
+def test_mistakes_are_reported(tmp_path: Path, old: str, new: str, told: str) -> None:
     with pytest.raises(ParameterError) as error:
         read_study(study_file(tmp_path, TEXT.replace(old, new)))
     assert told in str(error.value)

@@ -176,7 +176,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         ("out = table.csv\n", "not_toml"),
     ],
 )
-def test_each_mistake_is_told_with_the_file(text: str, told: str | Coded, tmp_path: Path) -> None:
+def test_each_mistake_is_reported_with_the_file(text: str, told: str | Coded, tmp_path: Path) -> None:
     with raises(ParameterError, told) as caught:
         study(tmp_path, text)
     assert str(tmp_path / "study.toml") in str(caught.value)

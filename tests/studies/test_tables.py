@@ -106,7 +106,7 @@ def test_rows_that_another_program_removed_leave_the_others(place: Path) -> None
         ("alter table study rename to other; create view study as select * from other", ("study",)),
     ],
 )
-def test_what_is_no_table_of_a_study_names_the_place(place: Path, statement: str, named: tuple[str, ...]) -> None:
+def test_an_invalid_table_of_a_study_names_the_place(place: Path, statement: str, named: tuple[str, ...]) -> None:
     change(place, statement)
     with pytest.raises(ParameterError) as caught:
         loads(place)
@@ -189,7 +189,9 @@ def test_large_table_is_read_as_it_is_used(study: Study, request: pytest.Fixture
     ],
 )
 @pytest.mark.usefixtures("large")
-def test_damaged_large_table_is_told(study: Study, damage: Callable[[list[str]], list[str]], told: str | Coded) -> None:
+def test_damaged_large_table_is_reported(
+    study: Study, damage: Callable[[list[str]], list[str]], told: str | Coded
+) -> None:
     run_study(study, workers=1)
     lines = study.out.read_text(encoding="utf-8").splitlines()
     study.out.write_bytes(("\n".join(damage(lines)) + "\n").encode("utf-8", "surrogateescape"))
@@ -259,7 +261,7 @@ def test_what_is_no_table_is_not_replaced(ending: str, study: Study) -> None:
     assert other.out.read_bytes().startswith(b"what somebody wrote")
 
 
-def test_parquet_without_its_library_is_told_before_the_work(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_parquet_without_its_library_is_reported_before_the_work(study: Study, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     text = study.file.read_text(encoding="utf-8").replace("table.csv", "table.parquet")
     study.file.write_text(text, encoding="utf-8")

@@ -102,7 +102,7 @@ def test_it_rests_and_works_again_even_after_an_error() -> None:
     assert gc.isenabled()
 
 
-def test_one_that_rested_before_goes_on_resting() -> None:
+def test_one_that_rested_before_continues_resting() -> None:
     gc.disable()
     with paused_collector():
         pass
@@ -146,7 +146,7 @@ def test_a_certificate_and_its_key_in_two_files_and_in_one(tmp_path: Path) -> No
 
 
 @needs_openssl
-def test_a_key_with_a_password_is_refused(tmp_path: Path) -> None:
+def test_a_key_with_a_password_is_rejected(tmp_path: Path) -> None:
     cert, key = made(tmp_path, "-passout", "pass:secret")
     with pytest.raises(ValueError, match="password"):
         load_certificate(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER), cert, key)

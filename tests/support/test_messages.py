@@ -109,7 +109,7 @@ def test_objects_are_sent_as_their_text() -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1, 20])
-def test_up_to_twenty_problems_all_stand_in_the_message(count: int) -> None:
+def test_up_to_twenty_problems_all_are_in_the_message(count: int) -> None:
     error = FieldDataError([f"problem {number}" for number in range(count)])
     assert str(error).splitlines() == [f"problem {number}" for number in range(count)]
     assert error.problems == tuple(f"problem {number}" for number in range(count))

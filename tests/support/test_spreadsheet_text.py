@@ -76,7 +76,7 @@ def test_encodings(data: bytes, codec: str, foreign: str | None) -> None:
         (b"\xff\xfe\0\0", "a NUL character", "UTF-16"),
     ],
 )
-def test_bytes_that_are_no_text_are_told_by_their_place(data: bytes, place: str, encoding: str) -> None:
+def test_bytes_that_are_no_text_are_reported_by_their_place(data: bytes, place: str, encoding: str) -> None:
     with pytest.raises(NoTextError, match=f"^{place} is no {encoding} text$") as refused:
         decoded(data)
     assert (refused.value.place, refused.value.encoding) == (place, encoding)
@@ -174,7 +174,7 @@ def test_the_case_of_headings_does_not_matter(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("cell", ["a", "", "inf", "nan", "1e999"])
-def test_a_cell_without_a_finite_number_is_refused_with_its_place(tmp_path: Path, cell: str) -> None:
+def test_a_cell_without_a_finite_number_is_rejected_with_its_place(tmp_path: Path, cell: str) -> None:
     (row,) = rows_of(tmp_path, f"x,y\n{cell},1\n")
     place = {"path": tmp_path / "table.csv", "row": 2}
     with raises(ParameterError, "not_a_number", **place, column="x", value=cell, action=ACTION):

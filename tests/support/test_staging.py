@@ -129,7 +129,7 @@ def open_files() -> int:
     return len(list(place.iterdir())) if place.is_dir() else 0
 
 
-def test_nothing_stays_open(tmp_path: Path) -> None:
+def test_no_file_stays_open(tmp_path: Path) -> None:
     before = open_files()
     for _ in range(3):
         replace_old_by_new(tmp_path)
@@ -181,7 +181,7 @@ def test_an_interrupt_while_files_are_moved_waits_for_the_last(tmp_path: Path, m
     assert seen(tmp_path) == NEW
 
 
-def test_a_place_that_is_none(tmp_path: Path) -> None:
+def test_an_invalid_place_is_rejected(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with raises(OutputError, "cannot_write"):
         prepare_folder(tmp_path / "file")

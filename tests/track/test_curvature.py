@@ -127,7 +127,7 @@ def test_way_over_a_gap_is_straight() -> None:
     assert motion.arc_length[-1] == pytest.approx(159.0)  # not 10 m/s over 100 s
 
 
-def test_nobody_heads_anywhere_at_rest() -> None:
+def test_at_rest_there_is_no_heading() -> None:
     motion = track_motion(track(np.zeros((50, 2)), noise=NOISE))
     assert np.isnan(motion.heading).all()
     assert np.isnan(motion.curvature).all()
@@ -171,7 +171,7 @@ def flagged(time: FloatArray, place: FloatArray, **named: Any) -> dict[str, list
     return {code: np.flatnonzero(where).tolist() for code, where in flags.items() if where.any()}
 
 
-def test_a_clean_run_has_none() -> None:
+def test_a_clean_run_has_no_flags() -> None:
     assert flagged(*run()) == {}
 
 

@@ -142,7 +142,7 @@ def test_straight_down_a_slope_that_falls_to_the_east() -> None:
     ("azimuth_deg", "ahead", "left"),
     [(0.0, [0, 1], [-1, 0]), (90.0, [1, 0], [0, 1]), (180.0, [0, -1], [1, 0]), (270.0, [-1, 0], [0, -1])],
 )
-def test_ahead_and_left(azimuth_deg: float, ahead: list[float], left: list[float]) -> None:
+def test_axes_point_ahead_and_left(azimuth_deg: float, ahead: list[float], left: list[float]) -> None:
     """Facing north, left is west; facing east, north; and so on round the compass."""
     axes = slope_axes(math.radians(azimuth_deg), 0.0)
     np.testing.assert_allclose(axes[0], [*ahead, 0.0], atol=1e-15)

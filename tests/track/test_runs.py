@@ -105,7 +105,7 @@ def test_single_steep_run_without_a_lift_is_whole() -> None:
     assert (run.start, run.end) == (0.0, 40.0)
 
 
-def test_without_heights_stretches_in_motion_are_runs_and_it_is_said() -> None:
+def test_without_heights_stretches_in_motion_are_runs_and_it_is_reported() -> None:
     made = day([RUN, REST, RUN, Leg(10, 0.0, 0.0), RUN])
     made.place[:, 2] = np.nan
     found = split(made)
@@ -345,7 +345,7 @@ def test_track_at_rest_has_nothing_but_nulls_and_zeros() -> None:
     assert values["smoothing"]["half_amplitude_wavelength_m"] is None
 
 
-def test_gap_is_said() -> None:
+def test_a_gap_is_reported() -> None:
     made = track(circle(15.0, 8.0))
     made.time[40:] += 20.0
     summary = track_summary(made)

@@ -144,7 +144,7 @@ def test_dense_points_share_fits_and_know_it() -> None:
         (40, {"place_noise": -1.0}, coded("out_of_range", name="place_noise", value=-1.0, unit="m")),
     ],
 )
-def test_what_cannot_be_smoothed_is_refused(points: int, options: dict[str, float], words: str | Coded) -> None:
+def test_input_that_cannot_be_smoothed_is_rejected(points: int, options: dict[str, float], words: str | Coded) -> None:
     made: Track = track(np.stack([np.arange(float(points)), np.zeros(points)], axis=1))
     with raises(ParameterError, words):
         smooth_track(made, **options)

@@ -68,12 +68,12 @@ def plain(chromium: Browser) -> Iterator[Page]:
     made.close()
 
 
-def test_it_finds_what_bars_people(plain: Page) -> None:
+def test_the_checker_finds_a_known_barrier(plain: Page) -> None:
     plain.set_content('<html lang="en"><title>t</title><main><h1>t</h1><img src="data:,"><input></main></html>')
     assert {each.split(":")[0] for each in barred(plain)} == {"image-alt", "label"}
 
 
-def test_nobody_is_barred_from_where_the_token_is_asked(plain: Page) -> None:
+def test_the_page_for_the_token_has_no_barriers(plain: Page) -> None:
     token_page = pytest.importorskip("skisnow.web.guard", reason="the web lab is not installed")
     plain.set_content(token_page.token_page({"type": "http", "headers": []}, 403).body.decode("utf-8"))
     assert barred(plain) == []
@@ -92,7 +92,7 @@ def studied(lab: Path, folder: Path) -> str:
 
 
 @pytest.mark.slow
-def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served, tmp_path: Path) -> None:
+def test_pages_of_the_lab_have_no_barriers(page: Page, served: Served, tmp_path: Path) -> None:
     imported(page, served)
     follow(page, "Correct")
     page.get_by_role("heading", name="Tests").wait_for()
@@ -132,13 +132,13 @@ def test_nobody_is_barred_from_a_page_of_the_lab(page: Page, served: Served, tmp
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_nobody_is_barred_from_the_report_of_a_run(plain: Page, tmp_path: Path) -> None:
+def test_the_report_of_a_run_has_no_barriers(plain: Page, tmp_path: Path) -> None:
     circle_run().report(tmp_path)
     assert barred_in(plain, [tmp_path / "report.html"]) == {}
 
 
 @pytest.mark.slow
-def test_nobody_is_barred_from_a_report(plain: Page, tmp_path: Path) -> None:
+def test_reports_of_each_kind_have_no_barriers(plain: Page, tmp_path: Path) -> None:
     """One of each kind that has a page: campaign, run with its replay, turn, identification."""
     campaign, run, short = str(tmp_path / "campaign"), str(tmp_path / "run"), ["--set", "run.duration_s=0.2"]
     turn = ["--set", "slope.angle_deg=5", "--set", "start.speed_m_per_s=4.5", "--set", "sledge.edge_angle_deg=40"]
@@ -161,7 +161,7 @@ def built(folder: Path, html: Path) -> None:
 
 
 @pytest.mark.slow
-def test_nobody_is_barred_from_the_documentation(plain: Page, tmp_path: Path) -> None:
+def test_the_documentation_has_no_barriers(plain: Page, tmp_path: Path) -> None:
     built(DOCS, tmp_path / "html")
     pages = [each for each in sorted((tmp_path / "html").rglob("*.html")) if "_static" not in each.parts]
     assert len(pages) >= len([path for path in DOCS.rglob("*.md") if not {"_build", "_generated"} & set(path.parts)])
@@ -195,7 +195,7 @@ def test_black_on_white_by_definition() -> None:
     assert contrast("rgb(0, 0, 0)", "rgb(255, 255, 255)") == 21.0
 
 
-def test_lines_are_told_apart_by_colour_and_dashes_alone() -> None:
+def test_lines_are_reported_apart_by_colour_and_dashes_alone() -> None:
     """Three to one against the page's white is what graphics need (WCAG 2.2, 1.4.11)."""
     chart = pytest.importorskip("skisnow.web.widgets", reason="the web lab is not installed")
     read = [style for style in chart.STYLES if style["read"]]
@@ -209,7 +209,7 @@ def test_lines_are_told_apart_by_colour_and_dashes_alone() -> None:
 
 
 @pytest.mark.slow
-def test_all_text_stands_out(page: Page, served: Served) -> None:
+def test_all_text_has_enough_contrast(page: Page, served: Served) -> None:
     create(page, served)
     enter_series(page, "1")
     page.get_by_text("below the one before it").wait_for()

@@ -66,7 +66,7 @@ def test_the_answer_and_the_errors_come_back() -> None:
         confined(BOUNDS, refuse)
 
 
-def test_what_ends_the_other_process_is_said_here(capfd: pytest.CaptureFixture[str]) -> None:
+def test_what_ends_the_other_process_is_reported_here(capfd: pytest.CaptureFixture[str]) -> None:
     for work in (dies, is_wrong):
         with raises(ParameterError, "cannot_read", seconds=120.0, megabytes=3000):
             confined(BOUNDS, work)
@@ -121,7 +121,7 @@ def test_as_hands_write_them(text: str, value: float) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "1x", "1.5.2", "nan", "inf", "1 2"])
-def test_what_is_none_is_told(text: str) -> None:
+def test_what_is_none_is_reported(text: str) -> None:
     with raises(ParameterError, "not_a_number", field="the length", value=text):
         typed_number("the length", text)
 

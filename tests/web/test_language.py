@@ -49,7 +49,7 @@ plaze = 1
 HEAD = "experiment,site,tool,edge_angle_deg,load_N,depth_mm"
 
 
-def test_what_is_wrong_in_files_is_said_with_their_own_names() -> None:
+def test_what_is_wrong_in_files_is_reported_with_their_own_names() -> None:
     table = f"{HEAD}\n1,A,ski,30,20,1\n".encode()
     with pytest.raises(FieldDataError) as caught:
         campaign_of_files({"campaign.toml": DESCRIBED.encode(), "penetration.csv": table})
@@ -98,7 +98,7 @@ def test_a_series_is_entered_in_german(chromium: Browser, served: Served, watche
     assert watched.errors == []
 
 
-def test_all_links_of_the_head_stand_in_one_row_of_a_phone(page: Page, served: Served) -> None:
+def test_all_links_of_the_head_are_in_one_row_of_a_phone(page: Page, served: Served) -> None:
     page.set_viewport_size({"width": 390, "height": 844})
     page.set_extra_http_headers({"Accept-Language": "de"})
     page.goto(served.address)
@@ -131,7 +131,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 
 @pytest.fixture
-def page_report_screens(chromium: Browser) -> Iterator[Page]:
+def report_page(chromium: Browser) -> Iterator[Page]:
     """A page of a file, not of a server."""
     made = chromium.new_page()
     yield made
@@ -140,27 +140,25 @@ def page_report_screens(chromium: Browser) -> Iterator[Page]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
-def test_a_telephone_shows_figures_and_tables_whole(
-    page_report_screens: Page, reports: tuple[Path, Path], which: int
-) -> None:
-    page_report_screens.set_viewport_size({"width": 390, "height": 844})
-    page_report_screens.goto(reports[which].as_uri())
-    assert page_report_screens.evaluate("document.documentElement.scrollWidth") == 390
-    assert page_report_screens.evaluate(WIDER_THAN_THEIR_BOX) == []
-    assert page_report_screens.evaluate(NAMES_THAT_RUN_OVER_THEIR_NUMBERS) == []
-    wide = page_report_screens.locator("figure.wide img").first
+def test_a_telephone_shows_figures_and_tables_whole(report_page: Page, reports: tuple[Path, Path], which: int) -> None:
+    report_page.set_viewport_size({"width": 390, "height": 844})
+    report_page.goto(reports[which].as_uri())
+    assert report_page.evaluate("document.documentElement.scrollWidth") == 390
+    assert report_page.evaluate(WIDER_THAN_THEIR_BOX) == []
+    assert report_page.evaluate(NAMES_THAT_RUN_OVER_THEIR_NUMBERS) == []
+    wide = report_page.locator("figure.wide img").first
     drawn = wide.evaluate("(each) => [each.naturalWidth, each.clientWidth]")
     assert drawn[1] > 0.9 * drawn[0]  # the words of the figure have their own size, within a tenth
-    box = page_report_screens.locator(".scroll").first
+    box = report_page.locator(".scroll").first
     assert box.evaluate("(each) => { each.scrollTo(1000, 0); return each.scrollLeft + each.clientWidth }") == drawn[1]
 
 
 @pytest.mark.slow
-def test_a_shadow_says_that_rows_of_a_long_table_follow(page_report_screens: Page, reports: tuple[Path, Path]) -> None:
+def test_a_shadow_says_that_rows_of_a_long_table_follow(report_page: Page, reports: tuple[Path, Path]) -> None:
     """At the lower edge of its box, until the last row is in sight."""
-    page_report_screens.set_viewport_size({"width": 390, "height": 844})
-    page_report_screens.goto(reports[0].as_uri())
-    table = page_report_screens.locator(".table").filter(has_text="The nine candidate models").first
+    report_page.set_viewport_size({"width": 390, "height": 844})
+    report_page.goto(reports[0].as_uri())
+    table = report_page.locator(".table").filter(has_text="The nine candidate models").first
     table.scroll_into_view_if_needed()
 
     def lower_edge() -> int:
@@ -178,19 +176,17 @@ def test_a_shadow_says_that_rows_of_a_long_table_follow(page_report_screens: Pag
 
 @pytest.mark.slow
 @pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
-def test_a_report_prints_as_one_pdf(
-    page_report_screens: Page, reports: tuple[Path, Path], which: int, tmp_path: Path
-) -> None:
+def test_a_report_prints_as_one_pdf(report_page: Page, reports: tuple[Path, Path], which: int, tmp_path: Path) -> None:
     """A PDF by Print, Save as PDF: pages of A4, no table wider than the paper."""
-    page_report_screens.set_viewport_size({"width": A4_PX, "height": 1000})
-    page_report_screens.emulate_media(media="print")
-    page_report_screens.goto(reports[which].as_uri())
-    assert page_report_screens.evaluate("document.documentElement.scrollWidth") <= A4_PX
-    wide = page_report_screens.evaluate(
+    report_page.set_viewport_size({"width": A4_PX, "height": 1000})
+    report_page.emulate_media(media="print")
+    report_page.goto(reports[which].as_uri())
+    assert report_page.evaluate("document.documentElement.scrollWidth") <= A4_PX
+    wide = report_page.evaluate(
         """() => [...document.querySelectorAll("table")].filter((each) => each.getBoundingClientRect().right > 682)
             .map((each) => each.textContent.slice(0, 60))"""
     )
     assert wide == []
-    content = page_report_screens.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
+    content = report_page.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
     assert content.startswith(b"%PDF")
     assert 2 <= content.count(b"/Type /Page\n") + content.count(b"/Type /Page ") + content.count(b"/Type /Page/") < 60

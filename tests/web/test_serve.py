@@ -84,14 +84,14 @@ def test_another_host_needs_a_token(host: str, tmp_path: Path, capsys: pytest.Ca
     assert out == "" and "add --token" in err and "Traceback" not in err
 
 
-def test_a_port_that_is_taken_is_said(served: Served, tmp_path: Path) -> None:
+def test_a_port_that_is_taken_is_reported(served: Served, tmp_path: Path) -> None:
     port = str(urlsplit(served.address).port)
     done = command("--port", port, store=tmp_path / "other.sqlite3")
     assert done.returncode == 1 and "Traceback" not in done.stderr and "in use" in done.stderr
 
 
 @pytest.mark.parametrize("port", ["99999", "-1", "80a"])
-def test_a_port_that_is_none_is_said(port: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_port_that_is_none_is_reported(port: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["serve", f"--port={port}"])
     told = capsys.readouterr().err
@@ -99,7 +99,7 @@ def test_a_port_that_is_none_is_said(port: str, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.usefixtures("unserved")
-def test_a_certificate_that_is_none_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_certificate_that_is_none_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     broken = tmp_path / "lab.pem"
     broken.write_text("no certificate")
     assert main(["serve", "--certificate", str(broken), "--store", str(tmp_path / "s.sqlite3")]) == 1
@@ -154,7 +154,7 @@ def test_no_trace_reaches_a_page(served: Served) -> None:
         assert status == 404 and "Traceback" not in text, path
 
 
-def test_a_store_that_broke_is_said_in_a_sentence(tmp_path: Path) -> None:
+def test_a_store_that_broke_is_reported_in_a_sentence(tmp_path: Path) -> None:
     lab = Served(tmp_path / "store.sqlite3").start()
     try:
         for name in ("store.sqlite3-wal", "store.sqlite3-shm"):
@@ -167,7 +167,7 @@ def test_a_store_that_broke_is_said_in_a_sentence(tmp_path: Path) -> None:
     assert "Traceback" not in text
 
 
-def test_foreign_posts_and_sockets_are_refused(served: Served) -> None:
+def test_foreign_posts_and_sockets_are_rejected(served: Served) -> None:
     assert asked(served, "/import", method="POST", Origin="http://evil.example")[0] == 403
     assert asked(served, "/import", method="POST")[0] == 403
     upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
@@ -299,7 +299,7 @@ def test_a_track_that_ends_its_reader_does_not_end_the_lab(lab: Served) -> None:
     assert ask_lab(lab, "/")[0] == 200
 
 
-def test_a_zip_that_is_none_is_refused_by_its_reader(lab: Served) -> None:
+def test_a_zip_that_is_none_is_rejected_by_its_reader(lab: Served) -> None:
     status, _ = upload(lab, "/import", "campaign.zip", b"PK\x03\x04 and nothing")
     assert status == 400
     assert ask_lab(lab, "/")[0] == 200

@@ -69,7 +69,7 @@ def test_its_table_is_that_of_the_command(page: Page, served_with_figures: Serve
 
 
 @pytest.mark.slow
-def test_a_study_of_runs_is_cancelled_goes_on_and_outlives_its_server(
+def test_a_study_of_runs_is_cancelled_continues_and_outlives_its_server(
     page: Page, served: Served, tmp_path: Path
 ) -> None:
     ask(page, served, {f"{FIRST}: number of values": "20", "Ends after (s)": "0.3"}, of="carved-46m")
@@ -128,7 +128,7 @@ def test_a_scheduler_computes_the_studies_of_the_lab(
 
 
 @pytest.mark.slow
-def test_a_run_that_the_server_was_killed_in_is_begun_again(page: Page, served: Served) -> None:
+def test_a_run_that_the_server_was_killed_in_is_restarted(page: Page, served: Served) -> None:
     page.goto(f"{served.address}simulate")
     page.get_by_label("Ends after (s)", exact=True).fill("0.2")
     page.get_by_role("button", name="Simulate").click()
@@ -185,10 +185,6 @@ def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> 
     assert page.evaluate("skisnowReplay.run.arrays.time.values.at(-1)") == pytest.approx(
         summary["simulated_s"], abs=0.11
     )
-
-
-if TYPE_CHECKING:
-    pass
 
 
 @pytest.mark.slow

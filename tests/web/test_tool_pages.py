@@ -17,12 +17,10 @@ from skisnow.carving.answer import answer_dict, answered
 from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.report.formatting import significant
-from skisnow.ski import read_ski, ski_named
 from skisnow.web.campaign_analysis import choosable_flags
 from skisnow.web.carved_turn import RATIOS, SLIDERS
-from skisnow.web.lab_skis import LabSkis
 
-from .conftest import DRAWING_MS, Served, downloaded_results, has_text, ready
+from .conftest import DRAWING_MS, Served, downloaded_results, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, WebSocketRoute
@@ -167,71 +165,6 @@ def test_the_report_is_of_what_was_chosen_just_before(page: Page, served: Served
     report = opened.value
     report.wait_for_load_state()
     assert "cancelled" in report.content()
-
-
-CARVER = ski_named("carver")
-TEXT = LabSkis(Path("nowhere")).texts("carver")[0]
-
-
-def boot_stiffness(page: Page, number: int) -> str:
-    """EI at the boot as the table of facts has it, of the first or second ski."""
-    return page.get_by_role("row", name="EI at the boot").get_by_role("cell").nth(number).inner_text()
-
-
-def curve(page: Page) -> list[str]:
-    """The lines of the chart of bending stiffness."""
-    paths: list[str] = (
-        page.get_by_role("img", name="EI (N m²) along the ski")
-        .locator("path.line")
-        .evaluate_all("lines => lines.map(line => line.getAttribute('d'))")
-    )
-    return paths
-
-
-def type_into(page: Page, label: str, text: str) -> None:
-    page.get_by_label(label, exact=True).fill(text)
-    page.keyboard.press("Tab")
-
-
-@pytest.mark.slow
-def test_factors_and_values_at_stations_are_drawn_and_saved(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}skis")
-    page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()
-    assert len(curve(page)) == 1
-    type_into(page, "EI ×", "1,5")
-    page.get_by_role("columnheader", name="carver, edited").wait_for()
-    page.get_by_role("cell", name="690 N m²").wait_for()  # 1.5 times 460, by hand
-    assert boot_stiffness(page, 0) == "460 N m²"
-    assert len(curve(page)) == 2 and curve(page)[0] != curve(page)[1]
-    has_text(page.get_by_label("EI (N m²) at 0.000 m", exact=True), "690")
-    type_into(page, "EI (N m²) at 0.000 m", "500")
-    page.get_by_role("cell", name="500 N m²").wait_for()
-    type_into(page, "Width (mm) at 0.000 m", "70")
-    page.get_by_role("cell", name="127 – 70.0 – 111 mm").wait_for()
-
-    page.get_by_label("New name", exact=True).fill("carver")
-    page.get_by_role("button", name="Save in the lab").click()
-    page.get_by_text("Not saved: there is a ski carver already").wait_for()
-    page.get_by_label("New name", exact=True).fill("soft waist")
-    page.get_by_role("button", name="Save in the lab").click()
-    page.get_by_text("Saved: soft waist.").wait_for()
-    saved = read_ski(served.store.parent / "lab" / "skis" / "soft waist" / "ski.toml")
-    middle = abs(saved.station).argmin()
-    assert saved.name == "soft waist" and "EI × 1,5" in saved.source
-    assert saved.bending_stiffness[middle] == pytest.approx(500.0, rel=1e-9)
-    assert saved.width[middle] == pytest.approx(0.070, rel=1e-9)
-    assert saved.bending_stiffness[0] == pytest.approx(1.5 * CARVER.bending_stiffness[0], rel=1e-9)
-    assert saved.torsional_stiffness == pytest.approx(CARVER.torsional_stiffness, rel=1e-9)
-    page.get_by_role("button", name="Save in the lab").click()
-    page.get_by_text("Not saved: there is a ski soft waist already").wait_for()
-
-    page.goto(f"{served.address}carve")
-    page.get_by_label("Compared with").click()
-    page.get_by_role("option", name="soft waist").click()
-    page.get_by_role("columnheader", name="soft waist").wait_for()
-    told = page.get_by_role("region", name="Carved radius").locator(".value")
-    told.nth(1).wait_for()
-    assert len({words.split("carved radius")[1] for words in told.all_inner_texts()}) == 2
 
 
 TYPED = {

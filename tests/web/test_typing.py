@@ -71,7 +71,7 @@ def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
 
 
 @pytest.mark.parametrize("is_busy", [False, pytest.param(True, marks=pytest.mark.slow)])
-def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, served: Served, is_busy: bool) -> None:
+def test_what_is_rejected_is_shown_at_its_field_and_nothing_is_lost(page: Page, served: Served, is_busy: bool) -> None:
     if is_busy:
         page.add_init_script(LEFT_LATE)
     answers = HeldAnswers(page)
@@ -104,7 +104,7 @@ def test_what_is_refused_is_shown_at_its_field_and_nothing_is_lost(page: Page, s
 
 
 @pytest.mark.parametrize("is_seen", [False, True])
-def test_what_is_typed_on_after_a_last_reading_that_is_refused_is_not_written_there(
+def test_what_is_typed_on_after_a_last_reading_that_is_rejected_is_not_written_there(
     page: Page, served: Served, is_seen: bool
 ) -> None:
     page.add_init_script(PAUSES)

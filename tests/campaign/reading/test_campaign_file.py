@@ -124,7 +124,7 @@ REFUSED: list[tuple[tuple[str, str, str, str, str, str], Where, str]] = [
 
 
 @pytest.mark.parametrize(("row", "expected", "told"), REFUSED)
-def test_what_does_not_meet_is_refused(
+def test_what_does_not_meet_is_rejected(
     write_campaign: WriteCampaign,
     small_campaign: dict[str, str],
     row: tuple[str, str, str, str, str, str],
@@ -137,7 +137,9 @@ def test_what_does_not_meet_is_refused(
     assert told in problem.allowed
 
 
-def test_a_wrong_new_value_is_told_of_the_table(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_a_wrong_new_value_is_reported_of_the_table(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
     small_campaign[FILE] = corrections((PEN, "P1", "3", "depth_mm", "2.5", "-2.5"))
     (problem,) = check_campaign(write_campaign(small_campaign))
     assert (problem.code, problem.file, problem.row, problem.value) == ("out_of_range", PEN, 3, "-2.5")
@@ -243,7 +245,7 @@ REJECTED_TOML: list[tuple[str, str, str, str | None, bool]] = [
 
 
 @pytest.mark.parametrize(("text", "code", "column", "value", "in_schema"), REJECTED_TOML)
-def test_what_is_refused(text: str, code: str, column: str, value: str | None, in_schema: bool, schema: Any) -> None:
+def test_rejected_input(text: str, code: str, column: str, value: str | None, in_schema: bool, schema: Any) -> None:
     _, (problem,) = read(text)
     assert (problem.severity, problem.code, problem.file) == ("error", code, "campaign.toml")
     assert (problem.column, problem.value) == (column, value)

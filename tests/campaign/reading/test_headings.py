@@ -156,7 +156,7 @@ def test_a_mapping_of_one_table_comes_before_that_of_all(
         ('columns = "x"', "columns", "[columns]"),
     ],
 )
-def test_a_mapping_to_no_column_is_refused(
+def test_a_mapping_to_no_column_is_rejected(
     write_campaign: WriteCampaign, small_campaign: dict[str, str], line: str, column: str, told: str
 ) -> None:
     small_campaign["campaign.toml"] = f"{line}\n{small_campaign['campaign.toml']}"

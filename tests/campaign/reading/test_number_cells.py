@@ -84,7 +84,7 @@ def test_decimal_mark(groups: list[list[str]], separator: str, mark: str) -> Non
     assert decimal_mark(groups, separator=separator) == mark
 
 
-def test_a_long_cell_is_refused_after_one_pass() -> None:
+def test_a_long_cell_is_rejected_after_one_pass() -> None:
     for cell in ("1" * 1_000_000 + "x", "1" * 1_000_000, "." * 1_000_000, "1e" + "1" * 1_000_000 + "e"):
         assert not is_number(cell, ".")  # with backtracking this would take hours
         assert math.isnan(number(cell))
@@ -238,7 +238,7 @@ def test_lengths_of_campaign_toml_in_metres(reference: Path, tmp_path: Path) -> 
     assert {problem.column for problem in warned(folder)} == {"gauge_resolution_mm", "tool[1].width_mm"}
 
 
-def test_a_warning_of_units_stands_in_the_results(reference: Path, tmp_path: Path) -> None:
+def test_a_warning_of_units_is_in_the_results(reference: Path, tmp_path: Path) -> None:
     folder = changed(reference, tmp_path / "c", "shear.csv", times("lever_arm_mm", 1e-3))
     (folder / "penetration.csv").unlink()
     (told,) = results_dict(analyse(read_campaign(folder), n_resamples=100))["campaign"]["warnings"]

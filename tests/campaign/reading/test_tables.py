@@ -228,7 +228,7 @@ def test_decode(data: bytes, text: str, foreign: str | None) -> None:
         b"\xe9" + bytes([1, 2, 3, 4]) * 3,
     ],
 )
-def test_binary_is_refused(data: bytes) -> None:
+def test_binary_is_rejected(data: bytes) -> None:
     with pytest.raises(UnreadableTextError) as caught:
         decode(data)
     assert "binary" in caught.value.action
@@ -315,7 +315,7 @@ def test_records_come_in_portions() -> None:
 
 
 @pytest.mark.parametrize("columns", [1_001, 100_000])
-def test_a_table_with_more_columns_than_a_person_fills_is_refused(columns: int) -> None:
+def test_a_table_with_more_columns_than_a_person_fills_is_rejected(columns: int) -> None:
     text = inspect_csv(("x," * (columns - 1) + "x\n").encode())
     with pytest.raises(UnreadableTextError) as caught:
         list(text.records())
@@ -323,7 +323,7 @@ def test_a_table_with_more_columns_than_a_person_fills_is_refused(columns: int) 
     assert caught.value.allowed == "at most 1000 columns"
 
 
-def test_a_cell_longer_than_a_spreadsheet_holds_is_refused() -> None:
+def test_a_cell_longer_than_a_spreadsheet_holds_is_rejected() -> None:
     fits, too_long = "x" * 32_767, "x" * 32_768
     assert next(inspect_csv(f"a,b\n1,{fits}\n".encode()).records())[1][1] == ["1", fits]
     with pytest.raises(UnreadableTextError) as caught:

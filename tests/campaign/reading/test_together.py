@@ -46,7 +46,7 @@ def test_rows_that_disagree(
     assert [where(problem) for problem in check_campaign(write_campaign(small_campaign))] == expected
 
 
-def test_an_experiment_that_is_told_in_two_places(
+def test_an_experiment_that_is_reported_in_two_places(
     write_campaign: WriteCampaign, small_campaign: dict[str, str]
 ) -> None:
     small_campaign[PEN] += "P1,Süd,piece,30,280.5,5,a,,,\n"
@@ -55,7 +55,7 @@ def test_an_experiment_that_is_told_in_two_places(
     assert "row 2" in problem.allowed
 
 
-def test_the_spot_may_stand_in_any_row(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_the_spot_may_be_in_any_row(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
     small_campaign[PEN] = small_campaign[PEN].replace("1.25,a", "1.25,").replace("3.75,a", "3.75,")
     tests = read_campaign(write_campaign(small_campaign)).penetration
     assert tests is not None
@@ -67,7 +67,7 @@ def test_samples_of_one_name_are_fine(write_campaign: WriteCampaign, small_campa
     assert check_campaign(write_campaign(small_campaign)) == ()
 
 
-def test_unknown_tool_is_told_once_in_each_experiment(
+def test_unknown_tool_is_reported_once_in_each_experiment(
     write_campaign: WriteCampaign, small_campaign: dict[str, str]
 ) -> None:
     small_campaign[PEN] = small_campaign[PEN].replace("piece", "Piece").replace("disc 100", "disc")
@@ -176,7 +176,7 @@ def test_without_angles_each_row_is_an_experiment(tmp_path: Path) -> None:
         ([ALONE[0], ALONE[0]], 3, "experiment"),
     ],
 )
-def test_what_belongs_to_two_experiments_is_refused(rows: list[str], row: int, column: str, tmp_path: Path) -> None:
+def test_what_belongs_to_two_experiments_is_rejected(rows: list[str], row: int, column: str, tmp_path: Path) -> None:
     found = [each for each in check_campaign(written(tmp_path, *rows)) if each.severity == "error"]
     assert [(each.code, each.row, each.column) for each in found] == [("mixed_experiment", row, column)]
 
@@ -244,7 +244,7 @@ def test_without_unloading_there_is_none(tmp_path: Path) -> None:
         ([*OTHER, ("P3", 20, 2.9, "unloading")], "branch_order", 5, "first load"),
     ],
 )
-def test_what_cannot_be_is_refused_with_its_row(
+def test_impossible_input_is_rejected_with_its_row(
     rows: list[tuple[str, float, float, str]], code: str, row: int, told: str, tmp_path: Path
 ) -> None:
     (found,) = errors(written_unloaded(tmp_path, *rows))

@@ -71,7 +71,7 @@ def loads_of(read: Campaign) -> list[float]:
     return [float(each) for each in read.penetration.load]
 
 
-def test_loads_that_look_like_kg_are_refused_with_both_readings(write_campaign: WriteCampaign) -> None:
+def test_loads_that_look_like_kg_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
     """H_V = F / V with V = L e² / (2 tan 30°): 50 N and 490.3 N on 200 mm of ski, 1.41 mm deep."""
     (problem,) = problems(write_campaign(campaign()))
     place = (problem.severity, problem.code, problem.file, problem.row, problem.column, problem.experiment)
@@ -125,7 +125,7 @@ def test_a_unit_in_campaign_toml_is_believed(write_campaign: WriteCampaign, line
         ([98.07, 196.13], False),
     ],
 )
-def test_loads_that_are_refused(write_campaign: WriteCampaign, loads: list[float], refused: bool) -> None:
+def test_loads_that_are_rejected(write_campaign: WriteCampaign, loads: list[float], refused: bool) -> None:
     rows = "".join(f"1,A,ski,30,{load},{0.1 * i + 0.5}\n" for i, load in enumerate(loads))
     assert bool(problems(write_campaign(campaign(rows)))) is refused
 
@@ -139,7 +139,7 @@ def test_each_tool_is_judged_separately(write_campaign: WriteCampaign) -> None:
     assert f"{40.0 / (area * 1.0):.4g} N/mm³" in problem.action
 
 
-def test_lever_arms_in_cm_are_refused_with_both_readings(write_campaign: WriteCampaign) -> None:
+def test_lever_arms_in_cm_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
     """S_f = M / (r L e): 23.1 N m at 25 mm and at 250 mm on 100 mm of blade, 5.8 mm deep."""
     (problem,) = problems(write_campaign(campaign(shear="S1,A,blade,90,5.8,25,23.1\n", load="Last [N]")))
     assert (problem.code, problem.row, problem.column) == ("unit_missing", 2, "lever_arm_mm")
@@ -168,7 +168,7 @@ def test_stated_lever_arms_are_believed(
 
 
 @pytest.mark.parametrize(("arm", "unit"), [(0.25, "m"), (25, "cm"), (60, "cm"), (5001, "µm"), (250000, "µm")])
-def test_lever_arms_that_are_refused(write_campaign: WriteCampaign, arm: float, unit: str) -> None:
+def test_lever_arms_that_are_rejected(write_campaign: WriteCampaign, arm: float, unit: str) -> None:
     (problem,) = problems(write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{arm},23.1\n", load="Last [N]")))
     assert (problem.code, problem.severity) == ("unit_missing", "error")
     assert f'units."Hebelarm" = "{unit}"' in problem.action
@@ -259,7 +259,7 @@ def test_ranges_and_corrections_are_those_of_the_file(write_campaign: WriteCampa
         ({"load": "Last [MN]"}, "other_unit", "penetration.csv", "load_N"),
     ],
 )
-def test_units_that_cannot_be_are_refused(
+def test_units_that_cannot_be_are_rejected(
     write_campaign: WriteCampaign, changes: dict[str, Any], code: str, file: str, column: str
 ) -> None:
     found = [each for each in problems(write_campaign(campaign(**changes))) if each.severity == "error"]
@@ -276,7 +276,7 @@ def test_a_row_of_units_below_the_headings_is_believed(write_campaign: WriteCamp
     assert not problems(folder)
 
 
-def test_a_row_of_units_that_contradicts_is_refused(write_campaign: WriteCampaign) -> None:
+def test_a_row_of_units_that_contradicts_is_rejected(write_campaign: WriteCampaign) -> None:
     for changes in ({"load": "Last [N]"}, {"load": "load_N"}, {"toml": 'units.Last = "N"'}):
         (problem,) = problems(write_campaign(campaign(f",,,°,kg,mm\n{LOADS}", **changes)))  # type: ignore[arg-type]
         assert (problem.code, problem.column) == ("other_unit", "load_N")
@@ -315,7 +315,7 @@ def silent(folder: Path) -> Path:
 
 
 @pytest.mark.parametrize("seeds", [range(3), pytest.param(range(3, 200), marks=pytest.mark.slow)])
-def test_no_reference_campaign_is_refused(tmp_path: Path, seeds: range) -> None:
+def test_no_reference_campaign_is_rejected(tmp_path: Path, seeds: range) -> None:
     for seed in seeds:
         folder = tmp_path / str(seed)
         write_reference(folder, seed=seed)
@@ -323,7 +323,7 @@ def test_no_reference_campaign_is_refused(tmp_path: Path, seeds: range) -> None:
 
 
 @pytest.mark.skipif(not SAND.is_file(), reason="no ../shared")
-def test_no_shared_data_are_refused(write_campaign: WriteCampaign) -> None:
+def test_no_shared_data_are_rejected(write_campaign: WriteCampaign) -> None:
     """Plates in sand, a disc each; their loads go up to 460 N and have three decimals."""
     rows = [line.split(",") for line in SAND.read_text(encoding="utf-8").splitlines()[1:]]
     table = "".join(f"{trial},A,disc,0,{load},{depth}\n" for trial, _, _, depth, load in rows)

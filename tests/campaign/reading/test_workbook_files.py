@@ -91,7 +91,7 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(
     assert campaign.unread_files == (PRESSED.replace("Penetration", "Diagramm"),)
 
 
-def test_what_is_there_twice_is_refused(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_what_is_there_twice_is_rejected(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
     book = packed(density=[["sample"]])
     (problem,) = check_campaign(write_campaign({**small_campaign, "Hang.xlsx": book}))
     assert (problem.code, problem.file, problem.value) == ("unreadable_file", "Hang.xlsx, sheet density", "density.csv")
@@ -163,7 +163,7 @@ def test_errors_are_those_of_the_folder(write_campaign: WriteCampaign, small_cam
     assert len(found.value.problems) == 2
 
 
-def test_files_that_are_named_alone_are_told(small_campaign: dict[str, str]) -> None:
+def test_files_that_are_named_alone_are_reported(small_campaign: dict[str, str]) -> None:
     campaign = campaign_of_files(at_hand(small_campaign), others=("photo.jpg", ".hidden"))
     assert campaign.unread_files == ("photo.jpg",)
 
@@ -214,7 +214,7 @@ def test_wrong_cells(
     assert words in problem.allowed
 
 
-def test_a_damaged_recording_is_told_with_its_name(small_campaign: dict[str, str], write_campaign: Write) -> None:
+def test_a_damaged_recording_is_reported_with_its_name(small_campaign: dict[str, str], write_campaign: Write) -> None:
     further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + "r7,Süd,one.pnt\n", "one.pnt": SOUND[:5000]}
     (problem,) = [
         each for each in check_campaign(write_campaign({**small_campaign, **further})) if each.severity == "error"

@@ -251,7 +251,7 @@ def test_a_seed_is_an_integer(seed: object) -> None:
 @pytest.mark.parametrize(
     ("name", "value"), [("load_sd", -0.1), ("depth_scatter", float("nan")), ("layering_mean", 1.0)]
 )
-def test_impossible_noise_is_refused(name: str, value: float) -> None:
+def test_impossible_noise_is_rejected(name: str, value: float) -> None:
     with pytest.raises(ParameterError, match=name):
         ReferenceNoise(**cast("Any", {name: value}))
 
@@ -373,7 +373,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
-def test_what_is_asked_for_beside_the_usual_tables_changes_nothing_of_them(tmp_path: Path) -> None:
+def test_what_is_requested_beside_the_usual_tables_changes_nothing_of_them(tmp_path: Path) -> None:
     """The cells of the usual columns stay; of several rows of a shear test, that of the largest moment."""
     write_reference(tmp_path / "usual", seed=3)
     write_reference(tmp_path / "more", seed=3, turning_angles=True, creep=True)

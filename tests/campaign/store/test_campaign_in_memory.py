@@ -212,7 +212,7 @@ def test_what_is_written_down(column: str, typed: str, written: str) -> None:
         ("penetration.csv", "branch", "sideways", "not_allowed", BRANCH_WORD),
     ],
 )
-def test_what_is_rejected(file: str, column: str, typed: str, code: str, fix: Message) -> None:
+def test_rejected_input(file: str, column: str, typed: str, code: str, fix: Message) -> None:
     with pytest.raises(CellError) as raised:
         checked_cell(FORMS[file], column, typed)
     error = raised.value
@@ -328,7 +328,7 @@ def test_a_choice_is_called_by_what_both_sides_say() -> None:
     assert len({one.id, *others}) == 4
 
 
-def test_it_is_told_line_by_line() -> None:
+def test_it_is_reported_line_by_line() -> None:
     stored = entry(8, "correct", cells={"12/depth_mm": "2.5", "remark": "wind"}, about=1)
     nameless = entry(9, "undo", about=99, who="")
     late = entry(10, "add", cells={"experiment": "7", "depth_mm": "4", "remark": ""}, position=2)
@@ -362,14 +362,14 @@ def test_both_wrote_about_a_test_where_each_has_what_the_other_lacks() -> None:
     assert here.written_on_both(there) == there.written_on_both(here) == [(FILE, "2"), ("shear.csv", "1")]
 
 
-def test_names_that_meet_for_the_first_time_are_told_by_kind() -> None:
+def test_names_that_meet_for_the_first_time_are_reported_by_kind() -> None:
     here, there = Names({"1": "x", "2": "y"}, {"3": "x"}), Names({"1": "x", "5": "x", "6": "z"}, {"3": "x", "7": "y"})
     (told,) = same_names(here, there)
     assert "'x': 1, " in told and " 5 " in told
     assert here.all == {"1": "x", "2": "y", "3": "x"}
 
 
-def test_the_next_free_name_is_taken_and_progress_is_told(
+def test_the_next_free_name_is_taken_and_progress_is_reported(
     ada: Laptop, bo: Laptop, group: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A series 2 (2) is there already, in one of both stores; corrections follow to the new name.

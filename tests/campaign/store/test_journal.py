@@ -75,7 +75,7 @@ def test_what_was_entered_is_read_as_a_campaign(store: Store, tmp_path: Path) ->
     assert campaign.problems == ()
 
 
-def test_readings_stand_in_the_order_of_their_loads_whichever_came_first(store: Store) -> None:
+def test_readings_are_in_the_order_of_their_loads_whichever_came_first(store: Store) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "2.25")
     last = journals.append(id_, reading("1", 2, "30.5", "1.9"), seen=last).sequence
@@ -145,7 +145,7 @@ def test_undoing_takes_the_last_entry_back_and_keeps_it_in_the_history(store: St
     assert test.undoable is not None and test.undoable.cells["depth_mm"] == "1.5"
 
 
-def test_a_load_filled_in_late_stands_in_its_place(store: Store) -> None:
+def test_a_load_filled_in_late_is_in_its_place(store: Store) -> None:
     journals = Journals(store)
     id_ = journals.begin(TOML)
     first = journals.append(id_, reading("1", 2, "60", "3"), seen=0)
@@ -164,7 +164,7 @@ def test_two_who_write_about_one_test_do_not_overwrite_each_other(store: Store) 
     assert "9.99" not in campaign_files(replay_journal(journals.entries(id_)))["penetration.csv"]
 
 
-def test_a_name_that_another_gave_meanwhile_is_refused(store: Store) -> None:
+def test_a_name_that_another_gave_meanwhile_is_rejected(store: Store) -> None:
     journals = Journals(store)
     id_, _ = campaign_with(journals, "1.5")
     with pytest.raises(OvertakenError):
@@ -202,7 +202,7 @@ def test_entries_can_only_be_added_by_the_rules(store: Store, action: str, about
     assert Journals(store).entries(id_) == before
 
 
-def test_what_comes_later_can_be_put_on_top(store: Store) -> None:
+def test_later_entries_extend_a_replayed_journal(store: Store) -> None:
     """Bit by bit, as a page sees a journal grow, is the same as all at once; what was there before stays as it was."""
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "2.25")
@@ -374,7 +374,7 @@ def test_a_cancelled_test_takes_no_part(store: Store, tmp_path: Path) -> None:
     assert tests is not None and tests.cancelled == ("", "the tool, slipped")
 
 
-def test_somebody_else_was_quicker(store: Store, tmp_path: Path) -> None:
+def test_an_entry_after_an_unseen_one_is_rejected(store: Store, tmp_path: Path) -> None:
     place = tmp_path / "kept"
     id_ = kept(store, place, PLAIN.encode())
     journals = Journals(store)
@@ -384,7 +384,7 @@ def test_somebody_else_was_quicker(store: Store, tmp_path: Path) -> None:
     assert len(journals.corrections(id_)) == 2
 
 
-def test_what_came_as_corrections_and_is_no_text_is_said_and_nothing_is_left(store: Store, tmp_path: Path) -> None:
+def test_what_came_as_corrections_and_is_no_text_is_reported_and_nothing_is_left(store: Store, tmp_path: Path) -> None:
     place = tmp_path / "kept"
     place.mkdir()
     (place / "corrections.csv").write_bytes(bytes(range(256)))

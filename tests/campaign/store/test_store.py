@@ -105,7 +105,7 @@ def test_shared_files_are_kept_once(tmp_path: Path, place: Path) -> None:
             assert contents(tmp_path / f"out {id_}") == contents(folder)
 
 
-def test_what_is_shown(folder: Path, place: Path) -> None:
+def test_shown_fields_of_a_stored_campaign(folder: Path, place: Path) -> None:
     with Store.open(place) as store:
         added = store.add(folder)
         stored = store.show(added.id)
@@ -212,7 +212,7 @@ def test_export_does_not_touch_what_is_there(folder: Path, place: Path, tmp_path
 
 
 @pytest.mark.parametrize("path", ["../evil", "/evil", "a/../../evil", "C:/evil", "a//b", "./a", ""])
-def test_export_refuses_unsafe_paths(path: str, folder: Path, place: Path, tmp_path: Path) -> None:
+def test_export_rejects_unsafe_paths(path: str, folder: Path, place: Path, tmp_path: Path) -> None:
     with Store.open(place) as store:
         files = store.show(store.add(folder).id).files
         sha256 = manifest_sha256(replace(file, path=path) if file.path == "case.csv" else file for file in files)
@@ -261,7 +261,7 @@ def test_export_to_a_disk_that_fails_leaves_nothing(
     assert contents(tmp_path / "out") == FILES
 
 
-def test_two_names_that_are_one_here(tmp_path: Path) -> None:
+def test_a_file_whose_name_exists_is_rejected(tmp_path: Path) -> None:
     file = store_folder.StoredFile("a.csv", 1, hashlib.sha256(b"a").hexdigest())
     store_folder.write_file(tmp_path, file, [b"a"])
     with raises(StoreError, "same_name"):

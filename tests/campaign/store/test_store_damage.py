@@ -102,7 +102,7 @@ def test_verify_finds(statement: str, sentence: str, folder: Path, place: Path) 
                 read()
 
 
-def test_verify_goes_on_behind_each_damage(folder: Path, place: Path) -> None:
+def test_verify_continues_behind_each_damage(folder: Path, place: Path) -> None:
     with Store.open(place) as store:
         store.add(folder)
         change(place, f"{ENTRY} 'describe', '[1]'); DROP TABLE content; UPDATE campaign SET name = x'ff'")
@@ -188,12 +188,12 @@ def read_damaged(folder: Path, tmp_path: Path, *, seed: int, number: int) -> int
     return told
 
 
-def test_flipped_bits_are_told_in_words(tmp_path: Path) -> None:
+def test_flipped_bits_are_reported(tmp_path: Path) -> None:
     assert read_damaged(write(tmp_path / "small", SMALL), tmp_path, seed=1, number=20) > 2
 
 
 @pytest.mark.slow
-def test_many_flipped_bits_are_told_in_words(tmp_path: Path) -> None:
+def test_many_flipped_bits_are_reported(tmp_path: Path) -> None:
     assert read_damaged(write(tmp_path / "small", SMALL), tmp_path, seed=2, number=1500) > 150
 
 

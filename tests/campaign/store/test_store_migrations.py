@@ -40,7 +40,7 @@ def folder(tmp_path: Path) -> Path:
     return write(tmp_path / "Brenner 2012", FILES)
 
 
-def test_links_and_pipes_are_refused_and_named(folder: Path, place: Path) -> None:
+def test_links_and_pipes_are_rejected_and_named(folder: Path, place: Path) -> None:
     (folder / "link.csv").symlink_to(folder / "shear.csv")
     (folder / "raw" / "folder link").symlink_to(folder)
     os.mkfifo(folder / "pipe")
@@ -59,7 +59,7 @@ def test_the_folder_itself_may_be_reached_by_a_link(folder: Path, place: Path, t
 
 
 @pytest.mark.parametrize("name", [b"not text \xff.csv", b"C:drive.csv"])
-def test_names_that_could_not_be_given_back_are_refused(name: bytes, folder: Path, place: Path) -> None:
+def test_names_that_could_not_be_given_back_are_rejected(name: bytes, folder: Path, place: Path) -> None:
     try:
         Path(os.fsdecode(bytes(folder) + b"/" + name)).write_bytes(b"")
     except OSError:
@@ -115,7 +115,7 @@ def rewrite_unseen(file: Path) -> None:
     ids=["unseen", "shorter", "longer", "came", "touched", "went"],
 )
 @pytest.mark.parametrize("share", [0.5, 1.0])
-def test_a_campaign_that_changes_meanwhile_is_refused(meddle, share, folder: Path, place: Path, request) -> None:  # type: ignore[no-untyped-def]
+def test_a_campaign_that_changes_meanwhile_is_rejected(meddle, share, folder: Path, place: Path, request) -> None:  # type: ignore[no-untyped-def]
     if share == 1.0 and "unseen" in request.node.callspec.id:
         pytest.skip("what was stored then is what was hashed: the campaign as it was")
     left = [meddle]
@@ -290,7 +290,7 @@ def test_rows_that_point_nowhere_stop_a_migration(migrated_place: Path, monkeypa
     assert schema(migrated_place) == {}
 
 
-def test_a_newer_store_is_refused_and_left_alone(migrated_place: Path) -> None:
+def test_a_newer_store_is_rejected_and_left_alone(migrated_place: Path) -> None:
     Store.open(migrated_place).close()
     connection = sqlite3.connect(migrated_place)
     connection.execute("UPDATE alembic_version SET version_num = '9999'")

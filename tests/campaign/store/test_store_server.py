@@ -154,7 +154,7 @@ def store_errors(store: Store) -> AbstractContextManager[None]:
     return database_errors(store.path, "could not be written")
 
 
-def test_a_connection_that_breaks_is_told_and_the_next_one_works(server: Server, address: str) -> None:
+def test_a_connection_that_breaks_is_reported_and_the_next_one_works(server: Server, address: str) -> None:
     with Store.open(address) as store:
         id_, last = campaign_with(Journals(store), "1.5")
         with pytest.raises(StoreError, match="connection"), store_errors(store), writing(store.engine) as connection:
@@ -178,7 +178,7 @@ def test_a_connection_that_breaks_is_told_and_the_next_one_works(server: Server,
         (f"ada:{QUOTED}", "emptied?sslmode=require", "no TLS"),
     ],
 )
-def test_refusals_are_told_in_one_sentence_without_the_password(
+def test_refusals_are_reported_in_one_sentence_without_the_password(
     server: Server, login: str, database: str, said: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     server.emptied()
@@ -223,7 +223,7 @@ def test_with_a_password_over_the_network(server: Server, tmp_path: Path) -> Non
         assert PASSWORD not in repr(store)
 
 
-def test_who_may_only_read_reads(server: Server, address: str, tmp_path: Path) -> None:
+def test_a_user_with_read_permission_can_read(server: Server, address: str, tmp_path: Path) -> None:
     with Store.open(address) as store:
         id_ = store.add(write(tmp_path / "campaign", {"a": b"a"})).id
     server.execute("GRANT SELECT ON ALL TABLES IN SCHEMA public TO guest", database="emptied")
@@ -246,7 +246,7 @@ def test_other_databases_are_left_alone(server: Server) -> None:
         Store.open(server.new_database(), create=False)
 
 
-def test_a_newer_store_is_refused(server: Server) -> None:
+def test_a_newer_store_is_rejected(server: Server) -> None:
     address = server.new_database()
     Store.open(address).close()
     name = address.split("/")[3].split("?")[0]
@@ -256,7 +256,7 @@ def test_a_newer_store_is_refused(server: Server) -> None:
     assert caught.value.code == "unknown_schema"
 
 
-def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_missing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "psycopg", None)
     with raises(StoreError, "not_installed", name="psycopg"):
         Store.open("postgresql://ada@host/group")

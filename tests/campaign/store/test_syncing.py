@@ -329,7 +329,7 @@ def test_conflicts_on_a_stored_campaign(ada: Laptop, bo: Laptop, group: Store, t
     assert ("2.25" in files, "2.26" in files) == (True, False)
 
 
-def test_a_choice_about_what_has_changed_since_is_refused(ada: Laptop, bo: Laptop, group: Store) -> None:
+def test_a_choice_about_what_has_changed_since_is_rejected(ada: Laptop, bo: Laptop, group: Store) -> None:
     id_ = conflict_of_corrections(ada, bo, group)
     (conflict,) = bo.sync(group).conflicts
     ada.change(id_, "1", cells={"depth_mm": "1.8"})

@@ -150,7 +150,7 @@ def test_the_minimum_at_the_ends() -> None:
     assert WaterFilmFriction(0.03, 0.0, 1.0, 0.0).speed_of_least_friction == 0.0  # the same at every speed
 
 
-def test_a_negative_coefficient_is_refused() -> None:
+def test_a_negative_coefficient_is_rejected() -> None:
     law = LinearFriction(0.06, -0.002)
     assert float(law.coefficient(30.0)) == pytest.approx(0.0, abs=1e-15)
     with raises(ParameterError, "negative_friction", fastest=31.0):
@@ -171,6 +171,6 @@ def test_a_negative_coefficient_is_refused() -> None:
         lambda: ConstantFriction(0.05).coefficient(-1.0),
     ],
 )
-def test_impossible_parameters_are_refused(make: Callable[[], object]) -> None:
+def test_impossible_parameters_are_rejected(make: Callable[[], object]) -> None:
     with pytest.raises(ParameterError):
         make()

@@ -232,7 +232,7 @@ def test_a_warning_outside_the_measured_range(sample: Sample) -> None:
 
 
 @pytest.mark.parametrize("law", [sample.law for sample in SAMPLES], ids=repr)
-def test_degrees_for_radians_are_refused(law: PenetrationLaw) -> None:
+def test_degrees_for_radians_are_rejected(law: PenetrationLaw) -> None:
     for wrong in (45.0, -0.1, math.nan):
         with raises(ParameterError, "out_of_range"):
             law.reaction_force(SKI, 0.01, np.array([0.5, wrong]))
@@ -301,7 +301,7 @@ def test_bilinear_force_is_the_integral_of_its_stress() -> None:
         assert float(law.reaction_force(SKI, depth, EDGED)) == pytest.approx(whole, rel=2e-5)
 
 
-def test_bilinear_refuses_snow_that_pulls() -> None:
+def test_bilinear_rejects_snow_that_pulls() -> None:
     law = BilinearLaw(0.2e9, 0.0, 0.0, 0.5, -0.6)
     assert float(law.reaction_force(SKI, 0.01, 0.8)) > 0
     with raises(ParameterError, "out_of_range", name="b", at_zero=0.5, slope=-0.6, worst=0.9):
@@ -368,7 +368,7 @@ def test_any_tool_will_do() -> None:
         lambda: ElementCountLaw(1e9, 0.0),
     ],
 )
-def test_what_no_snow_can_have_is_refused(make: Callable[[], object]) -> None:
+def test_what_no_snow_can_have_is_rejected(make: Callable[[], object]) -> None:
     with pytest.raises(ParameterError) as caught:
         make()
     assert caught.value.code in {"out_of_range", "not_a_number"}

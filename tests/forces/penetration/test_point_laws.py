@@ -227,7 +227,7 @@ def test_rigid_plastic_snow_lets_go_at_once_and_stores_nothing() -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.99, 0.0, -1.0, math.nan, -math.inf])
-def test_unloading_softer_than_loading_is_refused(ratio: float) -> None:
+def test_unloading_softer_than_loading_is_rejected(ratio: float) -> None:
     with raises(ParameterError, "out_of_range"):
         HypoplasticPoint(H_V, ratio)
 
@@ -267,7 +267,7 @@ def test_the_mean_over_a_wedge_is_that_of_federolf() -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.5, math.inf, math.nan])
-def test_a_mean_pressure_that_unloads_more_softly_is_refused(ratio: float) -> None:
+def test_a_mean_pressure_that_unloads_more_softly_is_rejected(ratio: float) -> None:
     with raises(ParameterError, "not_a_number"):
         MeanPressurePoint(A, B, ratio)
 

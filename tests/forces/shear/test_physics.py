@@ -205,7 +205,7 @@ def test_an_edge_above_the_snow_holds_nothing(sample: Sample) -> None:
 
 
 @EVERY_SAMPLE
-def test_degrees_for_radians_are_refused(sample: Sample) -> None:
+def test_degrees_for_radians_are_rejected(sample: Sample) -> None:
     with raises(ParameterError, "out_of_range"):
         sample.law.failure_force(1e-3, 1.0, 60.0)
     with raises(ParameterError, "out_of_range"):
@@ -234,13 +234,13 @@ def test_densities_at_500() -> None:
 
 
 @pytest.mark.parametrize("density", [-1.0, 0.0, 100.0, 151.6, 918.0, math.nan])
-def test_equation_14_refuses_a_negative_strength(density: float) -> None:
+def test_equation_14_rejects_a_negative_strength(density: float) -> None:
     with raises(ParameterError, "out_of_range"):
         DensityShear(density)
 
 
 @pytest.mark.parametrize("density", [-1.0, 0.0, 50.0, 112.2, 918.0, math.nan])
-def test_domine_refuses_where_the_square_rises_again(density: float) -> None:
+def test_domine_rejects_where_the_square_rises_again(density: float) -> None:
     """At 50 kg/m³ the square would give 41 Pa, more than the 0.6 Pa at 120."""
     with raises(ParameterError, "out_of_range"):
         NaturalDensityShear(density)
@@ -278,7 +278,7 @@ def test_ice_scaled_by_0_02() -> None:
     assert float(law.thrust_force(0.5e-3, 1.0, math.radians(60.0))) == pytest.approx(force / math.tan(math.pi / 3))
 
 
-def test_ice_coefficients_that_pull_are_refused() -> None:
+def test_ice_coefficients_that_pull_are_rejected() -> None:
     law = IceCuttingShear(((1e6, 2e6),))
     assert float(law.failure_force(0.5e-3, 1.0, math.radians(75.0))) > 0
     with raises(ParameterError, "negative_force", depth=0.0005):
@@ -302,7 +302,7 @@ def test_ice_coefficients_that_pull_are_refused() -> None:
         lambda: IceCuttingShear(((1e6,),), snow_over_ice=0.0),
     ],
 )
-def test_what_no_snow_can_have_is_refused(make: Callable[[], object]) -> None:
+def test_what_no_snow_can_have_is_rejected(make: Callable[[], object]) -> None:
     with pytest.raises(ParameterError, match="must be"):
         make()
 

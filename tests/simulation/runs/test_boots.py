@@ -138,7 +138,7 @@ SLOPE = "time_s," + ",".join(
         ),
     ],
 )
-def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, told: str | Coded) -> None:
+def test_a_table_that_is_none_is_rejected(tmp_path: Path, text: str, told: str | Coded) -> None:
     file = tmp_path / "boots.csv"
     file.write_text(text, encoding="utf-8")
     with raises(ParameterError, told):

@@ -91,7 +91,7 @@ def test_a_sledge_whose_weight_passes_beside_its_skis(changes: dict[str, object]
     assert all(word in str(told.value) for word in words)
 
 
-def test_a_sledge_that_the_snow_lets_lean_over_is_told_its_greatest_height() -> None:
+def test_a_sledge_that_the_snow_lets_lean_over_is_reported_its_greatest_height() -> None:
     """Its weight passes between the skis. It stands with the value given, not with 1.2 times."""
     changes = {"sledge.centre_of_mass_height_m": 2.6, "snow.H_V_N_per_mm3": 0.02}
     with pytest.raises(SolverError) as told:

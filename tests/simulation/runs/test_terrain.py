@@ -184,7 +184,7 @@ def test_turn() -> None:
         assert change == pytest.approx(plane.energies[name] - plane.energies[name][0], abs=0.3), name
 
 
-def test_heading_is_told_in_the_slope() -> None:
+def test_heading_is_reported_in_the_slope() -> None:
     """As the start's heading is given: from the fall line, in the snow's surface."""
     plane, profile, _ = both(load_scenario("carved-46m", changes={"run.duration_s": 0.05}))
     tilt = 1e-3  # °: settled into its grooves the sledge pitches and rolls by milliradians, whose product turns it

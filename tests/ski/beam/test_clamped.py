@@ -185,6 +185,6 @@ def test_a_footprint_is_between_a_rigid_clamp_and_one_section() -> None:
     assert section > 1.2 * rigid
 
 
-def test_a_footprint_without_stiffness_is_refused() -> None:
+def test_a_footprint_without_stiffness_is_rejected() -> None:
     with raises(ParameterError, "out_of_range", footprint_stiffness=0.0):
         clamped(plain_ski(), 0.3, 40, 0.0)

@@ -129,7 +129,7 @@ def test_two_workers_give_the_bytes_of_one_process(tmp_path: Path, cluster: Clus
         study.out.unlink()
 
 
-def test_by_the_command_line_a_plain_network_is_told(
+def test_by_the_command_line_a_plain_network_is_reported(
     tmp_path: Path, cluster: Cluster, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = CARVE.format(loads=3, angles=3)
@@ -162,7 +162,7 @@ def test_a_worker_that_is_killed_loses_nothing(tmp_path: Path, cluster: Cluster)
     assert killing(cluster, text, tmp_path, after=3) == bytes_of_one_process(tmp_path, text)
 
 
-def test_a_scheduler_that_is_killed_is_told_and_the_study_goes_on(tmp_path: Path, cluster: Cluster) -> None:
+def test_a_scheduler_that_is_killed_is_reported_and_the_study_continues(tmp_path: Path, cluster: Cluster) -> None:
     text = RUNS.format(duration=0.5, speeds=10)
     study = study_of(tmp_path / "killed", text)
 
@@ -196,7 +196,7 @@ def test_an_identification_is_that_of_one_process(bootstrap: int, cluster: Clust
     assert drawn[0] == drawn[1]
 
 
-def test_a_function_that_workers_have_not_is_told(
+def test_a_function_that_workers_have_not_is_reported(
     tmp_path: Path, cluster: Cluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "only_here.py").write_text("def row(point):\n    return {'n': point}\n", encoding="utf-8")
@@ -206,7 +206,7 @@ def test_a_function_that_workers_have_not_is_told(
         run_batch([1, 2, 3], row, executor=cluster.address)
 
 
-def test_a_scheduler_that_does_not_answer_is_told(tmp_path: Path) -> None:
+def test_a_scheduler_that_does_not_answer_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "scheduler.toml"
     path.write_text('address = "tcp://127.0.0.1:9"\nwait_s = 0.5\n', encoding="utf-8")
     with pytest.raises(SkisnowError, match=r"127\.0\.0\.1:9"):
@@ -256,7 +256,7 @@ class TestJobs:
         assert "--mem=30G" in script
         assert all(words in script for words in ("--nthreads 1 ", "--nworkers 16 "))
 
-    def test_an_option_that_it_has_not_is_refused(self, tmp_path: Path) -> None:
+    def test_an_option_that_it_has_not_is_rejected(self, tmp_path: Path) -> None:
         path = tmp_path / "slurm.toml"
         path.write_text(SLURM + "partition = 'a'\n", encoding="utf-8")
         with pytest.raises(ParameterError, match=r"\[slurm\]"):

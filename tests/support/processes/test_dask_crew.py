@@ -123,7 +123,7 @@ def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypa
     assert not any(each.done() and not each.cancelled() for each in futures)
 
 
-def test_errors_of_dask_are_told() -> None:
+def test_errors_of_dask_are_reported() -> None:
     crew = crew_of_client(Client(), dict)
     for error in (ImportError("x"), RuntimeError("Can't get attribute 'f'"), ValueError("error while deserializing")):
         told = crew.told(error)
@@ -203,7 +203,7 @@ def test_unknown_option_of_a_batch_system(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert caught.value.code == "unknown_option"
 
 
-def test_who_does_not_answer_is_told_with_what_to_start() -> None:
+def test_who_does_not_answer_is_reported_with_what_to_start() -> None:
     plain = dask_cluster._unanswered(SchedulerFile(address="tcp://h:1"), OSError("refused"))
     assert "tcp://h:1 (refused)" in plain
     for asked in (SchedulerFile(address="tls://h:1"), SchedulerFile(address="tcp://h:1", tls={"cert": "c"})):
@@ -211,7 +211,7 @@ def test_who_does_not_answer_is_told_with_what_to_start() -> None:
     assert [is_plain(f"{kind}://h:1") for kind in ("tcp", "tls", "wss", "ws")] == [True, False, False, True]
 
 
-def test_what_a_scheduler_needs_is_asked_for_before_the_work_begins(
+def test_what_a_scheduler_needs_is_requested_before_the_work_begins(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Dask for an address, the certificates that are named, and dask-jobqueue for a batch system only."""
@@ -235,7 +235,7 @@ def test_what_a_scheduler_needs_is_asked_for_before_the_work_begins(
         require_scheduler(file)
 
 
-def test_a_scheduler_that_dask_does_not_reach_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_dask_does_not_reach_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     class Distributed:
         @staticmethod
         def Client(address: str, *, timeout: float, **_: Any) -> None:

@@ -109,7 +109,7 @@ def test_a_study_runs_through_tls(
     assert study.out.read_bytes() == bytes_of_one_process(tmp_path, text)
 
 
-def test_a_certificate_of_somebody_else_is_refused_in_words(encrypted: Encrypted) -> None:
+def test_a_certificate_of_another_person_is_rejected(encrypted: Encrypted) -> None:
     other = certificates(encrypted.folder / "other")
     own = {name: encrypted.folder / "own" / f"{name}.pem" for name in NAMES}
     address = encrypted.cluster.address

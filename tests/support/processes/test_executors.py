@@ -71,7 +71,7 @@ def test_an_identification_takes_an_executor() -> None:
     assert executor.chunks > 5
 
 
-def test_nothing_to_do_asks_nobody() -> None:
+def test_an_empty_batch_starts_no_worker() -> None:
     executor = Here()
     assert run_batch([], dict, executor=executor) == []
     assert executor.chunks == 0
@@ -90,7 +90,7 @@ def test_what_waits_is_taken_back_at_the_end() -> None:
     assert time.monotonic() - begun < 5.0  # of ten seconds
 
 
-def test_a_worker_with_another_skisnow_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_with_another_skisnow_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     here = crews.own_identity()
     for other in (Identity("0.0.9", here.core), Identity(here.version, "0123456789abcdef")):
         identities = iter((other,))  # of the caller; the worker's are those that are installed here
@@ -109,7 +109,7 @@ class Needy:
         raise SkisnowError("the files are others here")
 
 
-def test_a_worker_with_other_files_is_refused() -> None:
+def test_a_worker_with_other_files_is_rejected() -> None:
     with pytest.raises(SkisnowError, match="files are others"):
         run_batch(POINTS, Needy(), executor=Here())
 
@@ -121,7 +121,7 @@ def test_a_worker_with_other_files_is_refused() -> None:
         (ZeroDivisionError("of the function"), ZeroDivisionError, None),
     ],
 )
-def test_errors_of_an_executor_are_told_and_those_of_the_function_passed_on(
+def test_errors_of_an_executor_are_reported_and_those_of_the_function_passed_on(
     error: Exception, kind: type[Exception], code: str | None
 ) -> None:
     class Failing(Here):
@@ -136,7 +136,7 @@ def test_errors_of_an_executor_are_told_and_those_of_the_function_passed_on(
 
 
 @pytest.mark.parametrize(("raised", "code"), [("no_snow", "no_snow"), (LOST, "pool_failed")])
-def test_advice_is_for_what_was_lost_and_not_for_what_the_function_refuses(raised: str, code: str) -> None:
+def test_advice_is_for_what_was_lost_and_not_for_what_the_function_rejects(raised: str, code: str) -> None:
     class Refusing(Here):
         def submit(self, *_: Any, **__: Any) -> Future[Any]:
             future: Future[Any] = Future()
@@ -147,7 +147,7 @@ def test_advice_is_for_what_was_lost_and_not_for_what_the_function_refuses(raise
         run_batch(POINTS, dict, executor=Refusing())
 
 
-def test_futures_that_a_lost_scheduler_cancels_are_told() -> None:
+def test_futures_that_a_lost_scheduler_cancels_are_reported() -> None:
     class Cancelling(Here):
         def submit(self, *_: Any, **__: Any) -> Future[Any]:
             future: Future[Any] = Future()
@@ -173,12 +173,12 @@ def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: p
     ("executor", "told"),
     [(3, coded("unknown_executor", executor=3)), ("host:8786", coded("unknown_executor", scheduler="host:8786"))],
 )
-def test_what_is_no_executor_is_refused(executor: Any, told: str | Coded) -> None:
+def test_an_invalid_executor_is_rejected(executor: Any, told: str | Coded) -> None:
     with raises(ParameterError, told):
         run_batch(POINTS, dict, executor=executor)
 
 
-def test_dask_that_is_not_installed_is_told_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_that_is_not_installed_is_reported_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with raises(ParameterError, "package_missing", module="distributed", extra="dask"):
         require_executor("tcp://127.0.0.1:8786")
@@ -215,7 +215,9 @@ SLURM = '[slurm]\njobs = 4\ncores = 16\nmemory = "32GB"\nwalltime = "02:00:00"\n
         (SLURM.replace("cores = 16\n", ""), coded("missing_key", system="slurm", name="cores")),
     ],
 )
-def test_a_slip_in_the_file_of_a_scheduler_is_told_with_the_file(text: str, told: str | Coded, tmp_path: Path) -> None:
+def test_a_slip_in_the_file_of_a_scheduler_is_reported_with_the_file(
+    text: str, told: str | Coded, tmp_path: Path
+) -> None:
     path = tmp_path / "scheduler.toml"
     path.write_text(text, encoding="utf-8")
     with raises(ParameterError, told) as caught:
@@ -238,7 +240,7 @@ def test_the_file_of_a_scheduler_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("key", ["ca_file", "cert"])
-def test_a_certificate_that_is_none_is_told_before_the_work_begins(key: str, tmp_path: Path) -> None:
+def test_a_certificate_that_is_none_is_reported_before_the_work_begins(key: str, tmp_path: Path) -> None:
     nonsense = tmp_path / "own.pem"
     nonsense.write_text("no certificate", encoding="utf-8")
     with raises(ParameterError, "no_certificate"):

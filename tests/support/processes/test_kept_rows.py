@@ -34,7 +34,7 @@ def rows_in(path: Path, fingerprint: str = "f") -> dict[int, object]:
         kept.close()
 
 
-def test_a_row_that_cannot_be_kept_is_told_with_its_file(place: Path) -> None:
+def test_a_row_that_cannot_be_kept_is_reported_with_its_file(place: Path) -> None:
     kept = KeptRows.opened(place, "f")
     kept.add([(0, row_text(ROWS[0]))])
     kept._database.execute("pragma max_page_count = 3")  # as a disk that is full
@@ -71,14 +71,14 @@ def test_the_same_row_is_not_taken_twice(place: Path) -> None:
     kept.close()
 
 
-def test_rows_of_another_batch_are_refused(place: Path) -> None:
+def test_rows_of_another_batch_are_rejected(place: Path) -> None:
     KeptRows.opened(place, "f").close()
     with raises(ParameterError, "another_study"):
         KeptRows.opened(place, "g")
     KeptRows.opened(place, "f").close()
 
 
-def test_two_runs_at_once_are_refused(place: Path) -> None:
+def test_two_runs_at_once_are_rejected(place: Path) -> None:
     first = KeptRows.opened(place, "f")
     for _ in range(2):
         with raises(OutputError, "in_use"):
@@ -99,7 +99,7 @@ def test_rows_that_are_read_are_nobody_elses_meanwhile(place: Path) -> None:
 
 
 @pytest.mark.parametrize("damage", [b"what hours have found", b"SQLite format 3\0" + b"\1" * 5000])
-def test_a_file_that_is_none_of_rows_is_told_and_left(damage: bytes, place: Path) -> None:
+def test_a_file_that_is_none_of_rows_is_reported_and_left(damage: bytes, place: Path) -> None:
     place.write_bytes(damage)
     with raises(ParameterError, "damaged"):
         KeptRows.opened(place, "f")
@@ -108,7 +108,7 @@ def test_a_file_that_is_none_of_rows_is_told_and_left(damage: bytes, place: Path
         KeptRows.read(place)
 
 
-def test_a_database_of_something_else_is_told_and_left(place: Path) -> None:
+def test_a_database_of_something_else_is_reported_and_left(place: Path) -> None:
     other = sqlite3.connect(place)
     other.execute("create table about (name, value)")
     other.commit()

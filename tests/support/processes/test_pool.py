@@ -55,7 +55,7 @@ def test_what_still_runs_is_ended_with_the_pool() -> None:
     assert time.monotonic() - begun < 40.0
 
 
-def test_a_process_that_is_killed_is_told_with_advice() -> None:
+def test_a_process_that_is_killed_is_reported_with_advice() -> None:
     with (
         raises(SkisnowError, "pool_failed", advice="Take fewer."),
         Pool(killed, 2, advice=Message("Take fewer.")) as pool,
@@ -192,7 +192,7 @@ def test_a_worker_leaves_an_interrupt_to_its_parent() -> None:
         signal.signal(signal.SIGINT, before)
 
 
-def test_nothing_to_do_is_done() -> None:
+def test_an_empty_batch_ends_at_once() -> None:
     assert run_batch([], dict) == []
 
 
@@ -226,6 +226,6 @@ def test_error_of_the_function_ends_the_batch_and_keeps_what_was_done(place: Pat
     kept.close()
 
 
-def test_no_worker_is_refused() -> None:
+def test_no_worker_is_rejected() -> None:
     with raises(ParameterError, "too_few_workers", workers=0):
         run_batch(POINTS, dict, workers=0)

@@ -87,7 +87,7 @@ FIRST = "xl/worksheets/sheet1.xml"
         ("xl/workbook.xml", None, "not_readable"),
     ],
 )
-def test_what_a_table_has_no_need_of_is_refused(
+def test_what_a_table_has_no_need_of_is_rejected(
     part: str, content: bytes | None, told: str | Coded, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workbook, "MOST_ROWS", 1000)
@@ -106,7 +106,7 @@ def test_what_a_table_has_no_need_of_is_refused(
         (b" " * (workbook.MOST_WORKBOOK_BYTES + 1), "too_large"),
     ],
 )
-def test_what_is_no_workbook_is_refused(data: bytes, told: str | Coded) -> None:
+def test_an_invalid_workbook_is_rejected(data: bytes, told: str | Coded) -> None:
     with raises(GivenError, told):
         read(data)
 
@@ -147,7 +147,7 @@ def nested(depth: int) -> bytes:
     return b"<a>" * depth + b"</a>" * depth
 
 
-def test_what_is_beyond_a_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_beyond_a_limit_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     assert xml_tree(nested(DEEPEST)).name == "a"
     with raises(GivenError, "too_large", depth=60):
         xml_tree(nested(DEEPEST + 1))
@@ -167,7 +167,7 @@ def test_what_is_beyond_a_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> N
         (b"<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>", None, "document_type"),
     ],
 )
-def test_what_is_no_xml_is_refused(data: bytes, line: int | None, told: str | Coded) -> None:
+def test_an_invalid_xml_is_rejected(data: bytes, line: int | None, told: str | Coded) -> None:
     with raises(GivenError, told) as error:
         xml_tree(data)
     assert error.value.line == line

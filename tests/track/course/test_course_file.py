@@ -68,7 +68,7 @@ def test_table_is_read_as_it_stands(tmp_path: Path) -> None:
         (HEAD + ROWS.replace("right", "left"), coded("wrong_side", name="2")),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:
+def test_a_fault_is_reported_with_its_place(tmp_path: Path, text: str, said: str | Coded) -> None:
     path = written(tmp_path, text)
     with raises(ParameterError, said) as error:
         read_course(path)
@@ -149,7 +149,7 @@ def test_one_waypoint_is_rejected(type_: str, tmp_path: Path) -> None:
         ('<!DOCTYPE gpx [<!ENTITY a "b">]><gpx/>', "not_gpx"),
     ],
 )
-def test_what_is_no_gpx_course_is_refused(tmp_path: Path, text: str, said: str | Coded) -> None:
+def test_an_invalid_gpx_course_is_rejected(tmp_path: Path, text: str, said: str | Coded) -> None:
     path = written(tmp_path, text, "course.gpx")
     with raises(ParameterError, said) as error:
         read_course(path)

@@ -55,7 +55,7 @@ def test_times_on_a_straight_line_at_constant_speed() -> None:
     assert (result.passed, result.missed, result.fault) == (3, (), None)
 
 
-def test_time_through_the_course_is_told_where_both_ends_were_reached() -> None:
+def test_time_through_the_course_is_reported_where_both_ends_were_reached() -> None:
     assert "last gate  2 s" in repr(passages(WIDE, along_x(), {}))
     assert "last gate" not in repr(passages(WIDE, along_x(seconds=3.0), {}))
 
@@ -165,7 +165,7 @@ def climbing(pause: float) -> MovingPoint:
     return MovingPoint(times, corners, velocity=np.zeros((5, 2)))
 
 
-def test_who_climbs_back_passes_later() -> None:
+def test_a_gate_passed_after_climbing_back_counts_later() -> None:
     result = passages(WIDE, climbing(6.0), {})
     assert result.passages[0].outcome == "passed"
     assert result.passages[0].time is not None
@@ -245,7 +245,7 @@ def test_the_file_has_its_columns_and_all_gates() -> None:
     assert gates_dict(result)["gate_times_s"] == pytest.approx([1.5, 2.5, 3.5])
 
 
-def test_times_that_hang_on_the_way_between_points_are_told_beside_a_gate_without_any() -> None:
+def test_times_that_hang_on_the_way_between_points_are_reported_beside_a_gate_without_any() -> None:
     time = np.arange(0.0, 3.0, 0.5)
     bent = MovingPoint(time, np.column_stack([9.0 * time + 2.0 * np.sin(3.0 * time), 0.0 * time]))
     result = passages(WIDE, bent, {})

@@ -100,7 +100,7 @@ def test_refused(tmp_path: Path, content: str, told: list[str]) -> None:
         assert words in message
 
 
-def test_deep_nesting_is_refused(tmp_path: Path) -> None:
+def test_deep_nesting_is_rejected(tmp_path: Path) -> None:
     deep = gpx(point(47.0, "14Z", "<extensions>" + "<a>" * 200_000 + "</a>" * 200_000 + "</extensions>"))
     message = refused(tmp_path, deep, "a.gpx")
     assert "101 " in message and "100" in message
@@ -111,14 +111,14 @@ def test_as_deep_as_allowed(tmp_path: Path) -> None:
     assert read(tmp_path, gpx(point(47.0, "14Z", f"<extensions>{inside}</extensions>")), "a.gpx").speed.tolist() == [3]
 
 
-def test_too_many_elements_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_elements_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.track.readers.gpx.MOST_ELEMENTS", 9)
     assert len(read(tmp_path, gpx(point(47.0, "14Z") + point(47.0, "15Z")), "a.gpx")) == 2  # nine
     assert "more than 9 elements" in refused(tmp_path, gpx(point(47.0, "14Z", "<ele>1</ele><a/>") * 2), "a.gpx")
 
 
 @pytest.mark.parametrize("declared", ["a 'aaaa'", "a SYSTEM 'file:///etc/passwd'", "% a 'b'"])
-def test_entities_are_refused(tmp_path: Path, declared: str) -> None:
+def test_entities_are_rejected(tmp_path: Path, declared: str) -> None:
     declaration = f"<!DOCTYPE gpx [<!ENTITY {declared}>]>"
     content = declaration + gpx(point(47.0, "14Z", "<ele>&a;</ele>")).split("\n", 1)[1]
     assert "an entity, a" in refused(tmp_path, content, "a.gpx")

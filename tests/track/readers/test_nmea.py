@@ -85,7 +85,7 @@ def test_date_of_zda_comes_later(tmp_path: Path) -> None:
     assert read(tmp_path, data, "a.nmea").start == datetime(2022, 12, 31, 23, 59, 59, tzinfo=UTC)
 
 
-def test_carrier_phase_of_gga(tmp_path: Path) -> None:
+def test_quality_of_gga_is_the_solution(tmp_path: Path) -> None:
     """Quality 4 is RTK with whole cycles, 5 float, 1 and 2 by the code, 6 dead reckoning."""
     track = read(tmp_path, b"".join(gga(f"15511{i}.00", quality=i) for i in (1, 2, 4, 5, 6)), "a.nmea")
     assert track.solution is not None

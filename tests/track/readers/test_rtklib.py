@@ -210,7 +210,7 @@ def test_numbers_beyond_all_solutions(tmp_path: Path, value: str) -> None:
         ("2022/12/27 noon 47.0 11.0 1500.0", "not_a_time"),
     ],
 )
-def test_a_row_that_is_cut_short_is_told_by_what_is_missing(tmp_path: Path, row: str, why: str) -> None:
+def test_a_row_that_is_cut_short_is_reported_by_what_is_missing(tmp_path: Path, row: str, why: str) -> None:
     message = refused(tmp_path, f"{LLH}{row}\n", "a.pos")
     assert f"error {why}: " in message
     assert f"row {len(LLH.splitlines()) + 1}" in message

@@ -185,7 +185,7 @@ def test_a_heading_in_another_unit_stands_for_no_column(tmp_path: Path) -> None:
     assert message.endswith("'y [m]', speed_m_per_s for 'v m/s'.")
 
 
-def test_dates_that_run_backwards_are_told_as_dates(tmp_path: Path) -> None:
+def test_dates_that_run_backwards_are_reported_as_dates(tmp_path: Path) -> None:
     message = refused(tmp_path, "time,lat,lon\n2022-12-27T15:51:14Z,46,7\n2022-12-27T15:51:13.5Z,46,7\n")
     assert "row 3" in message
     assert "2022-12-27 15:51:13.5" in message
@@ -228,7 +228,7 @@ def test_a_real_day() -> None:
     assert own.sum() == pytest.approx(lengths.sum(), rel=1e-3)
 
 
-def test_tables_of_no_measurement_are_refused(tmp_path: Path) -> None:
+def test_tables_of_no_measurement_are_rejected(tmp_path: Path) -> None:
     assert "at most 1000 columns" in refused(tmp_path, "x," * 100_000 + "\n1\n")
     assert "row 2" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 40_000}\n")
     assert "not_a_number" in refused(tmp_path, f"time_s,x_m,y_m\n1,2,{'9' * 30_000}\n")

@@ -163,7 +163,7 @@ def test_the_answer_follows_a_slider(desk: Desk, name: str, place: str, stands: 
         assert headline == radius(found)
 
 
-def test_the_ratio_is_asked_for(desk: Desk) -> None:
+def test_the_ratio_is_requested(desk: Desk) -> None:
     page = desk.open("/carve")
     page.fill(RATIO, "inf")
     page.shows(radius(answer(ratio=float("inf"))))
@@ -233,7 +233,7 @@ def test_the_answer_follows_the_menus(desk: Desk) -> None:
     assert [line for line in page.outline() if line.startswith("[value] ")] == [radius(answer("slalom"))]
 
 
-def test_what_the_snow_cannot_hold_is_said(desk: Desk) -> None:
+def test_what_the_snow_cannot_hold_is_reported(desk: Desk) -> None:
     page = desk.open("/carve")
     page.shows("carver: equilibrium.")
     move(page, STRESS, "1")
@@ -304,7 +304,7 @@ def test_the_snow_of_a_campaign_gives_what_was_measured(
     assert [line for line in page.outline() if line.startswith((HARDNESS, STRESS))] == [f"{STRESS}: 0.5" for _ in own]
 
 
-def test_a_ski_that_cannot_be_read_is_told(desk: Desk) -> None:
+def test_a_ski_that_cannot_be_read_is_reported(desk: Desk) -> None:
     skis = LabSkis(desk.lab.runs)
     skis.save_texts("mine", skis.texts("slalom")[0], "")
     page = desk.open("/carve?ski=mine")
@@ -320,7 +320,7 @@ def test_a_ski_that_cannot_be_read_is_told(desk: Desk) -> None:
     page.shows("[status] slalom: equilibrium.")
 
 
-def test_while_an_answer_is_late_it_is_said_and_only_the_last_question_waits(
+def test_while_an_answer_is_late_it_is_reported_and_only_the_last_question_waits(
     desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     released, asked = held(monkeypatch)
@@ -342,7 +342,7 @@ def test_while_an_answer_is_late_it_is_said_and_only_the_last_question_waits(
     page.shows(radius(answer(angle=49.0)))
 
 
-def test_what_goes_wrong_behind_a_page_is_told_on_it(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_goes_wrong_behind_a_page_is_reported_on_it(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     page = desk.open("/carve")
     page.shows("[status] carver: equilibrium.")
     failure = ZeroDivisionError("division by zero")

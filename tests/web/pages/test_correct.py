@@ -109,7 +109,7 @@ def correct(desk: Desk, id_: str, test: str, cells: dict[str, str]) -> JournalEn
 # A test
 
 
-def test_a_test_stands_there_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) -> None:
+def test_a_test_is_listed_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) -> None:
     """A value of the whole test is shown once; the hardness is that of an analysis."""
     page = opened(desk, id_)
     row = analyse(read_campaign(tmp_path / "drawer")).results["penetration"]["experiments"][0]
@@ -150,7 +150,7 @@ def test_a_test_of_one_row_has_no_numbers_of_rows(desk: Desk, id_: str) -> None:
     assert page.field("Plate").options == {"plate": "plate"}
 
 
-def test_what_differs_between_the_rows_of_a_test_stands_in_each(desk: Desk, tmp_path: Path) -> None:
+def test_what_differs_between_the_rows_of_a_test_is_in_each(desk: Desk, tmp_path: Path) -> None:
     id_ = kept(desk, tmp_path / "mixed", FILES | {"penetration.csv": MIXED})
     page = opened(desk, id_, "4")
     assert values(page.between("h2 Test 4", "button[main] Correct")) == {
@@ -175,7 +175,7 @@ def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:
 
 
 @pytest.mark.parametrize("table", ["density.csv", "campaign.toml"])
-def test_an_address_of_another_table_is_refused(desk: Desk, id_: str, table: str) -> None:
+def test_an_address_of_another_table_is_rejected(desk: Desk, id_: str, table: str) -> None:
     answer = desk.get(f"/correct/{id_}?table={table}")
     assert (answer.status_code, desk.code) == (404, "no_table")
     desk.failures.clear()
@@ -246,7 +246,7 @@ def test_a_question_that_is_left_shows_the_cells_as_they_are(desk: Desk, id_: st
     assert history(desk, id_) == []
 
 
-def test_what_no_cell_can_hold_is_refused(desk: Desk, id_: str) -> None:
+def test_what_no_cell_can_hold_is_rejected(desk: Desk, id_: str) -> None:
     page = opened(desk, id_)
     page.fill("Site", " ")
     page.fill("Depth (mm), row 3", "two")
@@ -261,7 +261,7 @@ def test_what_no_cell_can_hold_is_refused(desk: Desk, id_: str) -> None:
     assert "Depth (mm): 2,6 becomes 2.7." in page.outline()
 
 
-def test_a_correction_after_somebody_elses_is_refused(desk: Desk, id_: str) -> None:
+def test_a_correction_after_another_persons_is_rejected(desk: Desk, id_: str) -> None:
     page = opened(desk, id_)
     page.fill("Depth (mm), row 3", "2.15")
     page.press("Correct")

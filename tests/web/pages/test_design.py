@@ -92,7 +92,7 @@ def test_both_skis_are_in_the_same_turn(desk: Desk) -> None:
         assert line["y"] == pytest.approx(each.force_per_length, rel=1e-3, abs=0.05)
 
 
-def test_a_ski_that_cannot_be_is_refused_and_the_next_one_is_answered(desk: Desk) -> None:
+def test_a_ski_that_cannot_be_is_rejected_and_the_next_one_is_answered(desk: Desk) -> None:
     page = desk.open("/design?ski=slalom")
     page.shows("equilibrium")
     page.fill("Ski", "giant-slalom")
@@ -123,7 +123,7 @@ def test_the_search_sets_sidecut_and_stiffness(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize(("typed", "told_of"), [("300", "turn_radius_boot_m"), ("wide", "the wanted radius")])
-def test_a_radius_out_of_reach_is_told(desk: Desk, typed: str, told_of: str) -> None:
+def test_a_radius_out_of_reach_is_reported(desk: Desk, typed: str, told_of: str) -> None:
     page = desk.open("/design?ski=slalom")
     page.shows("equilibrium")
     page.fill("Wanted radius (m)", typed)

@@ -172,7 +172,7 @@ def test_towards_the_fall_line_is_down_and_left_of_it_is_left(tmp_path: Path) ->
         (csv([(i, i, 0, 0) for i in range(MOST_POINTS + 1)]), Placing("x.csv"), "too_many_points"),
     ],
 )
-def test_what_is_no_track_is_refused_and_leaves_nothing(
+def test_what_is_no_track_is_rejected_and_leaves_nothing(
     tmp_path: Path, content: bytes, placing: Placing, code: str
 ) -> None:
     tracks = TrackFolders(tmp_path)

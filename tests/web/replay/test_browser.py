@@ -125,20 +125,20 @@ def test_a_second_of_play_is_a_second_of_the_run_or_the_chosen_part_of_it(seen: 
     assert seen.does(played(300.0)) == pytest.approx(1.03, abs=1e-9)
 
 
-def test_a_page_that_was_hidden_goes_on_from_where_it_was(seen: Watched) -> None:
+def test_a_page_that_was_hidden_continues_from_where_it_was(seen: Watched) -> None:
     """A hidden page is given no pictures: after a minute the run has not ended unseen."""
     assert seen.does(played(60_000.0)) == pytest.approx(2.0, abs=1e-9)
 
 
 @pytest.mark.slow
-def test_it_ends_at_the_end_and_begins_anew(seen: Watched) -> None:
+def test_the_replay_stops_at_its_end_and_restarts(seen: Watched) -> None:
     seen.does("replay.seek(3.9); replay.play()")
     seen.page.wait_for_function("!window.skisnowReplay.playing")
     assert seen.value("time") == pytest.approx(4.0)
     assert seen.does("replay.play(); return replay.time") < 1.0
 
 
-def test_nothing_is_asked_for_and_nothing_complained_about(fresh: Watched, address: str) -> None:
+def test_the_replay_requests_nothing_and_logs_no_error(fresh: Watched, address: str) -> None:
     for view in VIEWS:
         fresh.does(f"replay.look('{view}'); replay.exaggerate(7); replay.show('forces', true); replay.seek(1.0)")
     pictures_later(fresh)
@@ -166,7 +166,7 @@ def test_readings_are_the_runs_numbers_with_units(seen: Watched) -> None:
     assert "(mm)" in legend
 
 
-def test_it_opens_playing_from_behind(browser: Any, address: str) -> None:
+def test_the_replay_opens_playing_with_the_camera_behind(browser: Any, address: str) -> None:
     """Both skis and the groove behind them are on the picture, and gravity points down in it."""
     seen = Watched(browser, address, plays=True)
     try:

@@ -115,7 +115,7 @@ def test_a_page_in_german(chromium: Any, tmp_path: Path) -> None:
     assert seen.complaints == []
 
 
-def test_a_language_without_texts_is_refused(tmp_path: Path) -> None:
+def test_a_language_without_texts_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(ParameterError):
         write_replay(circle_run(), tmp_path / "replay.html", language="xx")
     assert not list(tmp_path.iterdir())
@@ -159,7 +159,7 @@ def test_parts_stand_between_the_joints(seen: Watched, replay: Replay) -> None:
     assert seen.complaints == []
 
 
-def test_the_gap_is_told_when_both_have_passed_a_gate(seen: Watched, replay: Replay) -> None:
+def test_the_gap_is_reported_when_both_have_passed_a_gate(seen: Watched, replay: Replay) -> None:
     assert replay.gate_times is not None
     first, second = (replay.time[0] + replay.gate_times).tolist()
     told = []

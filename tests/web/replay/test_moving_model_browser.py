@@ -116,7 +116,7 @@ def picture(page: Any, time: float) -> np.ndarray:
         return np.asarray(image.convert("RGB")).astype(int)
 
 
-def test_it_is_one_clip_as_long_as_the_run(page: Any) -> None:
+def test_the_model_has_one_clip_of_the_run_s_duration(page: Any) -> None:
     ((name, duration),) = page.evaluate("lab.clips")
     assert name == "run"
     assert duration == pytest.approx(4.0, abs=1e-6)

@@ -72,7 +72,7 @@ def report_key(page: Sheet) -> str:
     return page.shows("link Open the report").split("/")[2]
 
 
-def test_numbers_tables_and_figures_stand_in_their_order(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
+def test_numbers_tables_and_figures_are_in_their_order(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
     desk.do(drawing.gate.clear)
     id_ = kept(desk, tmp_path / "kept")
     page = desk.open(f"/analysis/kept/{id_}")
@@ -110,7 +110,7 @@ def test_numbers_tables_and_figures_stand_in_their_order(desk: Desk, tmp_path: P
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Campaigns"]
 
 
-def test_what_was_computed_is_there_with_the_page(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
+def test_cached_results_are_on_the_page_at_once(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
     id_ = kept(desk, tmp_path / "kept")
     page = desk.open(f"/analysis/kept/{id_}")
     assert "Computing …" in page.html and "Drawing the figures" not in page.html
@@ -169,7 +169,7 @@ def test_flags_are_let_in_and_left_out(desk: Desk, tmp_path: Path, drawing: Draw
     assert drawing.asked
 
 
-def test_what_is_chosen_meanwhile_is_what_is_shown(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
+def test_a_choice_made_during_the_computation_is_shown(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
     """The first figure of the first choice comes after all of the second."""
     desk.do(drawing.gate.clear)
     drawing.held = 3
@@ -186,7 +186,7 @@ def test_what_is_chosen_meanwhile_is_what_is_shown(desk: Desk, tmp_path: Path, d
     assert figures(page) == [("data:0", "2 points"), ("data:2", "2 points")]
 
 
-def test_what_is_wrong_in_files_is_listed_and_where_it_can_be_put_right(
+def test_what_is_wrong_in_files_is_listed_and_where_it_can_be_corrected(
     desk: Desk, tmp_path: Path, drawing: Drawing
 ) -> None:
     page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept', WRONG)}")

@@ -106,7 +106,7 @@ FOREIGN, TOO_MUCH, OTHER_HOST, NO_ADDRESS = 403, 413, 421, 400
         *(("GET", {"content_length": size}, TOO_MUCH) for size in ("101", "1e1", "-1", "x", "1" * 5000)),
     ],
 )
-def test_who_is_answered(desk: Desk, method: str, headers: dict[str, str], answer: int) -> None:
+def test_requests_that_the_guard_answers(desk: Desk, method: str, headers: dict[str, str], answer: int) -> None:
     assert Asked(desk).status("/", method, **headers)[0] == answer
     if answer in (FOREIGN, OTHER_HOST, NO_ADDRESS):
         assert Asked(desk).send("websocket", **headers)[0]["type"] != "websocket.accept"
@@ -151,7 +151,7 @@ def test_a_socket_of_another_site_is_closed(desk: Desk) -> None:
     assert lab.send("lifespan", host="evil.example") == [{"type": "lifespan.startup.complete"}]
 
 
-def test_the_token_is_asked_for_until_the_cookie_is_there(desk: Desk) -> None:
+def test_the_token_is_requested_until_the_cookie_is_there(desk: Desk) -> None:
     lab, cookie = Asked(desk, token="snow"), hmac.new(b"snow", b"skisnow lab", hashlib.sha256).hexdigest()
     for path, method in (("/", "GET"), ("/token", "GET"), ("/", "POST")):
         assert lab.status(path, method, **OWN)[0] == 401
@@ -166,7 +166,7 @@ def test_the_token_is_asked_for_until_the_cookie_is_there(desk: Desk) -> None:
     assert lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]["status"] == 429
 
 
-def test_too_many_tries_are_told_when_to_try_again(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_tries_are_reported_when_to_try_again(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.web.guard._WAIT_S", 0.0)
     lab = Asked(desk, token="snow")
     assert [lab.status("/token", "POST", b"token=ice", **OWN)[0] for _ in range(10)] == [403] * 10
@@ -217,7 +217,7 @@ def test_the_log_keeps_its_last_two_files(log: Path) -> None:
     log_to(log)  # the folder is there
 
 
-def test_an_error_is_said_in_the_corner_of_its_page(desk: Desk) -> None:
+def test_an_error_is_reported_in_the_corner_of_its_page(desk: Desk) -> None:
     page = desk.open("/replay")
     desk.do(lambda: _notify(StoreError("full.")), page.client)
     page.told("notify ")
@@ -302,7 +302,7 @@ def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None
         ("127.0.0.1", " ", "blank_token"),
     ],
 )
-def test_where_others_can_come_in_there_is_a_token(host: str, token: str | None, code: str) -> None:
+def test_serving_others_requires_a_token(host: str, token: str | None, code: str) -> None:
     if not code:
         require_allowed(host, token)
         return
@@ -350,7 +350,7 @@ def test_the_lab_is_served_to_this_machine(desk: Desk, announced: list[Any]) -> 
     assert len(announced) == 1
 
 
-def test_whoever_lets_others_in_is_told_how_they_come(
+def test_serving_others_prints_the_address_for_them(
     desk: Desk, announced: list[Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told: list[str] = []
@@ -416,7 +416,7 @@ def test_addresses_of_this_machine_need_no_name_of_an_adapter(
     assert found == {f"[{each}]:80/" if ":" in each else f"{each}:80/" for each in expected}
 
 
-def test_a_phone_is_shown_the_way() -> None:
+def test_the_address_for_a_phone_is_shown() -> None:
     """A code of 25 modules with an edge of 2, two rows to a line."""
     lines = list(lines_for_others(["http://10.0.0.2:80/", "http://10.0.0.3:80/"], secure=True))
     assert lines[0] == "also: http://10.0.0.3:80/"

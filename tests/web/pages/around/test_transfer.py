@@ -55,7 +55,7 @@ def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     ],
     ids=["files", "folder", "zip"],
 )
-def test_a_campaign_is_taken_in_as_it_is(desk: Desk, here: list[Any], sent: list[tuple[str, bytes]]) -> None:
+def test_a_campaign_is_imported_as_it_is(desk: Desk, here: list[Any], sent: list[tuple[str, bytes]]) -> None:
     answer = desk.post("/import", files=[("files", each) for each in sent])
     (stored,) = desk.lab.store.list()
     assert (answer.status_code, answer.headers["location"]) == (303, f"/?added={stored.id}")
@@ -79,7 +79,7 @@ def test_a_campaign_is_taken_in_as_it_is(desk: Desk, here: list[Any], sent: list
         ({"data": {"files": "a.csv"}}, "no_file"),
     ],
 )
-def test_what_is_no_campaign_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+def test_an_invalid_campaign_is_rejected(desk: Desk, form: dict[str, Any], code: str) -> None:
     assert desk.post("/import", **form).status_code == 400
     assert desk.code == code
     assert desk.lab.store.list() == ()
@@ -188,7 +188,7 @@ def test_plain_files_are_unpacked_however_they_are_packed(folder: Path, method: 
         (packed({"a": b"", "a/b": b""}), "same_name"),
     ],
 )
-def test_what_a_zip_may_not_hold(folder: Path, content: bytes, code: str) -> None:
+def test_forbidden_contents_of_a_zip_are_rejected(folder: Path, content: bytes, code: str) -> None:
     with pytest.raises(ParameterError) as found:
         Unpacking(folder, LIMITS).take_zip(io.BytesIO(content))
     assert found.value.code == code
@@ -233,7 +233,7 @@ def zip_of(files: dict[str, bytes], *, attributes: int = 0) -> io.BytesIO:
     "name",
     ["../outside", "a/../../outside", "/tmp/outside", "C:/outside", "..\\outside", "a//b", "con.csv", "a\0b", ""],
 )
-def test_names_that_lead_elsewhere_are_refused(folder: Path, name: str) -> None:
+def test_names_that_lead_elsewhere_are_rejected(folder: Path, name: str) -> None:
     with raises(ParameterError, "not_taken_in"):
         Unpacking(folder, LIMITS).take(name, io.BytesIO(b"x"))
     assert not any(folder.iterdir())
@@ -247,7 +247,7 @@ def test_a_zip_writes_nothing_outside(folder: Path, name: str) -> None:
     assert [path.name for path in folder.parent.iterdir()] == ["inside"]
 
 
-def test_links_are_refused(folder: Path) -> None:
+def test_links_are_rejected(folder: Path) -> None:
     with raises(ParameterError, "not_a_plain_file"):
         Unpacking(folder, LIMITS).take_zip(zip_of({"a": b"/etc/passwd"}, attributes=stat.S_IFLNK | 0o777))
 
@@ -276,7 +276,7 @@ def test_limits_hold_over_several_files(folder: Path) -> None:
         unpacking.take("b", io.BytesIO(bytes(3000)))
 
 
-def test_two_files_of_one_name_are_refused(folder: Path) -> None:
+def test_two_files_of_one_name_are_rejected(folder: Path) -> None:
     unpacking = Unpacking(folder, LIMITS)
     unpacking.take("a", io.BytesIO(b"first"))
     with raises(ParameterError, "same_name"):
@@ -285,12 +285,12 @@ def test_two_files_of_one_name_are_refused(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 no zip", b"x" * 500])
-def test_what_is_no_zip_is_said_to_be_none(folder: Path, content: bytes) -> None:
+def test_what_is_no_zip_is_reported_to_be_none(folder: Path, content: bytes) -> None:
     with raises(ParameterError, "damaged"):
         Unpacking(folder, LIMITS).take_zip(io.BytesIO(content))
 
 
-def test_a_broken_member_is_said(folder: Path) -> None:
+def test_a_broken_member_is_reported(folder: Path) -> None:
     content = bytearray(zip_of({"a": bytes(range(256)) * 8}).getvalue())
     content[60:80] = bytes(20)
     with raises(ParameterError, "damaged"):
@@ -334,7 +334,7 @@ def _set(at: int, value: bytes) -> Callable[[bytearray], None]:
         (_no_name, coded("not_taken_in", file="''")),
     ],
 )
-def test_damage_in_the_list_of_files_is_said(
+def test_damage_in_the_list_of_files_is_reported(
     folder: Path, change: Callable[[bytearray], None], told: str | Coded
 ) -> None:
     content = changed(zip_of({"inner/a": bytes(range(256)) * 8}).getvalue(), change)

@@ -274,7 +274,7 @@ def test_rows_and_shapes_that_the_browser_kept_come_back(desk: Desk) -> None:
         ({"rows": {"tool": 201}}, 200),
     ],
 )
-def test_what_no_form_has_kept_counts_as_not_said(desk: Desk, said: object, n_tools: int) -> None:
+def test_invalid_row_counts_from_a_browser_are_ignored(desk: Desk, said: object, n_tools: int) -> None:
     page = desk.open("/describe")
     page.fire(page.client.layout, "grow", said)
     assert (rows(page, "tool"), rows(page, "plate")) == (n_tools, 1)
@@ -305,7 +305,7 @@ def test_a_description_that_is_changed_is_written_down_and_one_that_is_not_is_no
     assert stored_description(desk) == tomllib.loads(TOML) | {"place": "another hill"}
 
 
-def test_the_description_that_somebody_else_wrote_meanwhile_is_not_written_over(desk: Desk) -> None:
+def test_the_description_that_another_person_wrote_meanwhile_is_not_written_over(desk: Desk) -> None:
     id_ = begun(desk)
     mine, theirs = desk.open(f"/describe?entry={id_}"), desk.open(f"/describe?entry={id_}")
     theirs.fill("Place", "theirs")

@@ -110,7 +110,7 @@ def test_only_the_last_of_several_tests_is_shown(desk: Desk) -> None:
     page.shows("[quiet] Test a")
 
 
-def test_what_cannot_be_computed_is_said_and_the_next_one_is_shown(desk: Desk) -> None:
+def test_what_cannot_be_computed_is_reported_and_the_next_one_is_shown(desk: Desk) -> None:
     page = desk.open("/")
 
     def answer(site: str) -> QuickResults:
@@ -301,7 +301,7 @@ def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -
     assert not any("field Why" in line for line in page.outline())
 
 
-def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_refused(desk: Desk) -> None:
+def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_rejected(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"))
     page = series_page(desk, id_)
@@ -380,7 +380,7 @@ def test_a_kept_reading_that_cannot_be_stored_is_answered_with_the_reason(
         (record(once="x" * 201), ""),
     ],
 )
-def test_what_is_no_kept_reading_is_refused(desk: Desk, said: object, once: str) -> None:
+def test_an_invalid_kept_reading_is_rejected(desk: Desk, said: object, once: str) -> None:
     id_ = begun(desk)
     ((answered, reason),) = resent(begun_series(desk, id_), [said])
     assert (answered, bool(reason)) == (once, True)

@@ -52,7 +52,7 @@ def test_the_hardness_follows_the_readings(desk: Desk) -> None:
     assert panel["lines"][0]["y"] == [20, 40.5, 60]
 
 
-def test_too_few_loads_are_said_when_the_series_is_left(desk: Desk) -> None:
+def test_too_few_loads_are_reported_when_the_series_is_left(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     enter(page, "Depth under 20 N (mm)", "1.5")
@@ -107,7 +107,7 @@ def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     assert "misread" in undo_button(page)
 
 
-def test_a_correction_without_a_reason_is_refused(desk: Desk) -> None:
+def test_a_correction_without_a_reason_is_rejected(desk: Desk) -> None:
     id_ = begun(desk)
     page = asked_to_correct(desk, id_)
     page.fill("Why", "  ")
@@ -173,7 +173,7 @@ def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
     assert history(desk, id_)[-1].who == "Bo"
 
 
-def test_a_correction_after_somebody_elses_is_refused(desk: Desk) -> None:
+def test_a_correction_after_another_persons_is_rejected(desk: Desk) -> None:
     id_ = begun(desk)
     page = asked_to_correct(desk, id_)
     first = history(desk, id_)[0].sequence
@@ -256,7 +256,7 @@ def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
     assert any("&site=A" in each for each in page.scripts)
 
 
-def test_what_somebody_else_undid_is_not_undone_again(desk: Desk) -> None:
+def test_what_another_person_undid_is_not_undone_again(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"))
     page = series_page(desk, id_)

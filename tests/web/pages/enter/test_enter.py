@@ -65,7 +65,7 @@ def test_without_observers_anybody_may_say_a_name(desk: Desk) -> None:
     assert [entry.who for entry in history(desk, id_)] == ["Di"]
 
 
-def test_an_address_with_another_table_is_refused(desk: Desk) -> None:
+def test_an_address_with_another_table_is_rejected(desk: Desk) -> None:
     assert desk.get(f"/enter/{begun(desk)}?table=campaign.toml").status_code == 404
     assert desk.code == "no_table"
     desk.failures.clear()
@@ -102,7 +102,7 @@ def test_a_series_begins_with_its_head_and_asks_for_a_depth_under_each_load(desk
     }
 
 
-def test_what_no_series_can_begin_with_is_said_at_its_fields(desk: Desk) -> None:
+def test_what_no_series_can_begin_with_is_reported_at_its_fields(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}")
     page.fill("Edge angle (°)", "95")
@@ -218,7 +218,7 @@ def test_a_series_in_german_has_commas(desk: Desk) -> None:
     assert not any(each.props.get("label") == "Warum" for each in page.of(ui.input))
 
 
-def test_what_is_no_depth_is_refused_at_its_field_and_said_once(desk: Desk) -> None:
+def test_what_is_no_depth_is_rejected_at_its_field_and_said_once(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     name = "Depth under 20 N (mm)"
@@ -258,7 +258,7 @@ def test_a_text_that_was_lost_on_its_way_is_taken_from_what_is_sent_again(desk: 
     assert page.scripts.count('lab.told("a")') == 2
 
 
-def test_somebody_else_on_the_same_series_is_told_and_shown(desk: Desk) -> None:
+def test_another_person_on_the_same_series_is_reported_and_shown(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     page.fill("Depth under 60 N (mm)", "3")  # typed, and not stored
@@ -278,7 +278,7 @@ def test_somebody_else_on_the_same_series_is_told_and_shown(desk: Desk) -> None:
     assert depths(desk, id_) == [("20", "1.4"), ("40.5", "2.1")]
 
 
-def test_somebody_elses_reading_under_the_same_load_stays(desk: Desk) -> None:
+def test_another_persons_reading_under_the_same_load_stays(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     add_series(desk, id_, "1", ("20", "1.4"), who="Bo")
@@ -306,7 +306,7 @@ def test_a_load_beyond_the_discs_stands_where_it_belongs(desk: Desk) -> None:
     assert page.field("Further load (N)").value == ""
 
 
-def test_a_load_that_has_a_reading_is_refused_as_a_further_one(desk: Desk) -> None:
+def test_a_load_that_has_a_reading_is_rejected_as_a_further_one(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
     enter(page, "Depth under 20 N (mm)", "1.5")

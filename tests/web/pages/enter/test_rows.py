@@ -45,7 +45,7 @@ NAMES = {
 }
 
 
-def test_a_shear_test_is_asked_for_and_stored(desk: Desk) -> None:
+def test_a_shear_test_is_requested_and_stored(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     assert page.field("Plate").value == "blade"
@@ -96,7 +96,7 @@ def test_a_test_that_was_sent_before_is_stored_once_and_answered_as_then(desk: D
     assert len(history(desk, id_)) == 1
 
 
-def test_a_name_that_is_taken_is_refused(desk: Desk) -> None:
+def test_a_name_that_is_taken_is_rejected(desk: Desk) -> None:
     id_ = begun(desk)
     add_shear(desk, id_, "1")
     page = desk.open(f"/enter/{id_}?table=shear.csv")
@@ -111,7 +111,7 @@ def test_a_name_that_is_taken_is_refused(desk: Desk) -> None:
     assert len(history(desk, id_)) == 1
 
 
-def test_a_test_that_somebody_else_entered_meanwhile_is_not_stored(desk: Desk) -> None:
+def test_a_test_that_another_person_entered_meanwhile_is_not_stored(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")
     add_shear(desk, id_, "1")
@@ -124,7 +124,7 @@ def test_a_test_that_somebody_else_entered_meanwhile_is_not_stored(desk: Desk) -
     assert page.field("Moment (N m)").value == "30"
 
 
-def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
+def test_the_next_repeat_of_a_cone_is_requested(desk: Desk) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=drop_cone.csv")
     store(page, name="c", site="A", cone="12")
@@ -138,7 +138,7 @@ def test_the_next_repeat_of_a_cone_is_asked_for(desk: Desk) -> None:
     assert len(history(desk, id_)) == 2
 
 
-def test_the_next_turning_angle_is_asked_for(desk: Desk) -> None:
+def test_the_next_turning_angle_is_requested(desk: Desk) -> None:
     """30 N m/0.25 m/(100 mm × 6 mm) = 0.2 N/mm²."""
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=shear.csv")

@@ -27,7 +27,7 @@ HERE = Path(skisnow.web.__file__).parent
 @pytest.mark.parametrize(
     ("path", "kind"), [("/lab.css", "text/css"), ("/lab.js", "text/javascript"), ("/kept.js", "text/javascript")]
 )
-def test_own_files_are_asked_for_again(desk: Desk, path: str, kind: str) -> None:
+def test_own_files_are_requested_again(desk: Desk, path: str, kind: str) -> None:
     answer = desk.get(path)
     assert answer.status_code == 200
     assert answer.headers["content-type"].startswith(kind)

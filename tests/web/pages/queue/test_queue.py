@@ -104,7 +104,7 @@ def test_jobs_that_are_damaged_are_left_out(tmp_path: Path) -> None:
     assert runs.jobs() == [newer, older]
 
 
-def test_the_queue_goes_on_with_the_oldest_and_tells_how_it_stands(
+def test_the_queue_continues_with_the_oldest_and_tells_how_it_stands(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     acts(
@@ -261,7 +261,7 @@ def test_a_study_is_on_the_disk_when_it_is_in_the_queue(tmp_path: Path, monkeypa
     assert (studies.folder / job.name).stat().st_mode & 0o777 == 0o755
 
 
-def test_a_study_of_too_many_points_is_refused_before_it_takes_memory(tmp_path: Path) -> None:
+def test_a_study_of_too_many_points_is_rejected_before_it_takes_memory(tmp_path: Path) -> None:
     studies = Studies(tmp_path)
     for n, code in ((10**9, "out_of_range"), (10_001, "too_many_points")):
         asked = replace(TURNS, varied={"edge_angle_deg": Range(10.0, 70.0, n)})
@@ -270,7 +270,7 @@ def test_a_study_of_too_many_points_is_refused_before_it_takes_memory(tmp_path: 
     assert studies.jobs() == []
 
 
-def test_a_study_that_was_cancelled_or_failed_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_study_that_was_cancelled_or_failed_continues(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     studies = Studies(tmp_path)
     first, second = studies.ask_for(TURNS), studies.ask_for(TURNS)
     monkeypatch.setattr(studies_module, "available_cores", lambda: 9)
@@ -331,7 +331,7 @@ def test_what_a_study_has_finished_is_kept_and_told(tmp_path: Path, cancelled: b
     assert "0 of 2" in ended(studies, job, said, cancelled=cancelled).said
 
 
-def test_a_study_that_another_process_still_writes_is_begun_again(
+def test_a_study_that_another_process_still_writes_is_restarted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(studies_module, "_AGAIN_S", 0.0)
@@ -399,7 +399,7 @@ def test_a_run_ends_after_its_time_or_its_way(duration: Any, length: Any, speed:
         (7100.0, "118 min"), (7139.0, "119 min"), (7200.0, "2 h"), (20_000.0, "6 h"),
     ],
 )  # fmt: skip
-def test_a_duration_is_said_as_exact_as_it_is_known(seconds: float, words: str) -> None:
+def test_a_duration_is_reported_as_exact_as_it_is_known(seconds: float, words: str) -> None:
     assert duration_words(seconds) == words
 
 
@@ -447,7 +447,7 @@ def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypat
     assert anew() == []
 
 
-def test_what_the_queue_refuses_is_told(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_queue_rejects_is_reported(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(f"{widgets.__name__}.ui.timer", lambda *_: None)
     studies = Studies(desk.lab.runs)
     job = studies.ask_for(TURNS)

@@ -75,7 +75,7 @@ def test_two_runs_are_put_together_the_newest_over_the_one_before(desk: Desk, ru
     assert options(desk.open("/replay", "de"), "track") == [("", "keine", True)]
 
 
-def test_a_track_that_was_taken_in_is_chosen_for_a_run_alone(desk: Desk, run_files: dict[str, bytes]) -> None:
+def test_a_track_that_was_imported_is_chosen_for_a_run_alone(desk: Desk, run_files: dict[str, bytes]) -> None:
     keep(desk.lab.runs, "older", run_files)
     name = keep_track(desk.lab.runs)
     page = desk.open("/replay")
@@ -102,7 +102,7 @@ def test_a_track_that_was_taken_in_is_chosen_for_a_run_alone(desk: Desk, run_fil
         (json.dumps({"run_length_m": 12.345, "simulated_s": 1.2345, "outcome": "missed_gate"}), "12.3 m in 1.23 s, "),
     ],
 )
-def test_a_run_is_told_in_a_line(desk: Desk, run_files: dict[str, bytes], summary: str | None, words: str) -> None:
+def test_a_run_is_reported_in_a_line(desk: Desk, run_files: dict[str, bytes], summary: str | None, words: str) -> None:
     place = keep(desk.lab.runs, "mine", run_files)
     (place / "summary.json").unlink()
     if summary is not None:
@@ -110,7 +110,7 @@ def test_a_run_is_told_in_a_line(desk: Desk, run_files: dict[str, bytes], summar
     assert desk.open("/replay").outline()[-2].startswith(f"[quiet] {words}")
 
 
-def test_a_track_is_taken_in_with_what_was_typed(desk: Desk, here: list[Any]) -> None:
+def test_a_track_is_imported_with_what_was_typed(desk: Desk, here: list[Any]) -> None:
     def taken(file: str, content: bytes = TRACK, **typed: str) -> tuple[str, float | None, float]:
         answer = desk.post("/replay/track", files={"file": (file, content)}, data=typed)
         name = TrackFolders(desk.lab.runs).names()[0]
@@ -138,7 +138,7 @@ def test_a_track_is_taken_in_with_what_was_typed(desk: Desk, here: list[Any]) ->
         ({"data": {"file": "a.csv"}}, "no_file"),
     ],
 )
-def test_what_is_no_track_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+def test_an_invalid_track_is_rejected(desk: Desk, form: dict[str, Any], code: str) -> None:
     assert desk.post("/replay/track", **form).status_code == 400
     assert desk.code == code
     assert TrackFolders(desk.lab.runs).names() == []
@@ -169,7 +169,7 @@ def test_a_track_keeps_an_ending_that_says_how_it_is_read(tmp_path: Path) -> Non
     assert list(about.values()) == ["Hütte.csv", None, 0.0]
 
 
-def test_tracks_of_a_folder_that_cannot_be_written_are_refused(tmp_path: Path) -> None:
+def test_tracks_of_a_folder_that_cannot_be_written_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "tracks").write_bytes(b"")
     with raises(OutputError, "cannot_write"):
         keep_track(tmp_path)

@@ -232,7 +232,7 @@ def here(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("here")
-def test_a_course_that_was_taken_in_is_chosen_for_a_skier(desk: Desk) -> None:
+def test_a_course_that_was_imported_is_chosen_for_a_skier(desk: Desk) -> None:
     answer = desk.post("/simulate/course", files={"file": ("Hang 3.csv", COURSE)})
     (name,) = LabCourses(desk.lab.runs).kept()
     assert (answer.status_code, answer.headers["location"]) == (303, f"/simulate?course={name}")
@@ -259,7 +259,7 @@ def test_a_course_that_was_taken_in_is_chosen_for_a_skier(desk: Desk) -> None:
         ({"data": {"file": "a.csv"}}, "no_file"),
     ],
 )
-def test_what_is_no_course_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+def test_an_invalid_course_is_rejected(desk: Desk, form: dict[str, Any], code: str) -> None:
     assert desk.post("/simulate/course", **form).status_code == 400
     assert desk.code == code
     assert LabCourses(desk.lab.runs).kept() == []
@@ -294,7 +294,7 @@ def test_what_is_just_allowed_of_courses_is_taken(tmp_path: Path, monkeypatch: p
 
 
 @pytest.mark.usefixtures("here")
-def test_a_course_that_cannot_be_read_is_told_under_its_own_name(tmp_path: Path) -> None:
+def test_a_course_that_cannot_be_read_is_reported_under_its_own_name(tmp_path: Path) -> None:
     with raises(ParameterError, "unknown_choice", path="bad.csv") as found:
         LabCourses(tmp_path).keep("bad.csv", io.BytesIO(COURSE.replace(b"right", b"up")))
     assert str(tmp_path) not in str(found.value) and "partial" not in str(found.value)

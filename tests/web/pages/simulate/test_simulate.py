@@ -103,7 +103,7 @@ def test_the_menus_name_what_there_is(desk: Desk, tmp_path: Path) -> None:
     }
 
 
-def test_nothing_typed_asks_for_the_scenario_as_it_is(desk: Desk) -> None:
+def test_a_request_without_typed_values_is_the_unchanged_scenario(desk: Desk) -> None:
     page = desk.open("/simulate", "de")
     page.press("Simulieren")
     page.until(lambda: jobs(desk))
@@ -112,7 +112,7 @@ def test_nothing_typed_asks_for_the_scenario_as_it_is(desk: Desk) -> None:
     assert told == ["carved-46m", {}, "", "waiting", "de"]
 
 
-def test_what_is_typed_is_asked_for_with_a_point(desk: Desk) -> None:
+def test_typed_decimal_commas_become_points_in_the_request(desk: Desk) -> None:
     page = desk.open("/simulate")
     page.fill(MASS, " 80,5 ")
     page.fill("Fixed time step", True)
@@ -146,7 +146,9 @@ def test_a_number_of_the_snow_goes_with_the_other_one_beside_it(desk: Desk, name
         (INERTIA, "[1,2]", "wrong_kind"),
     ],
 )
-def test_what_cannot_be_is_refused_at_the_button_and_at_its_field(desk: Desk, name: str, typed: str, code: str) -> None:
+def test_impossible_input_is_rejected_at_the_button_and_at_its_field(
+    desk: Desk, name: str, typed: str, code: str
+) -> None:
     page = desk.open("/simulate")
     at_first = page.field(name).value
     page.fill(name, typed)
@@ -160,7 +162,7 @@ def test_what_cannot_be_is_refused_at_the_button_and_at_its_field(desk: Desk, na
     assert not [line for line in page.outline() if line.startswith("[status bad]")]
 
 
-def test_what_only_the_whole_scenario_tells_is_refused_at_its_field(desk: Desk) -> None:
+def test_what_only_the_whole_scenario_tells_is_rejected_at_its_field(desk: Desk) -> None:
     """A menu, whose sentence below it says so until it is chosen again; the other field that is named has no fault."""
     page = desk.open("/simulate")
     page.fill("Law of shear", "by-density")
@@ -173,7 +175,7 @@ def test_what_only_the_whole_scenario_tells_is_refused_at_its_field(desk: Desk) 
     assert not any(line.startswith("[quiet range bad]") for line in page.outline())
 
 
-def test_what_no_field_has_is_refused_at_the_button(desk: Desk) -> None:
+def test_what_no_field_has_is_rejected_at_the_button(desk: Desk) -> None:
     """A ski is wider than a stance of 1 cm."""
     page = desk.open("/simulate")
     page.fill(STANCE, "0.01")

@@ -97,7 +97,7 @@ def test_a_field_that_is_missing_is_marked_until_it_is_typed(desk: Desk) -> None
     assert not any("status bad" in line for line in page.outline())
 
 
-def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+def test_files_are_imported_from_the_form(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     answer = desk.post("/skis/add", files=files(mine_toml=WITH_TABLE, rows_csv=TABLE), data={"name": ""})
     assert (answer.status_code, added(answer)) == (303, "my slalom")
     ((bounds, work, _, names, further),) = confined_words
@@ -112,7 +112,7 @@ def test_files_are_taken_in_from_the_form(desk: Desk, confined_words: list[tuple
     assert LabSkis(desk.lab.runs).saved() == ["my slalom", "Ski Ä"]
 
 
-def test_a_design_is_taken_in_with_what_was_typed_beside_it(desk: Desk) -> None:
+def test_a_design_is_imported_with_what_was_typed_beside_it(desk: Desk) -> None:
     typed = {key: TYPED[key] for key in ("mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2")}
     answer = desk.post("/skis/add", files=files(design_JSON=json.dumps(DESIGN)), data={**typed, "name": "board 1"})
     assert added(answer) == "board 1"
@@ -134,7 +134,7 @@ def test_a_design_is_taken_in_with_what_was_typed_beside_it(desk: Desk) -> None:
         ({"files": files(ski_txt="x")}, "table_alone"),
     ],
 )
-def test_what_cannot_be_taken_in_is_refused(desk: Desk, form: dict[str, Any], code: str) -> None:
+def test_input_that_cannot_be_imported_is_rejected(desk: Desk, form: dict[str, Any], code: str) -> None:
     assert desk.post("/skis/add", **form).status_code == 400
     assert desk.code == code
     assert LabSkis(desk.lab.runs).saved() == []
@@ -151,7 +151,7 @@ def test_a_file_alone_stays_as_it_is_written(tmp_path: Path) -> None:
     assert read_ski_files(str(tmp_path), names, {}) == SkiTexts("carver", TEXT, "", "")
 
 
-def test_a_file_with_its_table_is_written_anew(tmp_path: Path) -> None:
+def test_a_file_with_its_table_is_written_again(tmp_path: Path) -> None:
     names = folder_of(tmp_path, {"mine.toml": WITH_TABLE, "rows.csv": TABLE})
     found = read_ski_files(str(tmp_path), names, {})
     assert found.table.startswith("station_m,")
@@ -174,7 +174,7 @@ def test_a_file_with_its_table_is_written_anew(tmp_path: Path) -> None:
         ({"a.json": json.dumps(DESIGN)}, "not_a_number"),
     ],
 )
-def test_what_is_no_ski_is_refused(tmp_path: Path, texts: dict[str, str], expected: str | Coded) -> None:
+def test_an_invalid_ski_is_rejected(tmp_path: Path, texts: dict[str, str], expected: str | Coded) -> None:
     names = folder_of(tmp_path, texts)
     with raises(ParameterError, expected):
         read_ski_files(str(tmp_path), names, {})
@@ -240,7 +240,9 @@ def test_what_cannot_be_written_is_an_error_of_ours(tmp_path: Path) -> None:
         LabSkis(tmp_path / "file").save_texts("mine", TEXT, "")
 
 
-def test_who_is_slower_is_told_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_slower_of_two_saves_is_rejected_and_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     skis = LabSkis(tmp_path)
     skis.save_texts("one", TEXT, "")
     monkeypatch.setattr(LabSkis, "require_new", lambda *_: None)
@@ -313,7 +315,7 @@ def test_two_texts_at_once_are_warned_of_each_by_itself(monkeypatch: pytest.Monk
 @pytest.mark.parametrize(
     ("line", "code"), [('shape = "ski.csv"', "foreign_shape"), ('table = "other.csv"', "wrong_table")]
 )
-def test_a_text_that_names_another_file_is_refused(line: str, code: str) -> None:
+def test_a_text_that_names_another_file_is_rejected(line: str, code: str) -> None:
     with raises(ParameterError, code):
         ski_of_texts(f"{TEXT}\n{line}\n", "")
 

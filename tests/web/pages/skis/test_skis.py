@@ -78,7 +78,7 @@ def sent(values: Any) -> Any:
     return pytest.approx(list(values), rel=2e-4, abs=1e-3)
 
 
-def test_what_the_charts_show(desk: Desk) -> None:
+def test_curves_of_the_ski_charts(desk: Desk) -> None:
     page = opened(desk)
     page.fill("Compared with", "slalom")
     page.shows("100 to 460 (carver, slalom)")
@@ -130,7 +130,7 @@ def test_a_ski_that_there_is_not_opens_the_first_one(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("added", ["", "&added=1"])
-def test_a_ski_that_came_in_is_told(desk: Desk, added: str) -> None:
+def test_a_ski_that_came_in_is_reported(desk: Desk, added: str) -> None:
     LabSkis(desk.lab.runs).save_texts("mine", TEXT, "")
     page = opened(desk, f"/skis?ski=mine{added}", "mine")
     announced = [each for each in page.of(ui.label) if "good" in each.classes and "mine" in each.text]
@@ -184,7 +184,7 @@ def test_values_at_positions_are_drawn_and_taken_back(desk: Desk) -> None:
     page.shows("65.0 to 195 (carver, carver)")
 
 
-def test_what_is_just_being_typed_stays(desk: Desk) -> None:
+def test_a_half_typed_value_is_kept(desk: Desk) -> None:
     page = opened(desk)
     half = page.field("EI (N m²) at 0.000 m")
     desk.do(lambda: half.set_value("50"), page.client)  # its end was not typed yet
@@ -278,7 +278,7 @@ def test_a_ski_without_changes_is_saved_as_its_file_is_written(desk: Desk) -> No
         ("The edited ski", "name_not_allowed"),
     ],
 )
-def test_a_name_that_cannot_be_is_refused_with_the_reason(desk: Desk, name: str, code: str) -> None:
+def test_a_name_that_cannot_be_is_rejected_with_the_reason(desk: Desk, name: str, code: str) -> None:
     page = opened(desk)
     page.fill("New name", name)
     page.press(SAVE)
@@ -320,7 +320,7 @@ def test_an_edited_ski_is_downloaded_with_its_table(desk: Desk, tmp_path: Path) 
     assert ski.width == pytest.approx(CARVER.width)
 
 
-def test_a_text_is_drawn_when_it_is_asked_for(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
+def test_a_text_is_drawn_when_it_is_requested(desk: Desk, confined_words: list[tuple[object, ...]]) -> None:
     page = opened(desk)
     page.fill("EI ×", "2")
     page.fill("Width (mm) at 0.000 m", "80")
@@ -381,7 +381,7 @@ def test_a_table_that_was_changed_is_drawn_too(desk: Desk) -> None:
     assert skis.texts("again")[1] == table
 
 
-def test_it_is_begun_again_from_the_ski_above(desk: Desk) -> None:
+def test_an_edit_restarts_from_the_chosen_ski(desk: Desk) -> None:
     page = opened(desk)
     page.fill("EI ×", "2")
     page.fill("Width (mm) at 0.000 m", "80")

@@ -90,7 +90,7 @@ def test_a_card_shows_how_its_study_stands(desk: Desk, state: Any, further: Any,
         assert page.link("Table and figure") == "/study/a%20study"
 
 
-def test_a_study_that_waits_is_cancelled_and_goes_on(desk: Desk) -> None:
+def test_a_study_that_waits_is_cancelled_and_continues(desk: Desk) -> None:
     page = desk.open("/study")
     name = asked(desk, page)[0]["name"]
     page = desk.open("/study")
@@ -254,7 +254,7 @@ def test_the_files_of_a_study(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("file", ["job.json", "study.zip", "map.svg"])
-def test_a_file_that_is_not_there_is_told(desk: Desk, file: str) -> None:
+def test_a_file_that_is_not_there_is_reported(desk: Desk, file: str) -> None:
     name = Studies(desk.lab.runs).ask_for(StudyQuestion(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
     answer = desk.get(f"/study/files/{name}/{file}")
     assert (answer.status_code, desk.code) == (404, "unknown_file")
@@ -268,7 +268,7 @@ def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
     desk.failures.clear()
 
 
-def test_values_stand_in_the_file_as_the_command_reads_them() -> None:
+def test_values_are_in_the_file_as_the_command_reads_them() -> None:
     fixed = {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": (6.0, 8.0), "ski.name": "x"}
     what = StudyQuestion("carved-46m", {"friction.mu_0": Range(0.1, 1.0, 3, log=True)}, fixed)
     assert tomllib.loads(what.text()) == {

@@ -288,7 +288,7 @@ def test_the_menus_name_what_there_is(desk: Desk) -> None:
     assert page.field(FIRST).options == of_turns
 
 
-def test_nothing_typed_asks_for_turns_over_the_edge_angle(desk: Desk) -> None:
+def test_a_study_without_typed_values_varies_the_edge_angle(desk: Desk) -> None:
     job, text = asked(desk, desk.open("/study"))
     assert text == {"out": "table.csv", "fixed": TURN, "grid": {"edge_angle_deg": {"from": 10.0, "to": 70.0, "n": 13}}}
     kept = {key: job[key] for key in ("scenario", "state", "language", "points", "workers", "method", "unit_s")}
@@ -298,7 +298,7 @@ def test_nothing_typed_asks_for_turns_over_the_edge_angle(desk: Desk) -> None:
     }  # fmt: skip
 
 
-def test_what_is_typed_is_asked_for(desk: Desk) -> None:
+def test_what_is_typed_is_requested(desk: Desk) -> None:
     page = desk.open("/study")
     page.fill(FROM, "10,5")
     page.fill(VALUES, "3")
@@ -319,7 +319,7 @@ def test_what_is_typed_is_asked_for(desk: Desk) -> None:
     assert job["points"] == 12
 
 
-def test_another_input_begins_anew(desk: Desk) -> None:
+def test_another_input_begins_again(desk: Desk) -> None:
     page = desk.open("/study")
     page.fill(FROM, "20")
     page.fill(FIRST, "load_N")
@@ -359,7 +359,7 @@ def test_another_input_begins_anew(desk: Desk) -> None:
         ({FIRST: "elements", FROM: "4.5", TO: "10"}, "wrong_kind"),
     ],
 )
-def test_what_cannot_be_studied_is_refused(desk: Desk, typed: dict[str, Any], code: str) -> None:
+def test_input_that_cannot_be_studied_is_rejected(desk: Desk, typed: dict[str, Any], code: str) -> None:
     page = desk.open("/study")
     for name, value in typed.items():
         page.fill(name, value)
