@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
-from ..ski.beam import ClampedSki, beam_at, beam_at_stations
+from .._support.arrays import FloatArray, IntArray
+from ..ski.beam import ClampedSki, beam_at_stations, beam_rows, bent
 from .solve import Solution
 
 BOOT_REACH: Final = 0.40
@@ -38,9 +39,8 @@ class EdgeLine:
 
     def sections(self, station: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Width, height of the unloaded base, deflection (m) and twist (rad) at stations (m)."""
-        ski = self._model.ski
-        width, height = (np.interp(station, ski.station[::-1], table[::-1]) for table in (ski.width, ski.base_height))
-        return (width, height, *beam_at(self._model, self._u, station))
+        width, base_height, rows = _sections(self._model, tuple(station.tolist()))
+        return (width, base_height, *bent(self._u, *rows))
 
     def _across(
         self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray
@@ -95,6 +95,16 @@ class EdgeLine:
         front, rear = self._model.ski.contact_points
         inside = (self.station <= front) & (self.station >= rear)
         return float(np.max(np.abs(np.gradient(self.deflection[inside], self.station[inside]))))
+
+
+@functools.lru_cache(maxsize=128)
+def _sections(
+    model: ClampedSki, stations: tuple[float, ...]
+) -> tuple[FloatArray, FloatArray, tuple[IntArray, FloatArray, FloatArray]]:
+    """Width, height of the unloaded base, and the rows of the beam at stations (m); those about the boot recur."""
+    ski = model.ski
+    width, height = (np.interp(stations, ski.station[::-1], table[::-1]) for table in (ski.width, ski.base_height))
+    return width, height, beam_rows(model, stations)
 
 
 def circle_radius(front: tuple[float, float], middle: tuple[float, float], rear: tuple[float, float]) -> float | None:

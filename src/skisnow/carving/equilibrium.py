@@ -169,7 +169,10 @@ def carve(
     equilibrium = equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None)
     if equilibrium.turn_radius_boot is None:
         return equilibrium
-    other = find(model, conditions._replace(by_reaction=not conditions.by_reaction))
+    # the other spread's equilibrium is near: only the unknown that the side force is drawn by changes its meaning
+    drawn = float(model.stations.weight @ np.maximum(solution.edge_depth, 0.0)) if conditions.by_reaction else load
+    near = replace(solution, shear_stress=conditions.side_force / drawn)
+    other = find(model, conditions._replace(by_reaction=not conditions.by_reaction), near=near)
     return replace(equilibrium, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
 
 
@@ -298,9 +301,9 @@ def _conditions(
     )
 
 
-def _following_path(model: ClampedSki, conditions: Conditions) -> Solution:
+def _following_path(model: ClampedSki, conditions: Conditions, *, near: Solution | None = None) -> Solution:
     """Repeat with the edge's offset from the path until path and edge line agree."""
-    solution = solved(model, conditions)
+    solution = solved(model, conditions, near=near)
     offset = np.zeros(len(model.stations.station))
     share, before = 0.5, math.inf
     for _ in range(_MOST_PATHS):

@@ -288,14 +288,22 @@ def model_nodes(ski: Ski, clamp_length: float, elements: int) -> FloatArray:
 
 def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Deflection (m) and twist (rad) of the base relative to the boot at stations (m), for the unknowns u (size,)."""
+    return bent(u, *beam_rows(model, station))
+
+
+def beam_rows(model: ClampedSki, station: npt.ArrayLike) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Numbers of the unknowns at stations (m), below 0 if held, and how they move deflection and twist there."""
     where = np.atleast_1d(np.asarray(station, float))
     element = np.clip(np.searchsorted(-model.node, -where, side="right") - 1, 0, len(model.dof) - 1)
     length = model.node[element] - model.node[element + 1]
     local = (model.node[element] - where) / length
-    dof = model.dof[element]
+    return model.dof[element], deflection_shape(local, length), twist_shape(local)
+
+
+def bent(u: FloatArray, dof: IntArray, deflection: FloatArray, twist: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Deflection (m) and twist (rad) by rows of `beam_rows`."""
     value = np.where(dof >= 0, u[dof], 0.0)
-    deflection = np.sum(deflection_shape(local, length) * value, axis=-1)
-    return deflection, np.sum(twist_shape(local) * value, axis=-1)
+    return np.sum(deflection * value, axis=-1), np.sum(twist * value, axis=-1)
 
 
 def beam_at_stations(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, FloatArray]:
