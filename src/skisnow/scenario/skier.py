@@ -9,7 +9,7 @@ from .._support.messages import Message
 from .._support.units import DEGREE
 from ..parameters import Condition, Quantity, declared_text, require_declared
 
-Steers: TypeAlias = Literal["turns", "gates"]
+Steers: TypeAlias = Literal["turns", "gates", "side-slip", "wedge"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -18,8 +18,9 @@ class Skier:
 
     Attributes
     ----------
-    steers
-        By a plan of turns over time, or through the gates of the scenario's course.
+    steers, stops_after
+        By a plan of turns over time, through the gates of the scenario's course, or straight: a side-slip at
+        `brakes_to` that stops after `stops_after` (s), or a wedge to a stop.
     first_turn, turn_time, turns, turn_angle, first_to_left
         The plan: when the first half turn begins (s), how long a whole turn takes (s), how many there are, the first
         one counted as a half, the course at the edge change (rad), and to which side the first one goes.
@@ -53,7 +54,7 @@ class Skier:
         Steers,
         Quantity(
             "skier.steers",
-            "basis of the steering: turns planned over time, or the gates of the course",
+            "basis of the steering: turns planned over time, the gates of the course, a side-slip or a wedge to a stop",
             label=Message("steers by"),
             origin="choice: needs no course",
         ),
@@ -139,6 +140,18 @@ class Skier:
             origin="choice: carved turns",
         ),
     ] = 0.0
+    stops_after: Annotated[
+        float,
+        Quantity(
+            "skier.stops_after_s",
+            "when a side-slip begins to stop",
+            label=Message("stops after"),
+            lowest=0.0,
+            highest=1e6,
+            origin="choice: time to settle",
+            condition=Condition("skier.steers", "side-slip"),
+        ),
+    ] = 3.0
     assumed_hardness: Annotated[
         float,
         Quantity(

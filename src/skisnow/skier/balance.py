@@ -20,12 +20,15 @@ from .carve import CarveControl, CarvesOverTime, Pursuit, Steering
 from .control import Balance, Controller, SkidControl
 from .edges import Edges
 from .force_map import ForceMap
-from .plan import Gravity, Line, Plan, RecedingLine, TurnsOverTime, apexes_of, half_waves
-from .posture import Posture
+from .plan import Gravity, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of, half_waves
+from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture
 from .seen import Moment, Seen, seen_at
+from .wedge import WedgeControl
 from .yaw import Body
 
-BuiltIn: TypeAlias = SkidControl | CarveControl
+BuiltIn: TypeAlias = SkidControl | CarveControl | WedgeControl
+HELD_AT_START = 1.3
+"""Force that the edges of a side-slip hold at the start, over what the slope asks for (modelling assumption)."""
 GREATEST_PRESSED = 2.0
 """Greatest acceleration (m/s²) by the bend of the slope that the skier counts with (modelling assumption)."""
 
@@ -102,8 +105,25 @@ class BalancedSkier:
         if self.skier.steers == "gates" and course is not None:
             apexes = self.apexes(course)
             return self.follow(HalfWaves(apexes), apexes)
+        if self.skier.steers == "wedge":
+            body, gravity = self._body()
+            sledge = self.scenario.sledge
+            snow = ForceMap.of(self.scenario)
+            return WedgeControl(self.skier, snow, body, sledge.inertia[0], sledge.stance_width, gravity)
+        if self.skier.steers == "side-slip":
+            return self._across()
         turns = TurnsOverTime(self.skier)
         return self.skidding(turns) if self.skier.brakes_to else self._carving(CarvesOverTime(turns))
+
+    def _across(self) -> SkidControl:
+        """The control of a side-slip, whose start leans and edges the skis against the slope."""
+        control = self.skidding(SideSlip(self.skier.brakes_to, self.skier.stops_after))
+        gravity, mass, side = control.gravity, control.body.mass, math.copysign(1.0, self.scenario.start.heading)
+        self.posture.numbers[ASIDE] = side * control.body.height * gravity.down / gravity.normal
+        half = 0.5 * mass * gravity.normal
+        edge = side * control.snow.edge(HELD_AT_START * mass * gravity.down, (half, half), control.grip)
+        self.posture.numbers[[LEFT_EDGE, RIGHT_EDGE]] = edge
+        return control
 
     def follow(self, line: Line, apexes: Sequence[tuple[float, float]]) -> BuiltIn:
         """The control that follows a line with these apexes (m): skidding to a wanted speed, without one carving."""
@@ -172,7 +192,7 @@ class BalancedSkier:
         normal, gravity = self._stand_on(*moment.position[:2].tolist())
         weight = sledge.mass * self.scenario.gravity
         seen = seen_at(moment, sledge.centre_of_mass, normal, weight, sledge.inertia[2])
-        built_in = control if isinstance(control, SkidControl | CarveControl) else None
+        built_in = control if isinstance(control, SkidControl | CarveControl | WedgeControl) else None
         if built_in is not None:
             built_in.gravity = gravity
         command = control.command(seen, self.posture, dt)

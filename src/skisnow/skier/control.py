@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, Protocol
 
 import numpy as np
@@ -12,7 +12,8 @@ from .._support.arrays import FloatArray
 from ..scenario.skier import Skier
 from .force_map import ForceMap
 from .plan import AHEAD, Gravity, Plan, Planned
-from .posture import Command, Posture
+from .posture import AHEAD as AHEAD_OF_FEET
+from .posture import LEFT_TOE, RIGHT_TOE, STANCE, Command, Posture
 from .seen import Seen
 from .yaw import FACING, Body, heading_ahead, yaw_gain, yaw_state
 
@@ -44,6 +45,8 @@ ROLLING: Final = 0.05
 """Share of the load that friction takes along the skis (modelling assumption)."""
 AIR: Final = 0.004
 """Deceleration by the air over the square of the speed (1/m) (modelling assumption)."""
+STOPPED, STANDING_EDGE, HOLDS = 0.2, math.radians(5.0), 20.0
+"""Speed (m/s) below which who stops holds all joints, the edge angle (rad) at least, and its rate (1/s)."""
 
 
 class Controller(Protocol):
@@ -120,6 +123,9 @@ class SkidControl:
         """Command to the body until the next call."""
         self._learn(seen, posture)
         planned = self._planned(seen)
+        if planned.stands:
+            edge = math.copysign(max(abs(posture.edge), STANDING_EDGE), posture.edge)
+            return standing(seen, posture, (edge, edge))
         slips = self._slips(seen, planned)
         self.slip = float(slips[0])
         self.balance = self._balance(seen, posture, planned, dt)
@@ -138,7 +144,7 @@ class SkidControl:
         """The plan, limited by the largest lean."""
         found = self.plan.ahead(seen, self.gravity)
         most = self.gravity.normal * math.tan(self.skier.greatest_lean)
-        return Planned(np.clip(found.force, -most, most), found.course, found.heading)
+        return replace(found, force=np.clip(found.force, -most, most))
 
     def _slips(self, seen: Seen, planned: Planned) -> FloatArray:
         """Angle of the skis against the path (rad) that brakes as much as is needed, over the plan."""
@@ -182,7 +188,7 @@ class SkidControl:
         asked = max(-BOUND, min(BOUND, asked))
         outer = self.skier.outer_share * mass * gravity  # planned loads: measured ones would feed a bounce back
         angle = self.snow.edge(mass * abs(asked), (outer, mass * gravity - outer), self.grip)
-        if abs(posture.edge) < SLIDING:
+        if abs(posture.edge) < SLIDING and planned.heading is None:
             angle = min(angle, max(math.radians(0.2), 2.0 * seen.slip * math.copysign(1.0, asked)))
         return math.copysign(angle, asked)
 
@@ -216,6 +222,20 @@ class SkidControl:
             turn = seen.body_rate - FACING * seen.turn_rate
             torque = self.body.yaw * (60.0 * (hip + facing) + 12.0 * turn)
         return torque, float(shift)
+
+
+def standing(seen: Seen, posture: Posture, edge: tuple[float, float]) -> Command:
+    """All joints held, at these edge angles (rad)."""
+    left, right = (float(posture.numbers[place]) for place in (LEFT_TOE, RIGHT_TOE))
+    return Command(
+        edge=edge,
+        ahead=-HOLDS * float(posture.rates[AHEAD_OF_FEET]),
+        aside=-HOLDS * posture.aside_rate,
+        pressure=seen.pressure,
+        toe=(left, right),
+        stance=float(posture.numbers[STANCE]),
+        edge_rate=8.0,
+    )
 
 
 def seen_aside(seen: Seen, posture: Posture) -> float:

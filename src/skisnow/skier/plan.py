@@ -27,6 +27,10 @@ TABLE_STEP: Final = 0.05
 """Step (m) of the table of a line (modelling assumption)."""
 JOINS: Final = 0.32
 """Share of the way between two apexes that is left at least to join the line (found by trial)."""
+SETTLES: Final = 2.5
+"""Rate (1/s) at which a side-slip comes to its speed, and its greatest deceleration (m/s²) (modelling assumption)."""
+STANDS: Final = 0.15
+"""Speed (m/s) below which a side-slip that stops has stopped."""
 BACK: Final = 2.0
 """Rate (1/s) at which turns over time go back to their course (modelling assumption)."""
 
@@ -49,6 +53,7 @@ class Planned:
     force: FloatArray
     course: FloatArray
     heading: float | None = None
+    stands: bool = False
 
 
 class Plan(Protocol):
@@ -116,6 +121,24 @@ def half_waves(apexes: Sequence[tuple[float, float]], x: float) -> tuple[float, 
     phase = min(math.pi, max(0.0, rate * (x - x0)))
     bend = half * rate**2 * math.cos(phase) if x0 <= x <= x1 else 0.0
     return y0 + half * (1.0 - math.cos(phase)), half * rate * math.sin(phase), bend
+
+
+@dataclass(frozen=True, slots=True)
+class SideSlip:
+    """Skis across the fall line that slide down it at a speed (m/s), until they stop from a time (s) on."""
+
+    speed: float
+    stops_after: float
+
+    def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
+        """An even force up the slope, more of it where it is to brake."""
+        side = math.copysign(1.0, seen.heading)
+        down = side * seen.speed * math.sin(seen.heading - seen.course)
+        more = SETTLES * (down - self.speed) if seen.time < self.stops_after else min(SETTLES, 0.8 + 1.5 * down)
+        force = max(0.3, min(6.0, gravity.down * abs(math.sin(seen.heading)) + more))
+        heading = side * 0.5 * math.pi
+        stands = seen.time > self.stops_after and seen.speed < STANDS
+        return Planned(np.full(len(AHEAD), side * force), np.full(len(AHEAD), heading), heading, stands)
 
 
 class RecedingLine:

@@ -152,6 +152,8 @@ class Posture:
         self._step_ahead(command.ahead, dt)
         if command.hip_torque is not None:
             self._step_hips(command.hip_torque, seen, dt)
+        else:
+            self.rates[HIP] = 0.0
         corner = command.edge_rate or self.skier.edge_rate
         for place, wanted in zip((LEFT_EDGE, RIGHT_EDGE), command.edge, strict=True):
             limit = self.skier.greatest_edge
