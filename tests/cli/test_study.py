@@ -180,7 +180,7 @@ def test_killed_and_interrupted_studies_go_on_to_the_same_bytes(tmp_path: Path, 
     wait_for(lambda: kept_in(partial, tmp_path / "copy") > 3 or first.poll() is not None)
     workers = children_of(first.pid)
     os.kill(first.pid, how)
-    _, err = first.communicate(timeout=60)
+    _, err = first.communicate(timeout=300)
     assert first.returncode == code, err.decode()
     assert b"Traceback" not in err
     assert how == signal.SIGKILL or b"resource_tracker" not in err

@@ -94,9 +94,9 @@ class Served:
     def wait(self) -> None:
         """Wait until the process has ended."""
         if isinstance(self.process, subprocess.Popen):
-            self.process.wait(30)
+            self.process.wait(300)
         elif self.process is not None:
-            self.process.join(30)
+            self.process.join(300)
             assert self.process.exitcode is not None
 
     def again(self) -> Served:

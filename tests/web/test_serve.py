@@ -49,7 +49,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 def asked(served: Served, path: str, *, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], str]:
     parts = urlsplit(served.address)
     assert parts.hostname is not None
-    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=30)
+    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=300)
     connection.request(method, path, headers=headers)
     answer = connection.getresponse()
     found = answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read().decode()
@@ -59,7 +59,7 @@ def asked(served: Served, path: str, *, method: str = "GET", **headers: str) -> 
 
 def command(*words: str, store: Path) -> subprocess.CompletedProcess[str]:
     arguments = [sys.executable, "-m", "skisnow", "serve", "--store", str(store), *words]
-    return subprocess.run(arguments, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(arguments, capture_output=True, text=True, timeout=300, check=False)
 
 
 def test_the_first_line_is_the_address_of_this_machine_alone(served: Served) -> None:
@@ -129,7 +129,7 @@ def test_a_lab_with_a_certificate_is_encrypted(tmp_path: Path) -> None:
         assert parts.scheme == "https" and parts.hostname is not None
         trusted = ssl.create_default_context(cafile=str(pem))
         trusted.check_hostname = False  # the certificate is that of a name, the address is asked
-        connection = http.client.HTTPSConnection(parts.hostname, parts.port, timeout=30, context=trusted)
+        connection = http.client.HTTPSConnection(parts.hostname, parts.port, timeout=300, context=trusted)
         connection.request("GET", "/")
         assert connection.getresponse().status == 200
         connection.close()
@@ -189,7 +189,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 def ask_lab(lab: Served, path: str, body: str | None = None) -> tuple[int, str]:
     parts = urlsplit(lab.address)
-    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=30)
+    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
     own = {"Origin": lab.address.rstrip("/"), "Content-Type": "text/plain;charset=UTF-8"}
     connection.request("GET" if body is None else "POST", path, body=body, headers=own)
     answer = connection.getresponse()
@@ -327,7 +327,7 @@ def set_up(server: Server) -> None:
             start_new_session=True,  # without a terminal the password is read from here
             text=True,
             check=True,
-            timeout=60,
+            timeout=300,
         )
     hosts = line_of_page("hostssl campaigns").replace("192.0.2.0/24", "127.0.0.1/32")
     (server.folder / "data" / "pg_hba.conf").write_text(f"local all all trust\n{hosts}\n", encoding="utf-8")

@@ -72,7 +72,7 @@ def opened(page: Page, served: Served, table: str = "") -> None:
 def test_the_heartbeat_outlasts_a_stall(served: Served) -> None:
     """The server's message to a socket that opens: the browser gives it up after both together, in ms."""
     parts = urlsplit(served.address)
-    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=30)
+    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
     connection.request("GET", "/_nicegui_ws/socket.io/?EIO=4&transport=polling")
     said = json.loads(connection.getresponse().read().decode().removeprefix("0"))
     connection.close()

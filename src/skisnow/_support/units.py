@@ -14,8 +14,6 @@ from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
 MM: Final = 1e-3
 """Metres in a millimetre."""
 MM2: Final = 1e-6
@@ -217,6 +215,8 @@ def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
     >>> ends([0.001, 0.003, float("nan")], "mm", factor=1e-3)
     '1 to 3 mm'
     """
+    import numpy as np  # the commands' help starts without it
+
     finite = np.asarray(values, float)
     finite = finite[np.isfinite(finite)] / factor
     return span(float(finite.min()), float(finite.max()), unit) if finite.size else "none"
@@ -243,7 +243,7 @@ def name_with_values(thing: object) -> str:
 
 
 def _short(value: Any, unit: str) -> str:
-    if isinstance(value, np.ndarray):
+    if hasattr(value, "dtype") and hasattr(value, "shape"):  # an array, without loading NumPy
         size = " × ".join(map(str, value.shape))
         return f"{size}: {ends(value, unit)}" if value.dtype.kind in "fiu" and value.size else size
     if is_dataclass(value):

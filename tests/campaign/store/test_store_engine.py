@@ -274,7 +274,7 @@ def run_at_once(place: Path, folders: list[Path], go: Path) -> None:
         assert process.stdout.readline() == "ready\n"
     go.touch()
     for process in processes:
-        _, told = process.communicate(timeout=120)
+        _, told = process.communicate(timeout=300)
         assert (process.returncode, told) == (0, "")
 
 

@@ -95,7 +95,7 @@ def nursery() -> Iterator[Nursery]:
         assert process.stdout is not None
         yield Nursery(process, process.stdin, process.stdout)
         process.stdin.close()
-        assert process.wait(timeout=60) == 0
+        assert process.wait(timeout=300) == 0
 
 
 @pytest.fixture
@@ -246,7 +246,7 @@ def syncing_nursery() -> Iterator[SyncingNursery]:
         yield SyncingNursery(process)
         assert process.stdin is not None
         process.stdin.close()
-        assert process.wait(timeout=60) == 0
+        assert process.wait(timeout=300) == 0
 
 
 def entered_offline(place: Path, who: str, folder: Path, generator: np.random.Generator) -> None:

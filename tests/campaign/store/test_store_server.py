@@ -120,7 +120,7 @@ def test_two_who_write_at_once_lose_nothing(server: Server) -> None:
         assert writer.stdin is not None
         writer.stdin.write("go\n")
         writer.stdin.flush()
-    assert [writer.communicate(timeout=120)[1] for writer in writers] == ["", ""]
+    assert [writer.communicate(timeout=300)[1] for writer in writers] == ["", ""]
     with Store.open(address, create=False) as store:
         entries = Journals(store).entries(id_)
         assert store.verify() == ()

@@ -36,7 +36,7 @@ from skisnow.web.widgets import LineChart
 from tests.coded import all_fields
 
 Answer = TypeVar("Answer")
-PATIENCE_S = 60.0  # nothing is asserted of time
+PATIENCE_S = 300.0  # nothing is asserted of time
 _HEADING = re.compile("h[1-6]")
 _FIELD = re.compile(r"""field (.*?) = ('(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|True|False|None)""")
 

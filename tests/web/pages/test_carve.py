@@ -92,7 +92,7 @@ def held(monkeypatch: pytest.MonkeyPatch) -> tuple[threading.Event, list[Any]]:
 
     def late(self: Any, questions: Any) -> Any:
         asked.append(questions.questions)
-        assert released.wait(60)
+        assert released.wait(300)
         return at_once(self, questions)
 
     monkeypatch.setattr(carved_turn.Solver, "answers", late)

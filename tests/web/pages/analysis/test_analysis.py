@@ -236,7 +236,7 @@ def test_a_report_waits_for_the_numbers_of_the_choice(
         return await report_of(*what)
 
     def late(*what: Any) -> Any:
-        assert asked.wait(60)
+        assert asked.wait(300)
         return analyse_files(*what)
 
     monkeypatch.setattr(page_module, "_report", report)

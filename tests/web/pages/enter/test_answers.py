@@ -94,7 +94,7 @@ def test_only_the_last_of_several_tests_is_shown(desk: Desk) -> None:
 
     def answer(site: str) -> QuickResults:
         asked.append(site)
-        assert goes_on.wait(60)
+        assert goes_on.wait(300)
         shown.extend(line for line in page.outline() if line.startswith("[quiet] Test "))
         return found(**{site: curve(site)})
 

@@ -134,7 +134,7 @@ def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, m
     id_, released, analysed = campaign(desk, tmp_path / "kept"), threading.Event(), list[Any]()
 
     def late(*what: Any) -> Any:
-        assert released.wait(60)
+        assert released.wait(300)
         analysed.append(campaign_snow(*what))
         return analysed[0]
 
