@@ -14,7 +14,7 @@ namespace {
 
 constexpr int MOST_PLACES = 11;
 constexpr int MOST_CORRECTIONS = 6;
-constexpr double ALMOST = 1e-11, ROUNDING = 1e-15;  // (m) last corrections
+constexpr double ALMOST = 1e-10, ROUNDING = 1e-15;  // (m) last corrections
 constexpr double FAR_ABOVE = -1e3;                  // depth (m) that marks untouched snow
 constexpr double LEAST_EXCESS = 1e-12;              // k_u - H_V over H_V that elastic snow is differentiated at
 
@@ -348,6 +348,7 @@ void CarvePoint::refine() {
     for (std::size_t a = 0; a < CARVE_BORDER; a++) state_.border[a] += step.border[a];
     if (last_correction_ < ROUNDING) break;
   }
+  factor();  // a last correction of 1e-12 m can move a station into the groove
 }
 
 CarveGradient CarvePoint::gradient(const CarveSeed& seed) {
