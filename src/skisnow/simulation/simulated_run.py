@@ -12,12 +12,13 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from .._support.errors import ModelLimitWarning, ParameterError
-from .._support.messages import Message
+from .._support.messages import Message, joined
 from .._support.units import MM
 from ..contact import Laws
 from ..scenario import Scenario
 from ..scenario.plausibility import model_limits
 from ..skier import BalancedSkier, Controller
+from ..skier.failure import cause_of
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
 from .run_record import Record
@@ -328,7 +329,18 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         return run
     if run.has_residual_above(OPEN_SHARE):
         return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
+    if outcome == "fell":
+        return _with_cause(run, setup)
     return _through_gates(run) if outcome in ("finished", "distance_reached") else run
+
+
+def _with_cause(run: Run, setup: Setup) -> Run:
+    """A run that ended in a fall, its remedy with the first limit that the skier crossed."""
+    skier = None if setup.drive is None else setup.drive.control
+    if not isinstance(skier, BalancedSkier):
+        return run
+    cause = cause_of(skier.records, skier.skier, run.scenario.sledge.mass * run.scenario.gravity)
+    return run if cause is None else replace(run, remedy=joined([cause.message, run.remedy]))
 
 
 def _through_gates(run: Run) -> Run:
