@@ -38,20 +38,7 @@ struct Centre {
   }
 };
 
-// Rates of the beam at a section: of its deflection and of its twist.
-inline void beam_rates(const Motion& motion, const Base& base, int i, double& deflection, double& twist) {
-  deflection = twist = 0.0;
-  if (motion.beam.empty()) return;
-  typedef LaneTypes<2>::Value Pair;
-  const double z = base[IN_ELEMENT][i];
-  const double* rate = motion.beam.data() + 3 * int(base[ELEMENT][i]);
-  const Shapes<Pair> shape(all<Pair>(z), all<Pair>(base[ELEMENT_LENGTH][i]));
-  deflection = shape.front[0] * rate[0] + shape.front_slope[0] * rate[1] + shape.rear[0] * rate[3] +
-               shape.rear_slope[0] * rate[4];
-  twist = (1.0 - z) * rate[2] + z * rate[5];
-}
-
-// The same for all lanes.
+// Rates of the beam at the sections: of its deflection and of its twist.
 template <class V>
 SKISNOW_INLINE void find_beam_rates(const Motion& motion, const Base& base, int i, V& deflection, V& twist) {
   deflection = twist = V{};

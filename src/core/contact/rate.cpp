@@ -243,7 +243,7 @@ void RatedBase::press(const Snow& snow, const GrooveLines& lines, const Pose& po
     s.pressure[RATE_POWER][i] = 0.0;
     if (!s.touches(i)) continue;
     BaseMotion& here = moving_[std::size_t(i)];
-    alone::beam_rates(motion, s.base, i, here.deflecting, here.twisting);
+    alone::find_beam_rates(motion, s.base, i, here.deflecting, here.twisting);
     const Section c = Section::stored(s.base, i);
     const Sums sums =
         BaseOnLine(snow, lines, lines.slot(s.line(i)), c, dt).bear(depth_rate(c, moving_[std::size_t(i)]));

@@ -139,7 +139,9 @@ SKISNOW_INLINE void transpose(const Row* rows, Row (&out)[ROW]) {
 // The same of as many rows as V has lanes.
 template <class V>
 SKISNOW_INLINE void transpose(const Row* rows, V (&out)[ROW]) {
-  if constexpr (WIDTH<V> == 2) {
+  if constexpr (WIDTH<V> == 1) {
+    for (int c = 0; c < ROW; c++) out[c] = rows[0][c];
+  } else if constexpr (WIDTH<V> == 2) {
     for (int c = 0; c < ROW; c++) out[c] = V{rows[0][c], rows[1][c]};
   } else if constexpr (WIDTH<V> == ROW) {
     transpose(rows, out);
