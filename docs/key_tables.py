@@ -12,7 +12,7 @@ from skisnow.campaign.smet import WeatherSettings
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
-from skisnow.cli.schema import NAMES, json_schema
+from skisnow.cli.shell import NAMES, json_schema
 from skisnow.parameters import own_quantities
 from skisnow.parameters.json_schema import page_table, schema_text
 from skisnow.report.run.file import RUN_VARIABLES, SKIER_VARIABLES, RunVariable

@@ -81,7 +81,7 @@ def laws_and_formats() -> Iterator[str]:
 
 def schemas() -> Iterator[str]:
     """Keys of every schema, with the file's name."""
-    from skisnow.cli.schema import NAMES, json_schema
+    from skisnow.cli.shell import NAMES, json_schema
 
     for name in NAMES:
         yield from (f"key {name}.schema.json: {key}" for key in schema_keys(json_schema(name)))

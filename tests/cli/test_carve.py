@@ -14,7 +14,7 @@ import pytest
 import skisnow
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from tests.key_names import FORCE_PER_LENGTH, WAIST_WIDTH
 
 SCHEMA = json_schema("carve")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from skisnow.cli import main
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 
 SCHEMA = json_schema("compare")
 NUMBERS = {"max_m", "mean_m", "rms_m", "max_share", "mean_share", "rms_share"}

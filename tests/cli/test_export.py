@@ -15,7 +15,7 @@ import jsonschema
 import pytest
 
 from skisnow.cli import main
-from skisnow.cli.schema import NAMES
+from skisnow.cli.shell import NAMES
 
 linux = pytest.mark.skipif(
     not sys.platform.startswith("linux") or platform.machine() != "x86_64",

@@ -13,7 +13,7 @@ import pytest
 
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.report.figures.drawing import FORMS
 
 from ..identification import straight_tracks

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from skisnow.cli import main
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 
 CHECK_SCHEMA = json_schema("check")
 

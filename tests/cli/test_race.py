@@ -12,7 +12,7 @@ import pytest
 
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.racing.windows import Windows
 from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_bytes, replay_of_file
 from skisnow.report.figures.drawing import FORMS

@@ -18,7 +18,7 @@ from skisnow import Run, Scenario
 from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
 from skisnow.cli.output import Progress
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.simulation.run_tables import write_track
 
 from ..simulation.straight_run import STRAIGHT, straight_run

@@ -7,7 +7,7 @@ from typing import Any
 
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.studies import read_study
 from skisnow.studies.subjects import CARVE_RESULTS
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.comparison.alignment import OFFSETS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"

@@ -11,7 +11,7 @@ from skisnow.campaign.problems import ALWAYS_EXCLUDE, ERROR_CODES, QUALITY_FLAGS
 from skisnow.campaign.reading.campaign_file import SHAPES
 from skisnow.campaign.reading.table_forms import CORRECTIONS, TABLES
 from skisnow.cli import build_parser
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 
 from .page_text import page_text
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from skisnow.carving.question import CARVE_KEYS
-from skisnow.cli.schema import NAMES
+from skisnow.cli.shell import NAMES
 from skisnow.scenario.keys import SCENARIO_KEYS
 
 from .page_text import INCLUDED

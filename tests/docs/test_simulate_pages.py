@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import pytest
 
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.scenario import load_scenario, scenario_file
 from skisnow.simulation.run import Outcome
 from skisnow.simulation.run_tables import COLUMNS

@@ -6,7 +6,7 @@ from typing import Any, get_args
 
 import pytest
 
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.track.read import TrackFormat
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,7 @@ import skisnow
 from skisnow._support.errors import FieldDataError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.campaign import Problem, reference_campaign
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.estimation import quality_flags
 from skisnow.estimation.campaign_model import fit_campaign
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load

@@ -11,7 +11,7 @@ import pytest
 
 import skisnow
 from skisnow.campaign import Campaign, read_campaign, write_reference
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.results import results_json

@@ -14,7 +14,7 @@ from skisnow._support.units import MM
 from skisnow.campaign import read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
 from skisnow.report.campaign.summary import summary
 from skisnow.snow.measured_range import PENETROMETER_RELATIONS

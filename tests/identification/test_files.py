@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 
 from skisnow._support.errors import FieldDataError, ParameterError
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.identification import identify
 from skisnow.identification.data import data_description, read_data
 from skisnow.identification.data_tables import PhotoCells

@@ -18,8 +18,7 @@ from skisnow.campaign.smet import read_smet
 from skisnow.cli import main
 from skisnow.identification import read_measured_grooves
 from skisnow.identification.data_tables import read_photo_cells
-from skisnow.samples import write_samples
-from skisnow.samples.folder import glide_time
+from skisnow.samples import glide_time, write_samples
 
 SHIPPED = Path(__file__).resolve().parents[2] / "src" / "skisnow" / "samples" / "files"
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.scenario import Profile, load_scenario, scenario_file
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run

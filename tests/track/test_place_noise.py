@@ -7,7 +7,7 @@ import pytest
 
 from skisnow import track_summary
 from skisnow._support.arrays import FloatArray
-from skisnow.track.place_noise import PlaceNoise, estimate_place_noise
+from skisnow.track.path_estimate import PlaceNoise, estimate_place_noise
 from skisnow.track.smoothing import SmoothedTrack, smooth_track
 from skisnow.track.summary import summary_dict
 

@@ -11,7 +11,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import DEGREE
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 from skisnow.track.curvature import track_motion
 from skisnow.track.read import read_track
 from skisnow.track.runs import Day, split_day, turning_points

@@ -30,8 +30,6 @@ def build_parser() -> argparse.ArgumentParser:
         identify,
         race,
         replay,
-        schema,
-        serve,
         shell,
         simulate,
         store,
@@ -50,8 +48,8 @@ def build_parser() -> argparse.ArgumentParser:
     for add_command in (
         beginning.add_new, campaign.add_import, campaign.add_check, campaign.add_analyse, store.add_parser,
         beginning.add_reference, beginning.add_samples, carve.add_carve, carve.add_design, simulate.add_simulate,
-        replay.add_parser, simulate.add_turn, study.add_parser, race.add_parser, track.add_track, track.add_compare,
-        identify.add_parser, convert.add_export, convert.add_convert, schema.add_parser, serve.add_parser,
+        replay.add_replay, simulate.add_turn, study.add_parser, race.add_parser, track.add_track, track.add_compare,
+        identify.add_parser, convert.add_export, convert.add_convert, shell.add_schema, replay.add_serve,
         shell.add_completion, shell.add_man,
     ):  # fmt: skip
         add_command(commands)

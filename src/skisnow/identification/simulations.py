@@ -17,7 +17,7 @@ from .._support.errors import SkisnowError
 from .._support.messages import Message
 from .._support.processes.batch import ExecutorLike, Pool, workers_in_force
 from .._support.processes.kept_rows import KeptRows, Row
-from ..scenario import Scenario, Solver, Stop
+from ..scenario import Scenario, Stop
 from ..scenario.reading import build_input
 from ..scenario.resolution import ScenarioInput
 from ..simulation.run import Run
@@ -160,12 +160,8 @@ class RunSimulation:
         interval = min(scenario.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
         solver = replace(scenario.solver, output_interval=interval)
         if not task.final:
-            solver = _search_solver(solver)
+            solver = replace(solver, method="fast", fixed=True, step=SEARCH_STEP)
         return replace(scenario, stop=Stop(duration=duration), solver=solver)
-
-
-def _search_solver(solver: Solver) -> Solver:
-    return replace(solver, method="fast", fixed=True, step=SEARCH_STEP)
 
 
 def _row(run: Run, times: FloatArray) -> Row:

@@ -1,7 +1,338 @@
-"""Synthetic sample files for every command that the documentation shows."""
+"""Synthetic sample files for every command that the documentation shows: campaign, tracks, photo cells, snow, runs."""
 
 from __future__ import annotations
 
-from .folder import write_samples
+import math
+import struct
+from datetime import UTC, datetime, timedelta
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-__all__ = ["write_samples"]
+import numpy as np
+
+from .._support.errors import OutputError
+from .._support.staging import require_writable, staged, write_file
+from .._support.units import DEGREE, MM, STANDARD_GRAVITY
+from ..campaign import write_reference
+from ..campaign.smet import StationSeries
+from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
+from ..carving.equilibrium import carve
+from ..interop.caaml import caaml_text
+from ..interop.smet import smet_text
+from ..scenario import Plane, load_scenario
+from ..simulation.simulated_run import simulate
+from ..track.projection import GeodeticPoint, earth_centred, geodetic
+from ..track.slope_frame import slope_axes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from .._support.arrays import FloatArray
+    from ..scenario import Scenario
+    from ..simulation import Run
+
+ORIGIN: Final = GeodeticPoint(47.1234, 11.4321, 1900.0)
+AZIMUTH_DEG: Final = 140.0
+"""Compass direction in which the sample slope falls."""
+START: Final = datetime(2026, 2, 3, 9, 10, tzinfo=UTC)
+RECEIVER_NOISE_M: Final = 0.3
+"""Standard deviation of each coordinate; the noise of neighbouring points does not correlate."""
+_GATES: Final = np.array([[12.0 + 12.0 * number, 2.0 * (-1.0) ** number] for number in range(8)])
+_SLOPE_DEG: Final = 12.0
+
+
+def touring_day(random: np.random.Generator) -> str:
+    """GPX of three runs of linked turns at 10 m/s and two lifts, 1 Hz, on a slope of 12°."""
+    length, turn, swing = 600.0, 60.0, 40.0 * DEGREE
+    way = np.arange(0.0, length, 0.1)
+    heading = swing * np.sin(2.0 * np.pi * way / turn)
+    down = np.cumsum(np.column_stack([np.cos(heading), np.sin(heading)]) * 0.1, axis=0)[::100]
+    up = np.linspace(down[-1], down[0], 200)
+    place = np.concatenate([down, up, down, up, down])
+    place = place + RECEIVER_NOISE_M * random.standard_normal(place.shape)
+    return gpx_track(place, np.arange(len(place), dtype=float), slope_angle=_SLOPE_DEG * DEGREE)
+
+
+def gates_track(random: np.random.Generator) -> str:
+    """GPX of a run at 8 m/s and 10 Hz that passes the gates of `course_waypoints`, 0.6 m from each pole."""
+    x = np.arange(0.0, _GATES[-1, 0] + 12.0, 0.01)
+    y = 2.6 * np.cos(np.pi * (x - _GATES[0, 0]) / 12.0) * np.clip(x / _GATES[0, 0], 0.0, 1.0)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    even = np.arange(0.0, way[-1], 0.8)
+    place = np.column_stack([np.interp(even, way, x), np.interp(even, way, y)])
+    noise = 0.03 * random.standard_normal(place.shape)
+    return gpx_track(place + noise, 0.1 * np.arange(float(len(place))), slope_angle=_SLOPE_DEG * DEGREE)
+
+
+def course_waypoints() -> str:
+    """GPX of eight gates: one waypoint for each turning pole, with the side on which it is passed."""
+    points = on_earth(_GATES, slope_angle=_SLOPE_DEG * DEGREE)
+    sides = ["left" if y > 0.0 else "right" for _, y in _GATES]
+    rows = [
+        f'<wpt lat="{point[0]:.9f}" lon="{point[1]:.9f}"><ele>{point[2]:.2f}</ele>'
+        f"<name>{number}</name><type>{side}</type></wpt>"
+        for number, (point, side) in enumerate(zip(points, sides, strict=True), 1)
+    ]
+    return _document(rows)
+
+
+def on_earth(place: FloatArray, *, slope_angle: float) -> FloatArray:
+    """Latitude (°), longitude (°), height (m) of points x down the slope, y to the left, shape (n, 2) or (n, 3)."""
+    inside = np.zeros((len(place), 3))
+    inside[:, : place.shape[1]] = place
+    enu = inside @ slope_axes(AZIMUTH_DEG * DEGREE, slope_angle)
+    latitude, longitude = ORIGIN.latitude_deg * DEGREE, ORIGIN.longitude_deg * DEGREE
+    east = np.array([-np.sin(longitude), np.cos(longitude), 0.0])
+    up = np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)])
+    origin = earth_centred(np.array(ORIGIN.latitude_deg), np.array(ORIGIN.longitude_deg), np.array(ORIGIN.height))
+    return geodetic(origin + enu @ np.stack([east, np.cross(up, east), up]))
+
+
+def gpx_track(place: FloatArray, time: FloatArray, *, slope_angle: float) -> str:
+    """GPX 1.1 of points on the slope (m) at times (s) after `START`."""
+    rows = ["<trk><name>synthetic</name><trkseg>"]
+    for (latitude, longitude, height), second in zip(on_earth(place, slope_angle=slope_angle), time, strict=True):
+        stamp = (START + timedelta(seconds=float(second))).isoformat(timespec="milliseconds").replace("+00:00", "Z")
+        rows.append(
+            f'<trkpt lat="{latitude:.9f}" lon="{longitude:.9f}"><ele>{height:.3f}</ele><time>{stamp}</time></trkpt>'
+        )
+    return _document([*rows, "</trkseg></trk>"])
+
+
+def _document(rows: list[str]) -> str:
+    head = '<gpx version="1.1" creator="skisnow, synthetic" xmlns="http://www.topografix.com/GPX/1/1">'
+    return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', head, *rows, "</gpx>", ""])
+
+
+_SAMPLE_MM: Final = 0.004
+_FORCE_OF_COUNT_N: Final = 0.0025
+_HEADER_BYTES: Final = 512
+
+
+def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
+    """Name and content of each snow sample."""
+    yield "pit.caaml", caaml_text(sample_pit())
+    yield "densities.csv", _densities(random)
+    yield "weather.smet", smet_text(_weather(random))
+    yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
+
+
+def sample_pit() -> SnowPit:
+    """Pit of a groomed piste, with layers, densities and temperatures."""
+    return SnowPit(
+        name="synthetic pit",
+        time="2026-02-03T09:10:00+01:00",
+        comment="synthetic",
+        country="AT",
+        latitude_deg=ORIGIN.latitude_deg,
+        longitude_deg=ORIGIN.longitude_deg,
+        elevation=ORIGIN.height,
+        aspect="SE",
+        slope_angle_deg=12.0,
+        snow_height=1.25,
+        air_temperature_C=-4.5,
+        layers=(SnowLayer(0.0, 0.12, "K-", "MFpc", 0.75e-3), SnowLayer(0.12, 0.3, "P+", "RGsr", 0.5e-3)),
+        densities=(LayerDensity(0.0, 512.5, 0.1), LayerDensity(0.2, 430.0, 0.1)),
+        temperatures=(DepthTemperature(0.0, -7.25), DepthTemperature(0.1, -5.5), DepthTemperature(0.4, -3.0)),
+    )
+
+
+def _densities(random: np.random.Generator) -> str:
+    """CSV of density-cutter samples of two pits, with heights in cm above the ground."""
+    rows = ["ID,TOP,BOTTOM,RHO,NOTES,TYPE"]
+    for pit in ("P1", "P2"):
+        rows += [f"{pit},{top},{top - 10},{random.normal(450.0, 20.0):.1f},-9999,N" for top in range(120, 80, -10)]
+    return "\n".join((*rows, ""))
+
+
+def _weather(random: np.random.Generator) -> StationSeries:
+    hours = np.arange(0.0, 48.0)
+    day = np.cos(2.0 * np.pi * (hours - 13.0) / 24.0)
+    fields = {
+        "TA": 268.0 + 4.0 * day + 0.3 * random.standard_normal(len(hours)),
+        "RH": np.clip(0.7 - 0.1 * day, 0.0, 1.0),
+        "TSS": 265.0 + 5.0 * day,
+        "ISWR": np.clip(500.0 * day, 0.0, None),
+    }
+    latitude, longitude, altitude = ORIGIN.latitude_deg, ORIGIN.longitude_deg, ORIGIN.height
+    time = START.timestamp() // 86400.0 * 86400.0 + 3600.0 * hours
+    return StationSeries("weather.smet", "synthetic station", latitude, longitude, altitude, 1.0, time, fields)
+
+
+def snow_micro_pen_recording(random: np.random.Generator) -> bytes:
+    """Recording in the instrument's binary format: 30 mm of air, then snow whose mean force grows with depth."""
+    snow = np.linspace(1.5, 4.0, round(120.0 / _SAMPLE_MM)) * random.uniform(0.8, 1.2, round(120.0 / _SAMPLE_MM))
+    force = np.concatenate([np.full(round(30.0 / _SAMPLE_MM), 0.02), snow])
+    counts = np.round(force / _FORCE_OF_COUNT_N).astype(">i2")
+    header = bytearray(_HEADER_BYTES)
+    struct.pack_into(">hi3fh", header, 0, 301, len(counts), _SAMPLE_MM, _FORCE_OF_COUNT_N, 0.0, 0)
+    struct.pack_into(">6h", header, 20, *START.timetuple()[:6])
+    struct.pack_into(">f", header, 64, 20.0)
+    struct.pack_into(">h102s", header, 152, 9, b"synthetic")
+    place = (ORIGIN.latitude_deg, ORIGIN.longitude_deg, ORIGIN.height * 100.0, 1.0)
+    struct.pack_into(">8s4f2s2h", header, 256, b"SYNTH001", *place, b"NE", 8, 3)
+    struct.pack_into(">2i", header, 358, len(counts), 0)
+    struct.pack_into(">ih2s2h", header, 376, 5000, 40, b"  ", 1, 1236)
+    struct.pack_into(">20s20s", header, 392, b"synthetic", b"synthetic")
+    body = counts.tobytes()
+    return bytes(header) + body + b"\xff" * (-len(body) % _HEADER_BYTES)
+
+
+MASS, DRAG_AREA, FRICTION, AIR_DENSITY = 80.0, 0.42, 0.03, 1.2
+"""kg, m², 1, kg/m³."""
+_STATIONS: Final = np.array([5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0])
+_TIME_SD_S: Final = 0.002
+
+
+def photo_cell_times(random: np.random.Generator) -> str:
+    """CSV of two glides on 10°, from 2 and 4 m/s, past seven photo cells."""
+    rows = ["run,station_m,time_s,time_sd_s"]
+    for run, speed in (("glide 1", 2.0), ("glide 2", 4.0)):
+        times = glide_time(_STATIONS, speed=speed, slope_angle=10.0 * DEGREE)
+        times += _TIME_SD_S * random.standard_normal(len(times))
+        rows += [
+            f"{run},{station:g},{time:.4f},{_TIME_SD_S:g}"
+            for station, time in zip(_STATIONS.tolist(), times.tolist(), strict=True)
+        ]
+    return "\n".join((*rows, ""))
+
+
+def glide_time(station: FloatArray, *, speed: float, slope_angle: float) -> FloatArray:
+    """Times (s) at distances (m) from a start below the terminal speed, with Coulomb friction and quadratic drag.
+
+    With v∞² = a/k, a = g (sin α − μ cos α), k = ρ C_dA/(2 m) the speed is v∞ tanh φ, φ grows by k v∞ per second, and
+    the distance is ln(cosh φ/cosh φ₀)/k.
+    """
+    acceleration = STANDARD_GRAVITY * (np.sin(slope_angle) - FRICTION * np.cos(slope_angle))
+    drag = 0.5 * AIR_DENSITY * DRAG_AREA / MASS
+    terminal = np.sqrt(acceleration / drag)
+    start = np.arctanh(speed / terminal)
+    return np.asarray((np.arccosh(np.cosh(start) * np.exp(drag * station)) - start) / (drag * terminal))
+
+
+CAMPAIGN: Final = "campaign"
+LAST: Final = "README.txt"
+
+
+def write_samples(folder: str | Path, *, seed: int = 1) -> list[Path]:
+    """Write synthetic sample files: a campaign, tracks, gates, photo-cell times, pits, studies.
+
+    Parameters
+    ----------
+    folder
+        New or empty folder.
+    seed
+        Seed of the random numbers, 0 or more.
+
+    Returns
+    -------
+    The files, sorted by path.
+
+    Raises
+    ------
+    OutputError
+        The folder is not empty or cannot be written.
+
+    Notes
+    -----
+    All files are synthetic. No value in them was measured.
+    """
+    folder = Path(folder)
+    if folder.exists() and any(folder.iterdir()):
+        raise OutputError("{folder} is not empty. Give a new or an empty folder.", code="wrong_kind", folder=folder)
+    require_writable(folder)
+    with staged(folder, last=LAST) as stage:
+        for name, content in _contents(np.random.default_rng(seed)):
+            write_file(stage.path / name, content)
+        write_reference(stage.path / CAMPAIGN, seed=seed)
+    return sorted(path for path in folder.rglob("*") if path.is_file())
+
+
+def _contents(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
+    """Each file outside the reference campaign, by its path in the folder."""
+    with as_file(files(__package__) / "files") as shipped:
+        for path in sorted(path for path in shipped.rglob("*") if path.is_file()):
+            yield path.relative_to(shipped).as_posix(), path.read_bytes()
+    yield "day.gpx", touring_day(random)
+    yield "run.gpx", gates_track(random)
+    yield "course.gpx", course_waypoints()
+    yield "cells.csv", photo_cell_times(random)
+    yield from run_samples(random)
+    yield from snow_samples(random)
+
+
+SCENARIO: Final = "carved-46m"
+_NOISE_M: Final = 0.02
+_EVERY: Final = 10  # rows of a run every 10 ms become points at 10 Hz
+_MINE: Final = f"""
+[solver]
+method = "fast"
+
+[identify.site]
+fall_line_azimuth_deg = {AZIMUTH_DEG:g}
+latitude_deg = {ORIGIN.latitude_deg}
+longitude_deg = {ORIGIN.longitude_deg}
+"""
+_SECOND_RUN: Final = """
+[identify.runs."run-2.gpx"]
+speed_m_per_s = 8.1
+heading_deg = -25
+mass_kg = 95
+"""
+
+
+def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
+    """Name and content of the samples that need a simulated run."""
+    usual = _run()
+    other = _run(speed_m_per_s=8.1, heading_deg=-25.0, mass_kg=95.0)
+    mine = (files("skisnow.scenario") / "catalogue" / f"{SCENARIO}.toml").read_text("utf-8") + _MINE
+    yield "mine.toml", mine
+    yield "two-runs.toml", mine + _SECOND_RUN
+    yield "measured.csv", _table(usual, random)
+    yield "measured.gpx", _gpx(usual, random)
+    yield "run-1.gpx", _gpx(usual, random)
+    yield "run-2.gpx", _gpx(other, random)
+    yield "marks.csv", _grooves(usual.scenario, random)
+
+
+def _run(**changes: float) -> Run:
+    return simulate(load_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
+
+
+def _table(run: Run, random: np.random.Generator) -> str:
+    place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)
+    rows = np.column_stack([run.time[::_EVERY], place])
+    return "\n".join(["time_s,x_m,y_m,z_m", *(",".join(f"{value:.3f}" for value in row) for row in rows.tolist()), ""])
+
+
+def _gpx(run: Run, random: np.random.Generator) -> str:
+    slope = run.scenario.slope
+    assert isinstance(slope, Plane)
+    place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)
+    return gpx_track(place, run.time[::_EVERY], slope_angle=slope.angle)
+
+
+def _grooves(scenario: Scenario, random: np.random.Generator) -> str:
+    """CSV of the groove at eight places, with the depth that stays and the radius of a steady carve."""
+    sledge, slope, contact = scenario.sledge, scenario.slope, scenario.contact
+    assert isinstance(slope, Plane)
+    load = (sledge.mass + 2.0 * scenario.ski.mass) * scenario.gravity * math.cos(slope.angle) / 2.0
+    answer = carve(
+        scenario.ski,
+        contact.snow,
+        edge_angle=sledge.edge_angle,
+        load=load,
+        unloading_ratio=contact.unloading_ratio,
+    )
+    deepest = float(np.max(np.asarray(answer.edge_depth)))
+    depth = deepest * (1.0 - 1.0 / contact.unloading_ratio) / MM
+    width = deepest / math.tan(sledge.edge_angle) / MM
+    rows = ["depth_mm,width_mm,turn_radius_m,depth_sd_mm,width_sd_mm,turn_radius_sd_m"]
+    for _ in range(8):
+        noise = random.standard_normal(3)
+        rows.append(
+            f"{depth + 0.2 * noise[0]:.2f},{width + 0.5 * noise[1]:.2f},"
+            f"{answer.turn_radius_chord + 0.3 * noise[2]:.2f},0.2,0.5,0.3"
+        )
+    return "\n".join((*rows, ""))

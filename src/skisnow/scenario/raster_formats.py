@@ -44,7 +44,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             require_size(path, source.width, source.height)
             _require_one_band(path, source)
             heights = _heights(path, source)
-            transform, system = source.transform, _coordinates_of_crs(source)
+            transform, crs = source.transform, source.crs
+            system = None if crs is None else map_system(crs.to_wkt())
             unit = _height_unit(path, source.units[0], system)
     except (rasterio.errors.RasterioError, UnicodeDecodeError, MemoryError) as error:  # the second from a damaged text
         raise ParameterError(
@@ -103,10 +104,6 @@ def _heights(path: str | Path, source: Any) -> FloatArray:
         )
     with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
         return np.asarray(np.ma.filled(band.astype(float), np.nan) * scale + offset)
-
-
-def _coordinates_of_crs(source: Any) -> MapSystem | None:
-    return None if source.crs is None else map_system(source.crs.to_wkt())
 
 
 def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -> float:

@@ -12,8 +12,7 @@ from .._support.errors import ParameterError
 from .._support.units import DEGREE, Facts, Shown, amount
 from .._support.user_files.json_text import json_number
 from .curvature import TrackMotion, integrated_arc_length, places_arc_length, segments, track_motion
-from .path_estimate import Interval
-from .place_noise import PlaceNoise, estimate_place_noise
+from .path_estimate import Interval, PlaceNoise, estimate_place_noise
 from .runs import Day, Stretch, max_speed, split_day
 from .track import Track, solution_counts
 from .turns import Turn, find_turns

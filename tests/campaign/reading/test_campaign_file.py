@@ -13,7 +13,7 @@ import pytest
 from skisnow.campaign import check_campaign, read_campaign
 from skisnow.campaign.problems import QUALITY_FLAGS, Problem
 from skisnow.campaign.reading.campaign_file import SHAPES, CampaignFile, read_campaign_file
-from skisnow.cli.schema import json_schema
+from skisnow.cli.shell import json_schema
 
 WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
 Where = tuple[int | None, str | None, str | None, str | None]

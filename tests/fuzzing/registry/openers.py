@@ -23,9 +23,9 @@ _WRITING: Final = frozenset("wxa+")
 NO_READERS: Final[Mapping[str, str]] = {
     "compiled.sources:fingerprint": "sources of the core beside the package",
     "scenario.reading:scenario_text": "package data",
-    "cli.schema:json_schema": "package data",
-    "samples.folder:run_samples": "package data",
-    "samples.folder:_contents": "sample files that the program has just made",
+    "cli.shell:json_schema": "package data",
+    "samples:run_samples": "package data",
+    "samples:_contents": "sample files that the program has just made",
     "cli.beginning:write_samples": "sample files that the program has just made",
     "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",
@@ -58,7 +58,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
     "_support.environment:load_certificate": "a certificate, parsed by OpenSSL",
     "_support.processes.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
-    "cli.serve:run": "opens the store as campaign.store.store:Store.open",
+    "cli.replay:serve_lab": "opens the store as campaign.store.store:Store.open",
     "cli.store:run": "opens the store as campaign.store.store:Store.open",
     "cli.store:_sync": "opens the store as campaign.store.store:Store.open",
 }

@@ -51,7 +51,8 @@ class DrawnPenetration(NamedTuple):
 
 def snow_hardness(generator: np.random.Generator, noise: ReferenceNoise) -> FloatArray:
     """Draw H_V (N/m³) of each series."""
-    medians = np.repeat([site.snow_hardness for site in design.PENETRATION_SITES], _series_counts())
+    sites = design.PENETRATION_SITES
+    medians = np.repeat([site.snow_hardness for site in sites], [site.series for site in sites])
     low, high = np.log(design.HARDNESS_RANGE).tolist()
     return np.exp(_normal_within(generator, np.log(medians), noise.hardness_log_sd, (low, high)))
 
@@ -250,10 +251,6 @@ def _shear_stress(
     )
     drawn = [_normal_within(generator, mean, noise.shear_scatter * sd, limits) for mean, sd, limits in groups]
     return np.concatenate(drawn)
-
-
-def _series_counts() -> list[int]:
-    return [site.series for site in design.PENETRATION_SITES]
 
 
 def _numbered(letter: str, count: int) -> tuple[str, ...]:

@@ -152,7 +152,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
         raise ParameterError(
             "{path} does not end in {ending}; name it so", code="wrong_ending", path=path, ending=ENDING
         )
-    ezc3d = _ezc3d(path)
+    ezc3d = needed("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
     rate, n = markers.rate, len(markers.time)
     first = round(float(markers.time[0]) * rate)
     _require_frames(path, "markers", markers.time, first / rate, rate)
@@ -239,10 +239,6 @@ def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
             field=what,
             limit=MOST_NAMES,
         )
-
-
-def _ezc3d(path: str | Path) -> Any:
-    return needed("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
 
 
 Values: TypeAlias = Sequence[str] | Sequence[float]

@@ -129,7 +129,8 @@ def _page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, 
         ),
     ]
     if not pictures:
-        sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[_no_step()])]
+        no_step = prose("The run ended before its first step; no figure can be drawn.")
+        sections = [Section("outcome", Message("Outcome"), key=outcome_sentences(run), words=[no_step])]
     if summary.get("verification"):
         sections.append(
             Section("verification", Message("Computed again"), tables=[verification_table(summary["verification"])])
@@ -292,10 +293,6 @@ def _balance(run: Run) -> list[Markup]:
     if warnings := run_warnings(run):
         return [prose("Warning: {text}.", text=text) for text in warnings]
     return [prose("The energy residual is {error} % of the energy exchanged.", error=_number(100.0 * error, 2))]
-
-
-def _no_step() -> Markup:
-    return prose("The run ended before its first step; no figure can be drawn.")
 
 
 def provenance_sentences(run: Run, summary: Mapping[str, Any]) -> list[Markup]:

@@ -204,7 +204,8 @@ def contrast(chain: TurnChain) -> list[Markup]:
 
 
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
-    grips, ratios = _grips(run, reference), _ratios(run, reference)
+    grips = used_grip(run)[0], used_grip(reference)[0]
+    ratios = afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
     grip = prose(_GRIPS[_compared(*grips)], values=_both(*grips))
     return [
         _compare_radii(name, median_radius(run), first, reference),
@@ -258,14 +259,6 @@ def _compare_slip(name: Markup, run: Run, first: Markup, reference: Run) -> Mark
     if not sliding:
         return prose("Grip holds in both.")
     return prose("Both side-slip.") if len(sliding) == 2 else prose("“{who}” side-slips.", who=sliding[0])
-
-
-def _grips(run: Run, reference: Run) -> tuple[float | None, float | None]:
-    return used_grip(run)[0], used_grip(reference)[0]
-
-
-def _ratios(run: Run, reference: Run) -> tuple[float | None, float | None]:
-    return afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
 
 
 def _compared(value: float | None, other: float | None) -> int:
