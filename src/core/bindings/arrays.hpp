@@ -14,6 +14,8 @@ namespace nb = nanobind;
 using Array = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using Result = nb::ndarray<nb::numpy, double>;
 
+inline std::vector<double> copied(const Array& a) { return {a.data(), a.data() + a.size()}; }
+
 inline Result array(std::vector<double> values, std::initializer_list<std::size_t> shape) {
   auto* kept = new std::vector<double>(std::move(values));
   nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });

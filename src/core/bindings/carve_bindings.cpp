@@ -1,4 +1,4 @@
-// The steady carve in Python: plain arrays in and out. skisnow.simulate.equilibrium gives it names and documentation.
+// The steady carve in Python: plain arrays in and out. skisnow.carving gives it names and documentation.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 
@@ -19,7 +19,6 @@ namespace {
 // One row for each station: place, weight, width, base height, first unknown, shapes of deflection (6) and twist (6).
 void set_stations(CarvedSki& ski, const Array& rows) {
   constexpr int DEFLECTION = 5, TWIST = 11, COLUMNS = 17;
-  constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};
   for (std::size_t i = 0; i < rows.shape(0); i++) {
     const double* row = rows.data() + COLUMNS * i;
     CarveStation station{row[0], row[1], 0.5 * row[2], row[3], {}, {}, int(row[4])};
@@ -81,9 +80,14 @@ void set_laws(CarveLaws& out, const nb::object& pressure, const nb::object& resi
     };
     out.residual = [residual](const Values& deepest) { return asked(residual, deepest); };
   }
-  out.bends.assign(bends.data(), bends.data() + bends.size());
+  out.bends = copied(bends);
   if (strength.is_none()) return;
   out.strength = [strength](const Values& depth, const Values& angle) { return asked(strength, depth, angle); };
+}
+
+CarveState state_of(const CarvedSki& ski, const Array& u, const Array& border) {
+  const double* b = border.data();
+  return {ski.spread(u.data()), {b[0], b[1], b[2]}};
 }
 
 nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::optional<Array>& offset,
@@ -91,13 +95,10 @@ nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::opti
   conditions.laws = laws;
   CarveSolution found, from;
   if (near) {
-    from.state.u = ski.spread(nb::cast<Array>((*near)[0]).data());
-    std::copy_n(nb::cast<Array>((*near)[1]).data(), CARVE_BORDER, from.state.border.begin());
-    const auto depth = nb::cast<Array>((*near)[2]);
-    from.depth.assign(depth.data(), depth.data() + depth.size());
+    from.state = state_of(ski, nb::cast<Array>((*near)[0]), nb::cast<Array>((*near)[1]));
+    from.depth = copied(nb::cast<Array>((*near)[2]));
   }
-  std::vector<double> beside;
-  if (offset) beside.assign(offset->data(), offset->data() + offset->size());
+  std::vector<double> beside = offset ? copied(*offset) : std::vector<double>();
   {
     nb::gil_scoped_release free;
     found = find_carve(ski, conditions, std::move(beside), near ? &from : nullptr, answering_signals());
@@ -114,9 +115,9 @@ nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::opti
 nb::tuple carve_solution(const CarvedSki& ski, const CarveConditions& conditions, const Array& places, const Array& u,
                          const Array& border, const Array& right, const Array& right_border) {
   CarveGroove groove(ski.stations.size());
-  groove.edge.place.assign(places.data(), places.data() + places.size());
-  CarveState at{ski.spread(u.data()), {}}, step = at;
-  std::copy_n(border.data(), CARVE_BORDER, at.border.begin());
+  groove.edge.place = copied(places);
+  const CarveState at = state_of(ski, u, border);
+  CarveState step = at;
   CarveEquations system(ski);
   assemble(ski, conditions, groove, at, system);
   const Column spread = ski.spread(right.data());
@@ -131,13 +132,9 @@ nb::tuple carve_solution(const CarvedSki& ski, const CarveConditions& conditions
                         array({step.border.begin(), step.border.end()}, {std::size_t(CARVE_BORDER)}));
 }
 
-std::vector<double> listed(const Array& values) { return {values.data(), values.data() + values.size()}; }
-
 void make_point(CarvePoint* at, const CarvedSki& ski, const CarveConditions& conditions, const Array& u,
                 const Array& border, const std::optional<Array>& places) {
-  CarveState near{ski.spread(u.data()), {}};
-  std::copy_n(border.data(), CARVE_BORDER, near.border.begin());
-  new (at) CarvePoint(ski, conditions, places ? listed(*places) : std::vector<double>(), std::move(near));
+  new (at) CarvePoint(ski, conditions, places ? copied(*places) : std::vector<double>(), state_of(ski, u, border));
 }
 
 // Last correction, unknowns, depth and force of a refined equilibrium.
@@ -153,7 +150,7 @@ nb::tuple point_state(const CarvePoint& at) {
 // Gradient by the stations' columns (place, weight, width, base height, deflection, normal force), by the conditions,
 // and the adjoint unknowns.
 nb::tuple point_gradient(CarvePoint& at, const Array& u, const Array& depth, const Array& force) {
-  CarveGradient found = at.gradient({at.ski().spread(u.data()), listed(depth), listed(force)});
+  CarveGradient found = at.gradient({at.ski().spread(u.data()), copied(depth), copied(force)});
   const std::size_t n = found.place.size();
   std::vector<double> columns;
   for (const auto* each :

@@ -9,8 +9,6 @@
 namespace skisnow {
 namespace {
 
-std::vector<double> copied(const Array& a) { return {a.data(), a.data() + a.size()}; }
-
 Fields begun(int kind, const Snow& snow, const SnowContact& contact, const Array& start) {
   Fields out;
   out.put("kind", double(kind));

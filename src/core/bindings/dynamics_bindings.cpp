@@ -11,8 +11,6 @@
 namespace skisnow {
 namespace {
 
-std::vector<double> copied(const Array& a) { return {a.data(), a.data() + a.size()}; }
-
 FlexibleSki flexible_ski(const Array& boot, const Array& axes, const Array& unknown, const Array& mass,
                          const Array& stiffness, const Array& coupling, double damping) {
   FlexibleSki out;

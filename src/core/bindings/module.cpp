@@ -19,15 +19,12 @@ namespace {
 
 Grid grid(double x0, double dx, double y0, double dy, const Array& values, bool goes_on) {
   const int nx = int(values.shape(0)), ny = int(values.shape(1));
-  return Grid(x0, dx, nx, y0, dy, ny, {values.data(), values.data() + values.size()}, goes_on);
+  return Grid(x0, dx, nx, y0, dy, ny, copied(values), goes_on);
 }
 
 Runner runner(const Array& position, const Array& half_width, const Array& base_height, const Array& node,
               double base_bevel, double edge_width, double side_edge, double edge_radius) {
-  const auto numbers = [](const Array& given) {
-    return std::vector<double>(given.data(), given.data() + given.size());
-  };
-  return Runner::of(numbers(position), numbers(half_width), numbers(base_height), numbers(node),
+  return Runner::of(copied(position), copied(half_width), copied(base_height), copied(node),
                     EdgeShape(base_bevel, edge_width, side_edge, edge_radius));
 }
 
@@ -35,8 +32,7 @@ using Beams = std::optional<std::vector<Array>>;
 
 std::vector<std::vector<double>> beams_of(const Beams& beams, int runners) {
   std::vector<std::vector<double>> out(static_cast<std::size_t>(runners));
-  for (std::size_t k = 0; k < out.size() && beams; k++)
-    out[k].assign((*beams)[k].data(), (*beams)[k].data() + (*beams)[k].size());
+  for (std::size_t k = 0; k < out.size() && beams; k++) out[k] = copied((*beams)[k]);
   return out;
 }
 
@@ -79,7 +75,7 @@ struct PythonLaws {
 };
 
 // A law of a point in Python: `residual`, `bear` and `lost` of arrays, as in `PenetrationLaw`.
-PenetrationLaw python_penetration(const nb::object& law, const Array& bends, bool along_base_normal) {
+void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
   const auto asked = [law](const char* name, std::size_t rows, const auto&... points) {
     nb::gil_scoped_acquire held;
     const auto found = nb::cast<Array>(law.attr(name)(array(points, {points.size()})...));
@@ -94,8 +90,8 @@ PenetrationLaw python_penetration(const nb::object& law, const Array& bends, boo
   };
   out.lost = [asked](const Values& deepest) { return asked("lost", 1, deepest); };
   out.along_base_normal = along_base_normal;
-  out.bends.assign(bends.data(), bends.data() + bends.size());
-  return out;
+  out.bends = copied(bends);
+  self.set_penetration(out);
 }
 
 nb::dict sections_of(const SnowContact& contact, int k) {
@@ -272,10 +268,6 @@ void set_laws(SnowContact& self, nb::object friction, nb::object shear) {
   self.laws = PythonLaws{std::move(friction), std::move(shear)};
 }
 
-void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
-  self.set_penetration(python_penetration(law, bends, along_base_normal));
-}
-
 void bind_contact(nb::module_& m) {
   nb::class_<SnowContact::State>(m, "State");
   m.def("check_bytes",
@@ -308,13 +300,11 @@ void bind_contact(nb::module_& m) {
              take_bytes(self, static_cast<const unsigned char*>(given.data()), given.size());
            })
       .def("set_laws", &set_laws, nb::arg("friction").none(), nb::arg("shear").none())
-      .def("set_penetration", &set_penetration, nb::arg("law"), nb::arg("bends"), nb::arg("along_base_normal"));
+      .def("set_penetration", &set_penetration);
 }
 
 }  // namespace
-}  // namespace skisnow
 
-namespace skisnow {
 void bind_carve(nb::module_& m);
 void bind_data(nb::module_& m);
 void bind_dynamics(nb::module_& m);

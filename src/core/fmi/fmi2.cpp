@@ -57,12 +57,9 @@ std::string path_of(const std::string& uri) {
   for (std::size_t i = 0; i < rest.size(); i++) {
     const bool coded = rest[i] == '%' && i + 2 < rest.size();
     const int high = coded ? hexadecimal(rest[i + 1]) : -1, low = coded ? hexadecimal(rest[i + 2]) : -1;
-    if (high < 0 || low < 0) {
-      out += rest[i];
-      continue;
-    }
-    out += char(16 * high + low);
-    i += 2;
+    const bool valid = high >= 0 && low >= 0;
+    out += valid ? char(16 * high + low) : rest[i];
+    if (valid) i += 2;
   }
   return out;
 }
