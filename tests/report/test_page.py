@@ -295,7 +295,7 @@ def test_small_campaigns_have_a_report(case: str, figures: int, campaign: Campai
     assert len([tag for tag, _ in reader.tags if tag == "img"]) == figures
     visible = " ".join(text for text in reader.text)
     assert not re.search(r"\bnan\b|\bNone\b(?! of the)|\binf\b", visible)
-    assert ("left out" in visible) == (figures < 11)
+    assert ("Figures without data" in visible) == (figures < 11)
     # with one series the nine candidate models give no result: no choice, no table of them
     assert ("No law" in visible) == (case == "one of each")
     assert ("smallest rmse" in visible.lower() or "simplest of the" in visible) == (case == "only penetration")
