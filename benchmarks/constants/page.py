@@ -64,7 +64,8 @@ def _head(count: int, varied: int) -> Iterator[str]:
     ways = ", ".join(f"{way} mm ({case})" for case, way in BY_S_F.items())
     yield "In mm on the slope; another outcome where the run does not end as it did. The default method's own error is"
     yield f"7 mm after 46 m. A change of S_f by 0.1 % moves ends by {ways}. A constant of the solver should not move"
-    yield "them by more than the larger of both; `MILNE`, `MOST_TURN` and `PART_ALONG` do. Shape, snow and skier may."
+    yield "them by more than the larger of both. `MARGIN`, `MILNE`, `MOST_TURN`, `PART_ACROSS`, `PART_ALONG`, `SLOW`"
+    yield "and `UP` do; `SLIPPING`, a share, if no edge counts as slipping (× 2). Shape, snow and skier may."
     yield "`KNOT_AREA` moves nothing here, because a run takes it from `solver.groove_tolerance`."
     yield ""
     yield from _parts()
