@@ -138,3 +138,41 @@ def spaced(distance: float, across: float, edge: float, angle: float) -> Run:
     skier = replace(base.skier, greatest_edge=math.radians(edge))
     print("spaced", distance, angle, file=sys.stderr)
     return simulate(base.with_(course=Course(gates=found), skier=skier))
+
+
+@cache
+def skidded_through(down: float, across: float, speed: float, ski: str, angle: float = 19.0) -> Run:
+    """Eight gates so far apart (m), in skidded turns that brake to a speed (m/s), on a slope (°)."""
+    gates = tuple(
+        Gate(
+            name=str(i + 1),
+            turning=((i + 0.5) * down, 0.5 * across * (-1) ** i),
+            side="right" if i % 2 else "left",
+        )
+        for i in range(8)
+    )
+    changes = {"solver.method": "fast", "slope.angle_deg": angle, "ski.name": ski, "skier.brakes_to_m_per_s": speed}
+    base = load_scenario("slalom-15deg", changes=changes)
+    heading = math.atan((0.5 * across + 0.4) * math.pi / down)
+    print("skidded", down, angle, file=sys.stderr)
+    start = replace(base.start, x=0.0, y=0.0, heading=heading, speed=speed)
+    return simulate(base.with_(course=Course(gates=gates), start=start))
+
+
+def peak_forces(run: Run) -> FloatArray:
+    """Greatest force on both boots in each turn, over 20 ms, over the weight."""
+    assert run.boots is not None
+    force = np.linalg.norm(run.boots.force.sum(axis=1), axis=1)
+    count = max(1, round(0.02 / steps_of(run)))
+    even = np.convolve(force, np.ones(count) / count, "same")
+    sides = np.flatnonzero(np.diff(np.sign(run.balance.lean))) + 1
+    weight = run.scenario.sledge.mass * run.scenario.gravity
+    turns = [each.max() for each in np.split(even, sides)[1:-1] if len(each) * steps_of(run) > 0.3]
+    return np.array(turns) / weight
+
+
+def outer_share(run: Run) -> float:
+    """Median share of the outer ski where the body leans by more than 12°."""
+    lean, load = run.balance.lean, run.balance.load
+    turning = np.abs(lean) > math.radians(12.0)
+    return float(np.median(np.where(lean > 0.0, load[:, 1], load[:, 0])[turning] / load[turning].sum(axis=1)))

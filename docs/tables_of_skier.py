@@ -20,9 +20,12 @@ from measures_of_skier import (
     in_a_long_turn,
     muscles,
     off_balance,
+    outer_share,
+    peak_forces,
     rate_step,
     residual,
     run_of,
+    skidded_through,
     slip_of,
     slips,
     smallest_radius,
@@ -224,6 +227,34 @@ def _racer(distance: float, edge: float, angle: float = 7.0) -> str:
     return f"| {distance:g} m, simulated | {angle:g} | {numbers}"
 
 
+STEEP = (
+    ("slalom, 10 m", 10.0, 3.0, 5.5, "slalom", "65.7 ± 1.7, 3.96 ± 0.23", "2.5 to 4"),
+    ("slalom, 13 m", 13.0, 3.0, 7.5, "slalom", "71.0 ± 1.9, 4.94 ± 0.59", "2.5 to 4"),
+    ("giant slalom, 25 m", 25.0, 6.0, 11.0, "giant-slalom", "", "2 to 3.5"),
+)
+"""Gates on 19°, wanted speed (m/s), ski; edge angle (°) and radius (m) measured, and peaks of force (weights)."""
+
+
+def steep() -> Iterator[str]:
+    """Skidded turns on 19° beside measured racers."""
+    heads = ("gates on 19°", "passed", "speed (m/s)", "edge angle (°), smallest radius (m)", "measured")
+    forces = ("peak force of a turn, median and most (weights)", "published", "outer ski", "slip (°)")
+    yield f"| {' | '.join((*heads, *forces))} |"
+    yield "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    for name, down, across, speed, ski, measured, published in STEEP:
+        run = skidded_through(down, across, speed, ski)
+        assert run.scenario.course is not None
+        passed = [each.outcome for each in time_gates(run.scenario.course, run).passages].count("passed")
+        peaks = peak_forces(run)
+        own = f"{np.quantile(np.abs(edges(run)), 0.99):.0f}, {smallest_radius(run):.1f}"
+        force = f"{np.median(peaks):.1f}, {peaks.max():.1f}"
+        slip = np.quantile(np.abs(slip_of(run)), 0.95)
+        yield (
+            f"| {name} | {passed} of 8 | {run.speed.mean():.1f} | {own} | {measured} | {force} | {published} "
+            f"| {outer_share(run):.0%} | {slip:.0f} |"
+        )
+
+
 def sensitivity() -> Iterator[str]:
     """What a fifth more or less of each number of the skier moves after 4 s."""
     yield "| key | value | moves the end by, −20 %, +20 % (m) | load, 5 to 12 Hz (N) | greatest lean (°) |"
@@ -268,6 +299,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
     "gates": gates,
     "watched": watched,
     "racers": racers,
+    "steep": steep,
     "sensitivity": sensitivity,
 }
 
