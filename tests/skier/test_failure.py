@@ -24,7 +24,7 @@ def records(*crossed: tuple[float, dict[str, Any]], wanted: float = 0.5 * HEIGHT
     """3 s in balance, from times on with what is seen then."""
     found = []
     for time in np.arange(0.0, 3.0, 0.005):
-        changes = dict(HOLDS, time=float(time), place=(6.0 * float(time), 0.0))
+        changes: dict[str, Any] = dict(HOLDS, time=float(time), place=(6.0 * float(time), 0.0))
         for since, seen in crossed:
             changes |= seen if time >= since - 1e-9 else {}
         place = changes.pop("wanted", wanted)
@@ -47,7 +47,8 @@ def records(*crossed: tuple[float, dict[str, Any]], wanted: float = 0.5 * HEIGHT
 def test_each_limit_is_named_with_time_and_place(code: str, seen: dict[str, Any]) -> None:
     found = cause_of(records((2.0, seen)), Skier(brakes_to=6.0), WEIGHT)
     assert found is not None
-    assert (found.code, found.time) == (code, pytest.approx(2.0))
+    assert found.code == code
+    assert found.time == pytest.approx(2.0)
     assert found.place[0] == pytest.approx(12.0)
 
 
