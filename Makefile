@@ -82,7 +82,7 @@ demo: $(VENV)/.skisnow
 	$(BIN)/skisnow reference $(DEMO)/campaign --seed $(SEED)
 	$(BIN)/skisnow analyse $(DEMO)/campaign --out $(DEMO)/results
 	$(BIN)/skisnow turn $(DEMO)/campaign --site C $(TURN) --out $(DEMO)/turn
-	$(BIN)/skisnow simulate slalom-20-gates --set solver.method=fast --out $(DEMO)/slalom --replay
+	$(BIN)/skisnow simulate slalom-15deg --set solver.method=fast --out $(DEMO)/slalom --replay
 	@echo "To enter tests and look at turns in a browser: $(BIN)/skisnow serve"
 	@echo
 	@echo "Open $(DEMO)/turn/report.html (the turn) and $(DEMO)/results/report.html (the campaign) in a browser,"

@@ -152,7 +152,7 @@ def test_a_recording_becomes_depth_and_force(tmp_path: Path, capsys: pytest.Capt
         ("a.caaml", [], "--site: A, B"),
         ("a.caaml", ["--site", "C"], "'C'; it has A, B"),
         ("a.csv", ["--site", "A"], "--snow-height-cm"),
-        ("a.docx", ["--site", "A"], "tells no format"),
+        ("a.docx", ["--site", "A"], "states no format"),
         ("a.caam", ["--site", "A"], ".caaml?"),
         ("a.pnt", ["--site", "A"], "SnowMicroPen"),
     ],

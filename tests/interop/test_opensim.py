@@ -255,7 +255,7 @@ def test_files_are_converted_by_their_endings(tmp_path: Path, capsys: pytest.Cap
     capsys.readouterr()
     for given, out, words in (
         ("a.mot", "a.trc", "OpenSim table to TRC markers is not known"),
-        ("a.doc", "a.trc", "tells no format"),
+        ("a.doc", "a.trc", "states no format"),
         ("none.trc", "b.trc", "none.trc cannot be read"),
     ):
         assert main(["convert", str(tmp_path / given), str(tmp_path / out)]) == 1

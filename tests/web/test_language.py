@@ -33,6 +33,7 @@ DATA: Final = {
     "read once more after waiting", "measured, entered in the lab", "the edited ski", "as in the scenario",
     "the sliders", "the numbers below",
     "{}, edited", "{} {} at {} m", "edited in the lab ({}) from: {}", "{} · skisnow",
+    "the designed ski", "{}, designed", "designed in the lab from the ski {}",
 }  # fmt: skip
 """Texts that are stored, and values of menus."""
 

@@ -285,7 +285,7 @@ def test_rows_that_point_nowhere_stop_a_migration(migrated_place: Path, monkeypa
         connection.exec_driver_sql("INSERT INTO chunk VALUES ('a', 0, x'00')")  # type: ignore[attr-defined]
 
     monkeypatch.setattr("skisnow.campaign.store.migrations.upgrade", orphans)
-    with pytest.raises(StoreError, match="point nowhere"):
+    with raises(StoreError, "damaged"):
         Store.open(migrated_place)
     assert schema(migrated_place) == {}
 
