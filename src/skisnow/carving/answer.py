@@ -146,9 +146,12 @@ def _half_intervals(answer: CarveAnswer) -> dict[str, Any]:
     """Half the 95 % interval of each output by the snow's intervals; empty for a snow without intervals."""
     if answer.equilibrium.request is None or answer.snow.snow_hardness_interval is None:
         return {}
-    exact = answer.equilibrium.derivatives()
+    exact, radius = answer.equilibrium.derivatives(), "turn_radius_boot_m"
     outputs = [name for name in OUTPUTS if exact.output(name) is not None]
-    return {"half_intervals": {name: exact.half_interval(name, answer.snow) for name in outputs}}
+    return {
+        "half_intervals": {name: exact.half_interval(name, answer.snow) for name in outputs},
+        "radius_changes_by_snow_m": exact.changes_by_snow(radius, answer.snow) if radius in outputs else [],
+    }
 
 
 def answers_dict(answers: Sequence[CarveAnswer]) -> dict[str, Any]:

@@ -237,16 +237,20 @@ class CarveDerivatives:
 
     def half_interval(self, output: str, snow: SnowProperties) -> float | None:
         """Half the 95 % interval of an output by those of H_V and S_f, to first order; None if they lack one."""
+        halves = self.changes_by_snow(output, snow)
+        return math.hypot(*halves) if halves else None
+
+    def changes_by_snow(self, output: str, snow: SnowProperties) -> list[float]:
+        """Change of an output with half the interval of H_V and half that of S_f, of those that have an interval."""
         growth = {
             "snow.H_V_N_per_mm3": (snow.snow_hardness_interval, N_PER_MM3),
             "snow.S_f_N_per_mm2": (snow.failure_shear_stress_interval, N_PER_MM2),
         }
-        halves = [
+        return [
             self.sensitivity(output, [name], kinks=False)[0].derivative * (interval[1] - interval[0]) / 2.0 / unit
             for name, (interval, unit) in growth.items()
             if interval is not None
         ]
-        return math.hypot(*halves) if halves else None
 
     def force_growth(self, parameter: str) -> FloatArray:
         """Growth of the force per length at each station (N/m) with a parameter, per its unit."""

@@ -208,6 +208,8 @@ def compare(options: argparse.Namespace) -> int:
     else:
         from ..report.track.summary import compare_summary
 
+        if verdict := _run_verdict(options):
+            print(f"{verdict}\n")
         print(compare_summary(answer), flush=True)
         if gaps is not None:
             from ..report.race.folder import gaps_text
@@ -242,6 +244,14 @@ def _compared(options: argparse.Namespace) -> Comparison:
             known_to=options.known_to_m,
             slope_angle=angle if options.fall_line_azimuth_deg is None else None,
         )
+
+
+def _run_verdict(options: argparse.Namespace) -> str | None:
+    """Sentence on the times of two computed runs; None where a track was measured."""
+    from ..report.pair_verdicts import run_verdict
+
+    first, other = (_read(path) for path in (options.simulated, options.measured))
+    return None if None in (first.slope_angle, other.slope_angle) else run_verdict(first, other)
 
 
 def _offsets(options: argparse.Namespace) -> list[str]:

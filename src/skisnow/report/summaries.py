@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from ..simulation.run import OPEN_SHARE
 from ..track.course.gates_table import gate_rows
 from .formatting import aligned_rows, plain
+from .pair_verdicts import ski_verdict
 
 if TYPE_CHECKING:
     from ..identification.result import Identification, Identified, Interval
@@ -43,7 +44,11 @@ def carve_summary(contents: Json) -> str:
 
 
 def _carve_lines(answers: list[Json]) -> Iterator[str]:
-    inputs = answers[0]["inputs"]
+    inputs, titles = answers[0]["inputs"], ski_titles(answers)
+    for title, answer in zip(titles[1:], answers[1:], strict=True):
+        yield ski_verdict(answers[0], answer, (titles[0], title))
+    if len(answers) > 1:
+        yield ""
     kind = "at rest" if inputs["at_rest"] else "carving"
     angle, load, moment = (plain(inputs[key]) for key in ("edge_angle_deg", "load_N", "moment_Nm"))
     yield f"{kind}: edge angle {angle} degrees, load {load} N, boot moment {moment} N m"
@@ -53,7 +58,7 @@ def _carve_lines(answers: list[Json]) -> Iterator[str]:
     yield from _carve_table(answers)
     yield from _snow_intervals(answers)
     yield from _ranks(answers)
-    for title, answer in zip(ski_titles(answers), answers, strict=True):
+    for title, answer in zip(titles, answers, strict=True):
         if answer["remedy"]:
             yield ""
             yield f"{title}: {answer['outcome'].replace('_', ' ')}: {answer['remedy']}"

@@ -15,6 +15,7 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message, joined, outcome_words
 from ..report.campaign.page import RESULTS
 from ..report.formatting import significant
+from ..report.pair_verdicts import ski_verdict
 from .elements import Words, button, named
 from .widgets import STYLES, ChartLine, LineChart, save_buttons
 from .words import number_said, said
@@ -169,6 +170,7 @@ class CarvedTurn:
         self.sliders: dict[str, Slider] = {}
         self._waiting = False
         self._working = False
+        self._verdict = Words("").classes("verdict")
         self._headline = named(ui.element("section").classes("headline above"), Message("Carved radius"))
         self._answers: list[dict[str, Any]] = []
         self._named: list[str] = []
@@ -274,6 +276,7 @@ class CarvedTurn:
         self._answers = answers
         self._status.set_text(joined([_in_words(answer) for answer in answers]))
         names = [answer["ski"]["name"] for answer in answers]
+        self._verdict.set_text(ski_verdict(answers[0], answers[1], (names[0], names[1])) if len(answers) == 2 else "")
         if names != self._named:
             self._named = names
             self._facts.clear()

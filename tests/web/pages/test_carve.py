@@ -19,6 +19,7 @@ from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
 from skisnow.report.formatting import significant
+from skisnow.report.pair_verdicts import ski_verdict
 from skisnow.ski import ski_names
 from skisnow.snow import published_names
 from skisnow.web import carved_turn
@@ -227,10 +228,13 @@ def test_the_answer_follows_the_menus(desk: Desk) -> None:
     page.shows("[status] slalom: equilibrium.")
     page.fill("Compared with", "carver")
     page.shows("[status] slalom: equilibrium. carver: equilibrium.")
-    assert facts(answer("slalom"), answer())[:5] == page.outline()[13:18]
+    verdict = ski_verdict(answer("slalom"), answer(), ("slalom", "carver"))
+    assert f"[verdict] {verdict}" in page.outline()
+    assert facts(answer("slalom"), answer())[:5] == page.outline()[14:19]
     page.fill("Compared with", "nothing")
     page.until(lambda: told(page) == "slalom: equilibrium.")
     assert [line for line in page.outline() if line.startswith("[value] ")] == [radius(answer("slalom"))]
+    assert not any("turns tighter" in line for line in page.outline())
 
 
 def test_what_the_snow_cannot_hold_is_reported(desk: Desk) -> None:
