@@ -266,7 +266,7 @@ def test_what_is_typed_for_a_run_is_neither_lost_nor_passed_over(page: Page, ser
     page.goto(f"{served.address}simulate")
     duration = page.get_by_label("Ends after (s)", exact=True)
     duration.fill("500")
-    page.get_by_text("Will take about 8 min.").wait_for()  # no run has told how long it takes: as long as it simulates
+    page.get_by_text("Takes about 8 min.").wait_for()  # no run has told how long it takes: as long as it simulates
     duration.fill("")
     page.get_by_role("button", name="Simulate").click()
     page.get_by_text("Not begun: Ends after (s) is empty; the scenario has 5").wait_for()

@@ -63,8 +63,8 @@ class Contact:
         float,
         Quantity(
             "snow.unloading_ratio",
-            'k_u/H_V: 1 is elastic snow, 1000 nearly rigid-plastic; omit it or use 1 with penetration = "elastic"; '
-            "omit it if the results contain it",
+            'k_u/H_V: 1 is elastic snow, 1000 nearly rigid-plastic; omit it, or use 1, with penetration = "elastic", '
+            "and omit it if the results contain it",
             label=Message("unloading ratio"),
             symbol="$k_u/H_V$",
             lowest=1.0,

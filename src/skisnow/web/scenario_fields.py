@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ON: Final = "true"
 OFF: Final = "false"
-_OF_FILES: Final = re.compile(r'"|\b[a-z]+_[a-z]+\b|left out|default: ')
+_OF_FILES: Final = re.compile(r'"|\b[a-z]+_[a-z]+\b|omit |default: ')
 """Clauses of a meaning about keys of a file, which do not apply to a form."""
 _COMMA: Final = re.compile(r"[-+]?\d*,\d+")
 _DIGITS: Final = 6

@@ -12,11 +12,7 @@ from ..._support.errors import ParameterError, nearest
 from ..._support.messages import Message
 from ..._support.units import unit_of_name
 from ...estimation.regressions import FEWEST_VALUES
-from ..figures.drawing import Drawing
-from ..figures.style import journal_style, site_styles
 from ..formatting import interval, p_equals, plain
-from .data import ReportData
-from .page import DRAWERS, RECORDING_DRAWERS
 from .verdicts import verdicts
 
 if TYPE_CHECKING:
@@ -219,6 +215,11 @@ _ENDS: Final = ("low", "high")
 
 def analysis_figure(analysis: Analysis, what: str) -> Figure:
     """One figure of the report by its name; see `Analysis.plot`."""
+    from ..figures.drawing import Drawing
+    from ..figures.style import journal_style, site_styles
+    from .data import ReportData
+    from .page import DRAWERS, RECORDING_DRAWERS
+
     recordings = RECORDING_DRAWERS if analysis.campaign.snow_micro_pen else ()
     drawers = {drawer.__name__: drawer for drawer in (*DRAWERS, *recordings)}
     if what not in drawers:

@@ -52,7 +52,7 @@ def test_a_first_run_is_asked_about_the_little_that_differs_from_run_to_run(desk
     before = values(page.between("h1 Simulate", "button[main] Simulate"))
     assert list(before.values())[:4] == ["carved-46m", GIVEN, GIVEN, NUMBERS]
     assert list(before.values())[4:] == ["0.2", "0.5", "10", "10", "30", "80", "7", "-30", "0.01", "0.42", "5", ""]
-    assert "15 s" in page.shows("Will take")  # 5 s and 8 s
+    assert "15 s" in page.shows("Takes about")  # 5 s and 8 s
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Simulate"]
 
 
@@ -86,7 +86,7 @@ def test_a_skier_sets_the_edge_angle_itself_and_has_inputs_of_its_own(desk: Desk
     first = [called(SCENARIO_KEYS[f"skier.{name}"]) for name in ("first_turn_s", "turn_angle_deg")]
     every = sum(name.startswith("skier.") for name in SCENARIO_KEYS)
     assert (of_skier[:2], len(of_skier)) == (first, every - 4)
-    assert "70 s" in page.shows("Will take")  # 60 s and 8 s
+    assert "70 s" in page.shows("Takes about")  # 60 s and 8 s
 
 
 def test_the_menus_name_what_there_is(desk: Desk, tmp_path: Path) -> None:
@@ -217,7 +217,7 @@ def test_how_long_it_takes_follows_what_is_typed(desk: Desk, typed: dict[str, st
     page = desk.open("/simulate")
     for name, value in typed.items():
         page.fill(name, value)
-    found = [line for line in page.outline() if "Will take" in line]
+    found = [line for line in page.outline() if "Takes about" in line]
     assert [line.endswith(told or "") for line in found] == ([] if told is None else [True])
 
 
@@ -237,6 +237,6 @@ def test_how_long_it_takes_follows_the_last_run_with_the_method(desk: Desk) -> N
     summary = {"wall_s": 4.0, "simulated_s": 2.0, "scenario": {"solver": {"method": "fast"}}}
     (place / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     page = desk.open("/simulate")
-    assert "5 s" in page.shows("Will take")  # as long as it goes on, where nothing is known of the method
+    assert "5 s" in page.shows("Takes about")  # as long as it goes on, where nothing is known of the method
     page.fill("Method", "fast")
     assert page.shows("10 s")
