@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).resolve().parent / "_static" / "replay"
 SCENARIO = "carved-46m"
 MOMENT = 2.5
-SLALOM = "slalom-20-gates"
+SLALOM = "slalom-15deg"
 FRAMES_PER_SECOND = 12
 FILM_S = (2.0, 10.0)
 QUALITY = 88
