@@ -21,7 +21,7 @@ HOLDS = {"across": 0.5 * WEIGHT, "slip": 0.3, "edge": (0.1, 0.1)}
 
 
 def records(*crossed: tuple[float, dict[str, Any]], wanted: float = 0.5 * HEIGHT) -> list[BalanceRecord]:
-    """3 s in balance, from times on with what is seen then."""
+    """Records of 3 s in balance; from each time in `crossed` on, those values replace the former."""
     found = []
     for time in np.arange(0.0, 3.0, 0.005):
         changes: dict[str, Any] = dict(HOLDS, time=float(time), place=(6.0 * float(time), 0.0))
