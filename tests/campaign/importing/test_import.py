@@ -125,6 +125,24 @@ def _numbers(book: Workbook) -> None:
                 cell.value = float(cell.value.replace(",", "."))
 
 
+def _load_first(book: Workbook) -> None:
+    """Loads in the first column, where the title of the next table is, too."""
+    sheet = book["Hang oben"]
+    for first in (7, 10):
+        sheet.unmerge_cells(f"A{first}:A{first + 2}")
+    for row in range(5, 13):
+        sheet[f"A{row}"], sheet[f"C{row}"] = sheet[f"C{row}"].value, sheet[f"A{row}"].value
+    for first in (7, 10):
+        sheet.merge_cells(f"C{first}:C{first + 2}")
+
+
+def _grams(book: Workbook) -> None:
+    for row in range(7, 13):
+        cell = book["Hang oben"][f"C{row}"]
+        cell.value = f"{str(cell.value)[:2]}.000,0"
+    book["Hang oben"]["C6"] = "g"
+
+
 def _units_in_headings(book: Workbook) -> None:
     sheet = book["Hang oben"]
     for column, unit in zip("BCD", ("[°]", "(kg)", "/ mm"), strict=True):
@@ -146,9 +164,12 @@ TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
     "change",
     [
         _numbers,
+        _load_first,
+        _grams,
         _units_in_headings,
         _set("Hang oben", "A3", "Ort: Hang oben"),
         _set("Hang oben", "C5", "Gewicht"),
+        _set("Hang oben", "C5", "Masse"),
         _set("Hang oben", "C6", "[kg]"),
         _set("Notizen", "A1", TOOLS),
         _set("Hang oben", "F8", "gut"),
@@ -218,6 +239,29 @@ def test_thousands_separators_are_not_decimal_marks() -> None:
     campaign = campaign_of_files(with_comma.files)
     assert campaign.penetration is not None
     assert campaign.penetration.load[0] == pytest.approx(1.25e-3 * G)
+
+
+def test_points_between_thousands_are_asked_for_where_commas_are_decimal_marks() -> None:
+    book = everyday()
+    for row in range(7, 13):
+        cell = book["Hang oben"][f"C{row}"]
+        cell.value = f"{str(cell.value)[:2]}.000"
+    book["Hang oben"]["C6"] = "g"
+    proposal = propose(FILE, bytes_of(book))
+    assert ([question.key for question in proposal.questions], proposal.files) == (["thousands"], {})
+    require_right(propose(FILE, bytes_of(book), Answers(cells={"thousands": "."})))
+
+
+def test_each_table_of_a_sheet_has_the_site_above_it() -> None:
+    rows = "Ort: oben\nVersuch;Kantwinkel;Last;Tiefe\n;°;kg;mm\n1;30;50;1,41\n\n"
+    text = f"Skistück 200 x 62 mm\n{rows}{rows.replace('oben', 'unten').replace('1;', '2;')}"
+    campaign = campaign_of_files(propose("Hang.csv", text.encode()).files)
+    assert campaign.penetration is not None
+    assert campaign.penetration.site == ("oben", "unten")
+    unnamed = propose("Hang.csv", text.replace("Ort: ", "").encode(), Answers(site={"Hang:3": "A", "Hang:8": "B"}))
+    campaign = campaign_of_files(unnamed.files)
+    assert campaign.penetration is not None
+    assert campaign.penetration.site == ("A", "B")
 
 
 def test_csv_with_titles_is_read_with_its_separator() -> None:

@@ -39,11 +39,11 @@ class Answers:
     column, unit
         Column or "-", and unit, by heading, or by TABLE.HEADING.
     site
-        Site by sheet.
+        Site by sheet, or by heading row as SHEET:ROW.
     tool, plate
         Shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
     cells
-        "decimal": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above.
+        "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above.
     ignore
         Rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
     """

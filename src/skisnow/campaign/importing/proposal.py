@@ -196,7 +196,7 @@ def _with_names(
     named = []
     for table in tables:
         sheet = table.section.sheet.name
-        own = [note for note in notes if note.sheet == sheet]
+        own = _notes_above(table, tables, notes)
         site = "" if any("site" in row.cells for row in table.rows) else _site(sheet, table, answers, own, open_)
         days = stated_days(note for note in notes if _concerns(note, sheet, with_tables))
         added = {"site": site} | ({"time": days.pop()} if len(days) == 1 else {})
@@ -212,11 +212,22 @@ def _with_names(
     return _unique(named)
 
 
+def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: Sequence[Note]) -> list[Note]:
+    """Notes between a table and the one above it if they state a site, otherwise all notes of the sheet."""
+    section = table.section
+    own = [note for note in notes if note.sheet == section.sheet.name]
+    ends = [other.section.end for other in tables if other.section.sheet is section.sheet]
+    above = max((end for end in ends if end <= section.header), default=0)
+    near = [note for note in own if above < note.row <= section.header]
+    return near if stated_sites(section.sheet.name, near) else own
+
+
 def _site(
     sheet: str, table: ImportedTable, answers: Answers, notes: Sequence[Note], open_: list[Question | Problem]
 ) -> str:
-    if sheet in answers.site:
-        return answers.site[sheet]
+    for key in (table.section.key, sheet):
+        if key in answers.site:
+            return answers.site[key]
     stated = stated_sites(sheet, notes)
     if len(stated) == 1:
         return stated.pop()

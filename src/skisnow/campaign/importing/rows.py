@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..reading.table_forms import TableForm
     from .answers import Answers
     from .columns import ColumnChoice
-    from .sheets import Ignored, Section, Sheet
+    from .sheets import Ignored, Section
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",
@@ -29,7 +29,13 @@ _SUMMARY: Final = {
 }  # fmt: skip
 """Words of rows below a table that are not a measurement."""
 _THOUSANDS: Final = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+")
+_GROUPED: Final = {
+    ",": re.compile(r"[+-]?[1-9]\d{0,2}(?:(?:['’]\d{3})+(?:,\d+)?|(?:\.\d{3})+,\d+)"),
+    ".": re.compile(r"[+-]?[1-9]\d{0,2}(?:(?:['’]\d{3})+(?:\.\d+)?|(?:,\d{3})+\.\d+)"),
+}
+"""Numbers with thousands separators that cannot be decimal marks, by decimal mark."""
 DECIMAL: Final = "decimal"
+THOUSANDS: Final = "thousands"
 FILL_DOWN: Final = "fill-down"
 
 
@@ -98,7 +104,7 @@ def stored_rows(
         for name in numbers:
             if name in used and cells[name]:
                 choice = used[name]
-                cells[name] = _number(sheet, row, choice, cells[name], mark, open_)
+                cells[name] = _number(section, row, choice, cells[name], mark, answers, open_)
         stored.append(StoredRow(row + 1, cells))
     open_.extend(_strays(section, rows, ignored))
     open_.extend(_split_numbers(section, choices, rows, numbers))
@@ -127,7 +133,7 @@ def _mark(
         for text in typed
         if not _THOUSANDS.fullmatch(text)
         for mark in ",."
-        if mark in text and is_number(text, mark)
+        if mark in text and is_number(_without_groups(text, mark), mark)
     }
     unclear = next((text for text in typed if _THOUSANDS.fullmatch(text)), None)
     if len(clear) == 1:
@@ -137,10 +143,32 @@ def _mark(
     return "."
 
 
-def _number(sheet: Sheet, row: int, choice: ColumnChoice, text: str, mark: str, open_: list[Question | Problem]) -> str:
+def _without_groups(text: str, mark: str) -> str:
+    """The text without its thousands separators if they cannot be decimal marks."""
+    return re.sub(rf"[^\d+{mark}-]", "", text) if _GROUPED[mark].fullmatch(text) else text
+
+
+def _number(
+    section: Section,
+    row: int,
+    choice: ColumnChoice,
+    text: str,
+    mark: str,
+    answers: Answers,
+    open_: list[Question | Problem],
+) -> str:
     """A number in the unit of its column."""
+    sheet = section.sheet
     written = "." if (row, choice.place) in sheet.fractions else mark
-    plain = text.replace("−", "-")
+    plain = _without_groups(text.replace("−", "-"), written)
+    if not is_number(plain, written) and _THOUSANDS.fullmatch(plain):
+        separator = "," if written == "." else "."
+        if answers.cells.get(THOUSANDS) == separator:
+            plain = plain.replace(separator, "")
+        else:
+            if not any(is_asked(open_, "cells", key) for key in (DECIMAL, THOUSANDS)):
+                open_.append(ask("cells", THOUSANDS, section.key, row=row + 1, value=text, choices=(separator,)))
+            return ""
     if not is_number(plain, written):
         open_.append(
             error(

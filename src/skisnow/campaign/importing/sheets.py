@@ -234,8 +234,16 @@ def _section(sheet: Sheet, row: int, columns: range, heads: Sequence[tuple[int, 
     headings = tuple(sheet.cell(row, column, filled=True) for column in columns)
     below = [sheet.cell(row + 1, column) for column in columns]
     units = tuple(cell.strip("[]()").strip() for cell in below) if _is_row_of_units(below) else ()
-    start = row + (2 if units else 1)
-    return Section(sheet, row, start, min(later, default=len(sheet.rows)), columns.start, headings, units)
+    start, end = row + (2 if units else 1), min(later, default=len(sheet.rows))
+    while end > start and _is_title(sheet, end - 1, columns):
+        end -= 1
+    return Section(sheet, row, start, end, columns.start, headings, units)
+
+
+def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
+    """True for a row without numbers and with at most one text below the headings: blank, or a title or note."""
+    texts = [text for column in columns if (text := sheet.cell(row, column, filled=True))]
+    return not texts or (len(texts) == 1 and not is_plain_number(texts[0]))
 
 
 def _is_row_of_units(cells: Sequence[str]) -> bool:

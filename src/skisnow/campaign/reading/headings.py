@@ -284,7 +284,7 @@ SYNONYMS: Final[dict[str, tuple[str, ...]]] = {
     column: tuple(phrase.strip() for phrase in phrases.split(","))
     for column, phrases in {
         "experiment": "experiment, versuch, versuchsnummer, versuch nr, messung, messreihe, serie, reihe, test, "
-        "nummer, nr, essai, prova",
+        "nummer, nr, test no, test number, essai, prova",
         "recording": "recording, aufzeichnung, messung, profil, enregistrement, registrazione",
         "file": "file, datei, dateiname, fichier",
         "surface_mm": "surface, oberflaeche, schneeoberflaeche",
@@ -294,10 +294,11 @@ SYNONYMS: Final[dict[str, tuple[str, ...]]] = {
         "spot": "spot, punkt, messpunkt, position, place",
         "tool": "tool, werkzeug, stempel, koerper, pruefkoerper, druckkoerper, ski, skistueck, outil, utensile",
         "plate": "plate, platte, blech, klinge, scherplatte, scherblatt, fluegel, plaque, piastra",
-        "edge_angle_deg": "edge angle, kantwinkel, aufkantwinkel, winkel, neigung, angle, angolo, edge",
-        "load_N": "load, last, kraft, gewicht, normalkraft, belastung, f, force, charge, carico, forza",
-        "depth_mm": "depth, tiefe, eindringtiefe, einsinktiefe, eindringung, e, penetration depth, profondeur, "
-        "profondita",
+        "edge_angle_deg": "edge angle, edging angle, kantwinkel, aufkantwinkel, winkel, neigung, angle, angolo, edge, "
+        "angle de carre, angle de prise de carre, angolo di spigolo, angolo di presa di spigolo",
+        "load_N": "load, last, kraft, gewicht, masse, mass, normalkraft, belastung, f, force, charge, carico, forza",
+        "depth_mm": "depth, tiefe, eindringtiefe, einsinktiefe, eindringung, e, penetration, penetration depth, "
+        "profondeur, profondita, enfoncement, affondamento",
         "depth_after_mm": "depth after, tiefe danach, tiefe nachher, nachtiefe",
         "branch": "branch, ast, zweig, be entlastung",
         "lever_arm_mm": "lever arm, lever, hebelarm, hebel, arm, bras de levier, braccio",

@@ -21,7 +21,7 @@ from ..transfer import FileImports, TriedImport, try_import
 from ..words import TABLES, label, said
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from ...campaign.importing import ColumnChoice, ImportedTable, Proposal, Question
     from ..settings import Lab
@@ -105,7 +105,7 @@ class _Import:
                     self._question(question)
             _list_problems(proposal)
             for table in proposal.tables:
-                self._table(table)
+                self._table(table, proposal.tables)
         self._preview.clear()
         with self._preview:
             for table in proposal.tables:
@@ -145,7 +145,7 @@ class _Import:
         words = Message("Proposal: {text}", text=_choice_words(question.proposed))
         button(words, lambda: self._answer(question.option, question.key, question.proposed), "small")
 
-    def _table(self, table: ImportedTable) -> None:
+    def _table(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
         """Choices of a table: its kind, a column for each heading, and the units that are stated."""
         kind = table.form.file.removesuffix(".csv")
         heading(Message("{place}: {table}", place=table.section.key, table=said(TABLES[table.form.file])), 3)
@@ -156,16 +156,19 @@ class _Import:
                 made = choice(_with_unit(column), {key: str(text) for key, text in own.items()}, column.column or NONE)
                 key = f"{kind}.{column.heading}"
                 made.on_value_change(lambda event, key=key: self._answer("column", key, event.value))
-        self._site(table)
+        self._site(table, tables)
 
-    def _site(self, table: ImportedTable) -> None:
+    def _site(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
         """Site of a sheet whose tables have no column for it."""
         sheet = table.section.sheet.name
         if any(column.column == "site" for column in table.columns) or not table.rows:
             return
         site = table.rows[0].cells["site"]
-        typed = field(Message("Site of the sheet {sheet}", sheet=sheet), site)
-        typed.on("blur", lambda: self._answer("site", sheet, str(typed.value)) if typed.value != site else None)
+        on_sheet = [other for other in tables if other.section.sheet.name == sheet and other.rows]
+        differ = any(other.rows[0].cells.get("site") != site for other in on_sheet)
+        key = table.section.key if differ else sheet
+        typed = field(Message("Site of the sheet {sheet}", sheet=key), site)
+        typed.on("blur", lambda: self._answer("site", key, str(typed.value)) if typed.value != site else None)
 
     async def _answer(self, option: str, key: str, value: str) -> None:
         self.answers = self.answers.with_(option, key, value)
