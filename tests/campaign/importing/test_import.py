@@ -254,7 +254,7 @@ def test_points_between_thousands_are_asked_for_where_commas_are_decimal_marks()
 
 def test_each_table_of_a_sheet_has_the_site_above_it() -> None:
     rows = "Ort: oben\nVersuch;Kantwinkel;Last;Tiefe\n;°;kg;mm\n1;30;50;1,41\n\n"
-    text = f"Skistück 200 x 62 mm\n{rows}{rows.replace('oben', 'unten').replace('1;', '2;')}"
+    text = f"Skistück 200 x 62 mm\n{rows}{rows.replace('oben', 'unten').replace('1,41', '1,59')}"
     campaign = campaign_of_files(propose("Hang.csv", text.encode()).files)
     assert campaign.penetration is not None
     assert campaign.penetration.site == ("oben", "unten")
