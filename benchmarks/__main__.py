@@ -4,6 +4,7 @@
 identifications, ``web`` those of the web lab in a browser, ``contact`` those of the contact in the compiled core.
 ``scenarios`` runs random scenarios and counts how they end, ``frontier`` sets error against cost of a turn, ``former``
 builds a former commit and compares the processor time of turns with it, ``ends`` the ends of the built-in scenarios.
+``cases`` reads the inputs of ../shared/cases and prints their results next to the right answers.
 """
 
 from __future__ import annotations
@@ -16,14 +17,17 @@ import sys
 from pathlib import Path
 
 TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
-SCENARIOS, FRONTIER, FORMER, ENDS = "scenarios", "frontier", "former", "ends"
+SCENARIOS, FRONTIER, FORMER, ENDS, CASES = "scenarios", "frontier", "former", "ends", "cases"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks")
     parser.add_argument(
-        "part", nargs="?", choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS], help="these alone; left out: everything"
+        "part",
+        nargs="?",
+        choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS, CASES],
+        help="these alone; left out: everything",
     )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
     parser.add_argument("--duration", type=float, default=5.0, help="simulated seconds of a turn")
@@ -46,6 +50,10 @@ def main() -> None:
         from .contact.speed import print_table
 
         print_table(options.repeats)
+    elif options.part == CASES:
+        from .cases import print_table as print_cases
+
+        print_cases()
     elif options.part == SCENARIOS:
         from .turns import scenarios
 
