@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from skisnow.report.figures.style import BLUE, DOUBLE_MM, VERMILLION, journal_style, new_figure
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from matplotlib.figure import Figure
 
@@ -31,10 +32,10 @@ class Measured:
     share: float
 
 
-def rows(text: str) -> Iterator[Measured]:
-    """Every row of the page's tables that has a measured value and a goal."""
-    for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE):
-        head, _, *body = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+def rows(tables: Iterable[str]) -> Iterator[Measured]:
+    """Every row of the tables, each the text of a CSV file, that has a measured value and a goal."""
+    for table in tables:
+        head, *body = csv.reader(table.splitlines())
         places = [n for n, name in enumerate(head) if name.startswith(GOALS)]
         if places:
             yield from _of_table(head, body, places[0])
@@ -59,6 +60,12 @@ def _amount(cell: str) -> float | None:
     return float(found[1].replace(",", "")) * SECONDS[found[2]] if found else None
 
 
+def page_tables() -> list[str]:
+    """Tables of the page in its order."""
+    page = (DOCS / "benchmarks.md").read_text(encoding="utf-8")
+    return [(DOCS / name).read_text(encoding="utf-8") for name in re.findall(r"^:file: (.+)$", page, re.MULTILINE)]
+
+
 def chart(measured: list[Measured]) -> Figure:
     """A bar for each, from the goal to what was measured."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=4.6 * len(measured) + 14)
@@ -81,7 +88,7 @@ def chart(measured: list[Measured]) -> Figure:
 def main() -> None:
     """Write the picture."""
     with journal_style():
-        figure = chart(list(rows((DOCS / "benchmarks.md").read_text(encoding="utf-8"))))
+        figure = chart(list(rows(page_tables())))
         figure.savefig(PICTURE, dpi=170)
 
 

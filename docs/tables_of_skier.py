@@ -1,13 +1,11 @@
 """The tables of the page on the skier, computed again: python docs/tables_of_skier.py [TABLE ...].
 
-Each stands between two marks that no reader sees, ``<!-- table NAME -->`` and ``<!-- end of table -->``. Some 80 runs
-in the fast mode: ten minutes of one core.
+Some 160 runs in the fast mode: half an hour of one core.
 """
 
 from __future__ import annotations
 
 import math
-import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -36,11 +34,13 @@ from measures_of_skier import (
 )
 from watched_slope import DAY, write_profile
 
+sys.path.append(str(Path(__file__).parents[1]))
+from benchmarks.page_tables import write_tables
+
 from skisnow import Run, Scenario, time_gates
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
 
-PAGE = Path(__file__).resolve().parent / "validation/skier.md"
 SHARE = 0.2
 SHORT = 4.0
 FOR_GATES = ("skier.pole_clearance_m", "skier.line_rate_per_s")
@@ -307,13 +307,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
 def main() -> None:
     """Write the tables that are named, or all."""
     for name in sys.argv[1:] or (each for each in TABLES if each != "watched" or DAY.exists()):
-        table = "\n".join(TABLES[name]())
-        mark = f"<!-- table {name} -->\n"
-        text = PAGE.read_text(encoding="utf-8")
-        found = re.search(f"{re.escape(mark)}.*?<!-- end of table -->", text, re.DOTALL)
-        assert found, f"{PAGE.name} has no table {name}"
-        text = f"{text[: found.start()]}{mark}\n{table}\n\n<!-- end of table -->{text[found.end() :]}"
-        PAGE.write_text(text, encoding="utf-8")
+        write_tables("validation/skier", {name: TABLES[name]()})
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from ..page_tables import write_tables
 from .cases import FINE, FIRM, HARD_SNOW, SCENARIO, SKID, SOFT, Runs
 
 ROOT: Final = Path(__file__).resolve().parents[2]
@@ -18,9 +19,6 @@ COMMIT: Final = "58cc12bf"
 """Commit to which the goals for speed relate."""
 DURATION: Final = 5.0
 """Simulated time (s) of a turn."""
-PAGE: Final = ROOT / "docs" / "benchmarks.md"
-BEGIN: Final = "<!-- table of python -m benchmarks former -->"
-END: Final = "<!-- end of the table of former -->"
 CASES: Final[Mapping[str, tuple[str, Mapping[str, object]]]] = {
     "fast": (SCENARIO, {"solver.method": "fast"}),
     "default": (SCENARIO, {}),
@@ -70,7 +68,7 @@ def build(commit: str, folder: Path) -> Path:
 
 
 def print_table(folder: Path, repeats: int) -> None:
-    """Run every case in turn with both builds, print a Markdown table, and write it into the page of benchmarks."""
+    """Run every case in turn with both builds, print a Markdown table, and write it for the page of benchmarks."""
     places, runs = (build(COMMIT, folder / COMMIT), ROOT / "src"), Runs(DURATION)
     lines = [
         f"| run | {COMMIT}, ms | now, ms | ratio | ratio of the whole run | end off (mm) |",
@@ -80,9 +78,7 @@ def print_table(folder: Path, repeats: int) -> None:
     for name in CASES:
         lines.append(f"| {name} | {' | '.join(_cells(name, places, repeats, runs))} |")
         print(lines[-1], flush=True)
-    before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
-    page = "\n".join([before + BEGIN, *lines, END + rest.split(END, 1)[1]])
-    PAGE.write_text(page, encoding="utf-8")
+    write_tables("benchmarks", {"former": lines})
 
 
 def _cells(name: str, places: Sequence[Path], repeats: int, runs: Runs) -> Iterator[str]:

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.page_tables import stale_tables, table_path
 
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.simulated_run import simulate
 
 from .twins import grooves, shears, tables
-from .twins.__main__ import DOCS, KINDS, main
+from .twins.__main__ import DOCS, KINDS, PAGE, main
 from .twins.glides import one_glide
 from .twins.kept import KeptTwins, Row
 from .twins.pool import run_twins
@@ -175,29 +176,25 @@ def test_places_below_the_surface_are_not_written_down() -> None:
     assert (drawn > 0.0).all()
 
 
-def test_tables_are_put_between_their_marks(tmp_path: Path) -> None:
-    page = tmp_path / "identification.md"
-    page.write_text((DOCS / "identification.md").read_text(encoding="utf-8"), encoding="utf-8")
+def test_tables_hold_the_finished_twins(tmp_path: Path) -> None:
     main(["glides", "--seeds", "1", "--workers", "1"], docs=tmp_path)
-    text = page.read_text(encoding="utf-8")
-    between = text.split("<!-- photo cells -->")[1].split("<!-- end of photo cells -->")[0]
-    assert between.count("\n| ") == 2 + 2 + 3
-    assert "| two free | mu_0 | 1 |" in between
+    path = table_path(PAGE, "photo-cells", tmp_path)
+    text = path.read_text(encoding="utf-8")
+    assert text.count("\n") == 1 + 2 + 3
+    assert "two free,mu_0,1," in text
     main([], docs=tmp_path)
-    assert page.read_text(encoding="utf-8") == text
+    assert path.read_text(encoding="utf-8") == text
 
 
-def test_the_page_holds_what_the_kept_twins_say(tmp_path: Path) -> None:
+def test_the_page_holds_what_the_kept_twins_say() -> None:
     """The committed tables are those of the committed rows."""
-    page = tmp_path / "identification.md"
-    page.write_text((DOCS / "identification.md").read_text(encoding="utf-8"), encoding="utf-8")
-    tables.write(page, {kind: KeptTwins.opened(DOCS / "twins" / f"{kind}.csv") for kind in KINDS})
-    assert page.read_text(encoding="utf-8") == (DOCS / "identification.md").read_text(encoding="utf-8")
+    kept = {kind: KeptTwins.opened(DOCS / "validation" / "twins" / f"{kind}.csv") for kind in KINDS}
+    assert stale_tables(PAGE, tables.page_tables(kept)) == []
 
 
 def test_kept_turns_are_twins_of_their_seeds() -> None:
     """A row's truth is the one that its seed draws."""
-    with (DOCS / "twins" / "turns.csv").open(encoding="utf-8", newline="") as file:
+    with (DOCS / "validation" / "twins" / "turns.csv").open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):
             truth = truth_of(row["case"].partition(",")[0], int(row["seed"]))
             assert row["error"] == truth.error

@@ -9,13 +9,16 @@ import sys
 from pathlib import Path
 from typing import Final
 
+from benchmarks.page_tables import write_tables
+
 from . import glides, grooves, shears, tables
 from .kept import KeptTwins
 from .pool import run_twins
 from .truth import SCENARIOS, SEEDS
 from .turns import NOISELESS, one_noiseless, one_turn
 
-DOCS: Final = Path(__file__).parents[3] / "docs" / "validation"
+DOCS: Final = Path(__file__).parents[3] / "docs"
+PAGE: Final = "validation/identification"
 KINDS: Final = ("glides", "grooves", "noiseless", "turns", "shears")
 
 
@@ -28,7 +31,7 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
     options = parser.parse_args(words)
     if unknown := set(options.kinds) - set(KINDS):
         parser.error(f"there is no kind {', '.join(sorted(unknown))}; there are {', '.join(KINDS)}")
-    folder = docs / "twins"
+    folder = docs / "validation" / "twins"
     seeds = SEEDS[: options.seeds]
     asked = {
         "glides": (glides.one_glide, [(case, seed) for case in glides.CASES for seed in seeds]),
@@ -44,10 +47,10 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
             kept = KeptTwins.opened(folder / f"{kind}.csv")
             run_twins(twin, cases, kept, workers=options.workers, seconds=seconds)
     except KeyboardInterrupt:
-        print(f"interrupted; finished twins are kept in {folder}, the page is as it was", file=sys.stderr)
+        print(f"interrupted; finished twins are kept in {folder}, the tables are as they were", file=sys.stderr)
         raise SystemExit(130) from None
     rows = {kind: KeptTwins.opened(folder / f"{kind}.csv") for kind in KINDS}
-    tables.write(docs / "identification.md", rows)
+    write_tables(PAGE, tables.page_tables(rows), docs)
 
 
 if __name__ == "__main__":

@@ -3,13 +3,10 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 from scipy.stats import binomtest
-
-from skisnow._support.staging import write_file
 
 from . import glides, grooves, shears
 from .kept import KeptTwins
@@ -26,10 +23,9 @@ HARDNESS, STRENGTH = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
 UNITS: Final = {"friction.mu_0": "", "drag.drag_area_m2": " m²", "start.heading_deg": "°"}
 
 
-def write(page: Path, kept: Mapping[str, KeptTwins]) -> None:
-    """Put each table between its marks on the page."""
-    text = page.read_text(encoding="utf-8")
-    filled = {
+def page_tables(kept: Mapping[str, KeptTwins]) -> dict[str, str]:
+    """Tables of the page by name."""
+    return {
         "deviations": deviations(kept["turns"]),
         "coverage": coverage_of_turns(kept["turns"]),
         "without noise": without_noise(kept["noiseless"]),
@@ -38,11 +34,6 @@ def write(page: Path, kept: Mapping[str, KeptTwins]) -> None:
         "marks": snow_from_marks(kept["grooves"]),
         "shear": shear_of_tracks(kept["shears"]),
     }
-    for name, table_of in filled.items():
-        before, rest = text.split(f"<!-- {name} -->")
-        after = rest.split(f"<!-- end of {name} -->")[1]
-        text = f"{before}<!-- {name} -->\n\n{table_of}\n\n<!-- end of {name} -->{after}"
-    write_file(page, text)
 
 
 def deviations(turns: KeptTwins) -> str:
