@@ -171,7 +171,10 @@ def test_the_command_writes_a_ski_that_is_read_again(tmp_path: Path, capsys: pyt
     [
         ([["position", "width_mm"], [0, 100], [1, 90]], {}, ("no_unit", {"heading": "position"})),
         ([["station_mm", "width_mm"], [0, "wide"], [1, 90]], {}, ("not_a_number", {"cell": "wide", "row": 2})),
+        ([["station_mm", "EI_N_m2"], [0, "1e300"], [1, 90]], {}, ("not_a_number", {"cell": "1e300", "row": 2})),
         ([["a", "b"], [0, 1]], {}, ("missing", {})),
+        ([["station_mm", "width_mm"]], {}, ("missing", {})),
+        ([["station_mm", "width_mm"], [0, ""]], {}, ("missing", {})),
         ([["station_mm", "width_mm"], *WIDTHS], {"stations_from": None}, ("missing", {})),
         ([["station_mm", "EI_N_m2"], [0, 100], [1, 90]], {}, ("missing", {})),
     ],

@@ -155,12 +155,11 @@ class _Maker:
         self._assumed.append(what)
 
     def _column(self, *names: str) -> tuple[FloatArray, ...] | None:
-        """Stations (mm, as in the table) and columns of all tables that have them, without rows that lack a value."""
+        """Stations (mm, as in the table) and columns of all tables, without rows that lack a value; None: no rows."""
         rows = [np.stack([t[n] for n in ("station_mm", *names)]) for t in self._tables if all(n in t for n in names)]
-        if not rows:
-            return None
-        joined = np.concatenate(rows, axis=1)
-        return tuple(joined[:, np.isfinite(joined).all(axis=0)])
+        joined = np.concatenate(rows, axis=1) if rows else np.zeros((1 + len(names), 0))
+        joined = joined[:, np.isfinite(joined).all(axis=0)]
+        return tuple(joined) if joined.size else None
 
     def _length_of_ski(self) -> float:
         length = self._measured.length

@@ -40,7 +40,18 @@ BEND_TEST: Final = ("bend_span_mm", "bend_load_N", "deflection_mm")
 TORSION_TEST: Final = ("torsion_length_mm", "torsion_moment_Nm", "twist_deg")
 _STIFFNESS_UNITS: Final = {"n m2": 1.0, "nm2": 1.0, "n mm2": 1e-6, "nmm2": 1e-6, "kn m2": 1e3, "knm2": 1e3}
 """Factors to N m², by the unit without powers and middle dots."""
+_BY_WORD: Final = {
+    word: name
+    for name, synonyms in reversed(SYNONYMS.items())
+    for word in (
+        name.casefold(),
+        re.sub(r"_(mm|N_m2|N|Nm|deg)$", "", name).replace("_", " ").casefold(),
+        *synonyms.split(", "),
+    )
+}
 _MOST_BYTES: Final = 1 << 22
+_LARGEST: Final = 1e7
+"""Size of a number that no ski has, in the units of the columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,14 +79,7 @@ class Mapped:
             return stated[plain]
         match = FORM.fullmatch(plain)
         words = re.sub(r"[\s_]+", " ", match["words"] if match else plain).strip()
-        return next(
-            (
-                name
-                for name, synonyms in SYNONYMS.items()
-                if plain == name.casefold() or words in synonyms.split(", ") or words == _without_unit(name)
-            ),
-            "",
-        )
+        return _BY_WORD.get(plain) or _BY_WORD.get(words, "")
 
     def unit(self, heading: str) -> str:
         """Unit that is stated for a heading, or that it names."""
@@ -128,7 +132,7 @@ def _columns(path: Path, sheet: Sheet, header: int, places: Mapping[str, int], m
         heading = sheet.cell(header, place, filled=True)
         unit = mapped.unit(heading) or (below[place] if has_units else "")
         factor = _factor(path, heading, unit, name)
-        columns[name] = factor * np.array([_number(path, sheet, row, place, mark) for row in rows])
+        columns[name] = np.array([_number(path, sheet, row, place, mark, factor) for row in rows])
     return columns
 
 
@@ -155,21 +159,19 @@ def _factor(path: Path, heading: str, unit: str, name: str) -> float:
     return factor
 
 
-def _number(path: Path, sheet: Sheet, row: int, place: int, mark: str) -> float:
+def _number(path: Path, sheet: Sheet, row: int, place: int, mark: str, factor: float) -> float:
     cell = sheet.cell(row, place)
-    value = number(cell, "." if (row, place) in sheet.fractions else mark) if cell else np.nan
-    if cell and not np.isfinite(value):
+    value = factor * number(cell, "." if (row, place) in sheet.fractions else mark) if cell else np.nan
+    if cell and not abs(value) <= _LARGEST:
         raise ParameterError(
-            "{path}, {sheet}, cell {letters}{row}: {cell!r} is not a number. Correct it or leave it blank.",
+            "{path}, {sheet}, cell {letters}{row}: {cell!r} is not a number within ±{largest:g}. Correct it or leave "
+            "it blank.",
             code="not_a_number",
             path=path,
             sheet=sheet.name,
             letters=column_letters(place),
             row=row + 1,
             cell=cell,
+            largest=_LARGEST,
         )
     return value
-
-
-def _without_unit(name: str) -> str:
-    return re.sub(r"_(mm|N_m2|N|Nm|deg)$", "", name).replace("_", " ").casefold()

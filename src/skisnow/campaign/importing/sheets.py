@@ -123,7 +123,7 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
             allowed=failure.allowed,
             action=failure.action,
         ) from failure
-    return max(candidates, key=lambda candidate: max(map(count, candidate[0]), default=0))
+    return max(candidates, key=lambda candidate: max(map(count, candidate[0][:_HEADING_ROWS]), default=0))
 
 
 def _headings(cells: Sequence[str]) -> int:
@@ -140,6 +140,8 @@ def _records(text: CsvText) -> Rows:
 
 
 _FEWEST_HEADINGS: Final = 2
+_HEADING_ROWS: Final = 1000
+"""First rows of a CSV file, whose headings tell its separator."""
 KINDS: Final = {name: form for name, form in FORMS.items() if form in TABLES and form is not SNOW_MICRO_PEN}
 """Tables that can be imported."""
 
