@@ -1,5 +1,6 @@
 #include "carve/point.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -353,8 +354,9 @@ void CarvePoint::refine() {
 
 CarveGradient CarvePoint::gradient(const CarveSeed& seed) {
   if (!passed_) passed_ = std::make_unique<Passed>(ski_, conditions_, place_, state_);
-  CarveState adjoint{Column(state_.u.size(), 0.0), {}}, right;
-  passed_->backward(state_, adjoint, seed, right);
+  CarveState adjoint{Column(state_.u.size(), 0.0), {}}, right = adjoint;
+  const auto acts = [](const auto& by) { return std::count(by.begin(), by.end(), 0.0) < std::ptrdiff_t(by.size()); };
+  if (acts(seed.depth) || acts(seed.force)) passed_->backward(state_, adjoint, seed, right);
   for (std::size_t j = 0; j < adjoint.u.size(); j++) adjoint.u[j] = -right.u[j] - seed.u[j];
   for (std::size_t a = 0; a < CARVE_BORDER; a++) adjoint.border[a] = -right.border[a];
   factors_.solve_transposed(ski_, adjoint);

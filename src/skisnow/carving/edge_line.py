@@ -28,23 +28,41 @@ class EdgeLine:
         self._model = model
         self._edge_angle = edge_angle
         self._u = solution.u
-        stations = model.stations
-        self.station = stations.station
-        self.deflection, self.twist = beam_at_stations(model, solution.u)
-        self.position = self._across(stations.width, stations.base_height, self.deflection, self.twist)
+        self.station = model.stations.station
+
+    @functools.cached_property
+    def _bent(self) -> tuple[FloatArray, FloatArray]:
+        return beam_at_stations(self._model, self._u)
+
+    @functools.cached_property
+    def deflection(self) -> FloatArray:
+        """Deflection at the stations (m)."""
+        return self._bent[0]
+
+    @functools.cached_property
+    def twist(self) -> FloatArray:
+        """Twist at the stations (rad)."""
+        return self._bent[1]
+
+    @functools.cached_property
+    def position(self) -> FloatArray:
+        """Position of the edge at the stations (m)."""
+        stations = self._model.stations
+        return self.across(stations.width, stations.base_height, *self._bent)
 
     def at(self, station: npt.ArrayLike) -> FloatArray:
         """Position (m) of the edge at stations (m)."""
-        return self._across(*self.sections(np.atleast_1d(np.asarray(station, float))))
+        return self.across(*self.sections(np.atleast_1d(np.asarray(station, float))))
 
     def sections(self, station: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Width, height of the unloaded base, deflection (m) and twist (rad) at stations (m)."""
-        width, base_height, rows = _sections(self._model, tuple(station.tolist()))
+        width, base_height, rows = sections_at(self._model, tuple(station.tolist()))
         return (width, base_height, *bent(self._u, *rows))
 
-    def _across(
+    def across(
         self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray
     ) -> FloatArray:
+        """Position (m) of the edge of sections."""
         across = width / 2.0 * np.cos(self._edge_angle + twist)
         return np.asarray(across + (base_height + deflection) * math.sin(self._edge_angle))
 
@@ -98,7 +116,7 @@ class EdgeLine:
 
 
 @functools.lru_cache(maxsize=128)
-def _sections(
+def sections_at(
     model: ClampedSki, stations: tuple[float, ...]
 ) -> tuple[FloatArray, FloatArray, tuple[IntArray, FloatArray, FloatArray]]:
     """Width, height of the unloaded base, and the rows of the beam at stations (m); those about the boot recur."""

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.units import MM
-from ..ski.beam import deflection_shape, twist_shape
-from .edge_line import BOOT_REACH, EdgeLine, circle_radius
+from .edge_line import BOOT_REACH, EdgeLine, circle_radius, sections_at
 
 if TYPE_CHECKING:
     from ..ski.beam import ClampedSki
@@ -22,7 +20,6 @@ if TYPE_CHECKING:
 
 AT_BOOT: Final = np.array([BOOT_REACH, 0.0, -BOOT_REACH])
 """Places (m) of the circle of the boot's turn radius."""
-_IMAGINARY: Final = 1e-30
 _NEAR: Final = 1e-7  # m, over which the slope of the edge line is taken
 
 
@@ -85,45 +82,44 @@ class OutputGrowth:
     def by_unknowns(self, model: ClampedSki) -> FloatArray:
         """Growth with the unknowns of the beam (size,)."""
         out = np.zeros(model.size)
-        if not len(self.edge):
-            return out
-        element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
-        length = model.node[element] - model.node[element + 1]
-        local = (model.node[element] - self.edge) / length
-        shape = self.edge_by[2, :, None] * deflection_shape(local, length) + self.edge_by[3, :, None] * twist_shape(
-            local
-        )
-        dof = model.dof[element]
-        np.add.at(out, dof[dof >= 0], shape[dof >= 0])
+        if len(self.edge):
+            dof, deflection, twist = sections_at(model, tuple(self.edge.tolist()))[2]
+            shape = self.edge_by[2, :, None] * deflection + self.edge_by[3, :, None] * twist
+            np.add.at(out, dof[dof >= 0], shape[dof >= 0])
         return out
 
 
 def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-    """Radius of the circle through front, boot and rear (m), and its growth with their x and y."""
+    """Radius of the circle through front, boot and rear (m), and its growth with their x and y.
 
-    def radius(x: npt.NDArray[np.complexfloating[Any, Any]], y: npt.NDArray[np.complexfloating[Any, Any]]) -> complex:
-        def apart(i: int, j: int) -> complex:
-            return complex(np.sqrt((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2))
+    It is -a b c/(2 T), of the sides a, b, c and twice the area T: each factor adds its relative growth.
+    """
+    twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
+    by_x = -np.array([y[1] - y[2], y[2] - y[0], y[0] - y[1]]) / twice_area
+    by_y = -np.array([x[2] - x[1], x[0] - x[2], x[1] - x[0]]) / twice_area
+    sides = 1.0
+    for i, j in ((1, 0), (1, 2), (0, 2)):
+        along, across = x[i] - x[j], y[i] - y[j]
+        square = along**2 + across**2
+        sides *= math.sqrt(square)
+        by_x[[i, j]] += along / square, -along / square
+        by_y[[i, j]] += across / square, -across / square
+    radius = -sides / (2.0 * twice_area)
+    return float(radius), radius * by_x, radius * by_y
 
-        twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
-        return complex(-apart(1, 0) * apart(1, 2) * apart(0, 2) / (2.0 * twice_area))
 
-    tiny = 1j * _IMAGINARY * np.eye(3)
-    by = [[radius(x + tiny[k], y + 0j).imag for k in range(3)], [radius(x + 0j, y + tiny[k]).imag for k in range(3)]]
-    return radius(x + 0j, y + 0j).real, np.array(by[0]) / _IMAGINARY, np.array(by[1]) / _IMAGINARY
-
-
-def _radius_over(at: At, x: FloatArray) -> tuple[OutputGrowth, FloatArray] | None:
-    """The circle through the edge at three places, and its growth with these."""
+def _radius_over(at: At, x: FloatArray, *, moves: bool = False) -> tuple[OutputGrowth, FloatArray] | None:
+    """The circle through the edge at three places, and its growth with these where they move."""
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
-    y = line.at(x)
+    width, height, deflection, twist = sections = line.sections(x)
+    y = line.across(*sections)
     if circle_radius((x[0], y[0]), (x[1], y[1]), (x[2], y[2])) is None:
         return None
     value, by_x, by_y = _circle_gradient(x, y)
     angle = at.conditions.edge_angle
-    width, height, deflection, twist = line.sections(x)
     turned = angle + twist
-    slope = (line.at(x + _NEAR) - line.at(x - _NEAR)) / (2.0 * _NEAR)
+    if moves:
+        by_x += by_y * (line.at(x + _NEAR) - line.at(x - _NEAR)) / (2.0 * _NEAR)
     by_twist = -by_y * width / 2.0 * np.sin(turned)
     growth = OutputGrowth(
         value=value,
@@ -131,7 +127,7 @@ def _radius_over(at: At, x: FloatArray) -> tuple[OutputGrowth, FloatArray] | Non
         edge=x,
         edge_by=np.array([by_y * np.cos(turned) / 2.0, by_y * math.sin(angle), by_y * math.sin(angle), by_twist]),
     )
-    return growth, by_x + by_y * slope
+    return growth, by_x
 
 
 def _radius_at_boot(at: At) -> OutputGrowth | None:
@@ -144,7 +140,7 @@ def _radius_of_chord(at: At) -> OutputGrowth | None:
     if ends is None:
         return None
     x = np.array([ends[0].value, 0.0, ends[1].value])
-    circle = _radius_over(at, x) if x[0] > 0.0 > x[2] else None
+    circle = _radius_over(at, x, moves=True) if x[0] > 0.0 > x[2] else None
     if circle is None:
         return None
     growth, by_x = circle

@@ -19,7 +19,7 @@ from ..parameters import nearest
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, varied_ski
 from .outputs import AT_BOOT, OUTPUTS, At, OutputGrowth, output_growth
-from .shape import Shape, beam_gradient, beam_moved, bent_by, shape_growth
+from .shape import Shape, beam_gradient, beam_moved, bent_by, curvature_and_turn, shape_growth
 from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
@@ -100,7 +100,11 @@ class _Direction:
     numbers: FloatArray
     strength: float = 0.0
     shape: Shape | None = None
-    bent: FloatArray | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether nodes of the beam move."""
+        return self.shape is not None and bool(self.shape.node.any())
 
     def columns(self, model: ClampedSki) -> FloatArray:
         """Growth of the stations' place, weight, width, base height, and of their element's length over itself."""
@@ -118,6 +122,20 @@ class _Direction:
         )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Gradient:
+    """An output, and its growth with the numbers of the equations.
+
+    With columns of the stations, the core's numbers, and EI and GJ at the Gauss points; `adjoint`: of the beam.
+    """
+
+    output: OutputGrowth
+    columns: FloatArray
+    numbers: FloatArray
+    adjoint: FloatArray
+    stiffness: tuple[FloatArray, FloatArray]
+
+
 @dataclass(slots=True, eq=False)
 class CarveDerivatives:
     """Derivatives at one equilibrium; quantities that several outputs and parameters need are computed once.
@@ -133,9 +151,9 @@ class CarveDerivatives:
     at: At = field(init=False)
     _directions: dict[str, _Direction] = field(default_factory=dict)
     _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
-    _gradients: dict[str, tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None] = field(
-        default_factory=dict
-    )
+    _bent: tuple[FloatArray, FloatArray] | None = None
+    _outputs: dict[str, OutputGrowth | None] = field(default_factory=dict)
+    _gradients: dict[str, _Gradient] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         request = self.request
@@ -191,17 +209,14 @@ class CarveDerivatives:
         ParameterError
             An output or a parameter is unknown, or the output does not exist here.
         """
-        growth_and_gradient = self._gradient(output)
-        if growth_and_gradient is None:
-            raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
-        out = []
+        of_output, out = self._gradient(output).output.value, []
         for name in parameters:
-            value, growth = self.value(name), self._derivative(name, *growth_and_gradient)
-            relative = growth * value / growth_and_gradient[0].value if value and growth_and_gradient[0].value else None
+            value, growth = self.value(name), self.derivative(output, name)
+            relative = growth * value / of_output if value and of_output else None
             kink = self._kink(name) / (abs(value) or 1.0) if kinks else math.inf
             step = (2.0 * kink + _BESIDE) * (abs(value) or 1.0)
             sides = (self._beside(name, -step, output), self._beside(name, step, output)) if kink < AT_KINK else None
-            out.append(Sensitivity(output, name, growth_and_gradient[0].value, value, growth, relative, kink, sides))
+            out.append(Sensitivity(output, name, of_output, value, growth, relative, kink, sides))
         return tuple(out)
 
     def _beside(self, name: str, change: float, output: str) -> float | None:
@@ -211,7 +226,7 @@ class CarveDerivatives:
         neighbour = self._neighbours[name, change]
         if neighbour is None or neighbour.output(output) is None:
             return None
-        return float(neighbour.sensitivity(output, [name], kinks=False)[0].derivative)
+        return neighbour.derivative(output, name)
 
     def _moved(self, name: str, change: float) -> CarveDerivatives | None:
         """The derivatives with a parameter changed a little."""
@@ -232,8 +247,8 @@ class CarveDerivatives:
 
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""
-        growth_and_gradient = self._gradient(name)
-        return None if growth_and_gradient is None else growth_and_gradient[0].value
+        growth = self._output(name)
+        return None if growth is None else growth.value
 
     def half_interval(self, output: str, snow: SnowProperties) -> float | None:
         """Half the 95 % interval of an output by those of H_V and S_f, to first order; None if they lack one."""
@@ -247,7 +262,7 @@ class CarveDerivatives:
             "snow.S_f_N_per_mm2": (snow.failure_shear_stress_interval, N_PER_MM2),
         }
         return [
-            self.sensitivity(output, [name], kinks=False)[0].derivative * (interval[1] - interval[0]) / 2.0 / unit
+            self.derivative(output, name) * (interval[1] - interval[0]) / 2.0 / unit
             for name, (interval, unit) in growth.items()
             if interval is not None
         ]
@@ -261,13 +276,9 @@ class CarveDerivatives:
 
         With width and base height (mm) at ``station_m``, and with EI and GJ (N m²) at ``beam_m``.
         """
-        growth_and_gradient = self._gradient(output)
-        model = self.request.model
-        if growth_and_gradient is None:
-            raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
-        _, (columns, _, adjoint) = growth_and_gradient
+        gradient, model = self._gradient(output), self.request.model
+        columns, (bending, torsion) = gradient.columns, gradient.stiffness
         length = model.node[:-1] - model.node[1:]
-        bending, torsion = beam_gradient(model, self.at.solution.u, adjoint)
         weight = model.stations.weight
         return {
             "station_m": model.stations.station,
@@ -278,7 +289,7 @@ class CarveDerivatives:
             "GJ_per_N_m3": torsion.sum(axis=1) / length,
         }
 
-    def _gradient(self, output: str) -> tuple[OutputGrowth, tuple[FloatArray, FloatArray, FloatArray]] | None:
+    def _output(self, output: str) -> OutputGrowth | None:
         if output not in OUTPUTS:
             raise ParameterError(
                 "unknown output, or one without derivatives: {name}. {allowed}",
@@ -286,44 +297,68 @@ class CarveDerivatives:
                 name=output,
                 allowed=nearest(output, OUTPUTS),
             )
+        if output not in self._outputs:
+            self._outputs[output] = output_growth(output, self.at)
+        return self._outputs[output]
+
+    def _gradient(self, output: str) -> _Gradient:
+        growth, model, u = self._output(output), self.request.model, self.at.solution.u
+        if growth is None:
+            raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
         if output not in self._gradients:
-            growth = output_growth(output, self.at)
-            self._gradients[output] = None if growth is None else (growth, self._adjoint(growth))
+            none = np.zeros(len(self.at.solution.edge_depth))
+            depth, force = (none if part is None else part for part in (growth.depth, growth.force))
+            columns, numbers, adjoint = self.point.gradient(growth.by_unknowns(model), depth, force)
+            self._bent = self._bent or curvature_and_turn(model, u)
+            stiffness = beam_gradient(model, self._bent, adjoint)
+            self._gradients[output] = _Gradient(growth, columns, numbers, adjoint, stiffness)
         return self._gradients[output]
 
-    def _adjoint(self, growth: OutputGrowth) -> tuple[FloatArray, FloatArray, FloatArray]:
-        none = np.zeros(len(self.at.solution.edge_depth))
-        depth, force = (none if part is None else part for part in (growth.depth, growth.force))
-        return self.point.gradient(growth.by_unknowns(self.request.model), depth, force)
+    def derivative(self, output: str, name: str) -> float:
+        """Growth of an output with a parameter, in units of the output per unit of the parameter.
 
-    def _derivative(
-        self, name: str, growth: OutputGrowth, gradient: tuple[FloatArray, FloatArray, FloatArray]
-    ) -> float:
-        direction, model = self._direction(name), self.request.model
-        columns, numbers, adjoint = gradient
-        total = float(numbers @ direction.numbers) + growth.strength * direction.strength
-        total += growth.edge_angle * direction.numbers[_ANGLE] + growth.load * direction.numbers[_LOAD]
-        shape = direction.shape
-        if shape is None or direction.bent is None:
+        Raises
+        ------
+        ParameterError
+            As `sensitivity`.
+        """
+        gradient, direction = self._gradient(output), self._direction(name)
+        growth, shape = gradient.output, direction.shape
+        total = float(gradient.numbers @ direction.numbers) + growth.strength * direction.strength
+        total += float(growth.edge_angle * direction.numbers[_ANGLE] + growth.load * direction.numbers[_LOAD])
+        if shape is None:
             return total
-        along = direction.columns(model)
-        total += float(np.sum(columns[:4] * along[:4])) + float(adjoint @ direction.bent)
-        if along[4].any():  # the shapes of slopes are as long as the element
-            own, back = (_slopes_at_stations(model, unknowns) for unknowns in (self.at.solution.u, adjoint))
-            total += float((columns[4] * own - columns[5] * back) @ along[4])
-        for by, column in ((growth.place, along[0]), (growth.weight, along[1])):
-            total += 0.0 if by is None else float(by @ column)
-        if len(growth.edge):
-            total += float(np.sum(growth.edge_by[2:] * beam_moved(model, self.at.solution.u, growth.edge, shape)))
+        total += float(gradient.columns[2] @ shape.width + gradient.columns[3] @ shape.base_height)
+        if direction.moves:
+            total += self._moving(gradient, direction)
+        else:
+            total += sum(float(np.vdot(by, each)) for by, each in zip(gradient.stiffness, shape.stiffness, strict=True))
         if growth.edge_by[:2].any():
             at_boot = np.array_equal(growth.edge, AT_BOOT)
             sections = shape.edge if at_boot else self._shape_growth(name, growth.edge).edge
             total += float(np.sum(growth.edge_by[:2] * sections[1:]))
         return total
 
+    def _moving(self, gradient: _Gradient, direction: _Direction) -> float:
+        """Part of a derivative by which nodes and stations move and elements lengthen."""
+        assert direction.shape is not None
+        growth, model, u = gradient.output, self.request.model, self.at.solution.u
+        columns, along = gradient.columns, direction.columns(model)
+        total = float(np.sum(columns[:2] * along[:2])) + float(gradient.adjoint @ bent_by(model, u, direction.shape))
+        # the shapes of slopes are as long as the element
+        own, back = (_slopes_at_stations(model, unknowns) for unknowns in (u, gradient.adjoint))
+        total += float((columns[4] * own - columns[5] * back) @ along[4])
+        for by, column in ((growth.place, along[0]), (growth.weight, along[1])):
+            total += 0.0 if by is None else float(by @ column)
+        if len(growth.edge):
+            total += float(np.sum(growth.edge_by[2:] * beam_moved(model, u, growth.edge, direction.shape)))
+        return total
+
     def _growth(self, name: str) -> tuple[FloatArray, tuple[float, float, float], FloatArray, FloatArray, float]:
         direction, model = self._direction(name), self.request.model
-        bent = np.zeros(model.size) if direction.bent is None else direction.bent
+        bent = np.zeros(model.size)
+        if direction.shape is not None:
+            bent = bent_by(model, self.at.solution.u, direction.shape)
         return self.point.growth(direction.columns(model), direction.numbers, bent)
 
     def _kink(self, name: str) -> float:
@@ -337,8 +372,7 @@ class CarveDerivatives:
                 shape = self._shape_growth(name, AT_BOOT)
                 numbers = np.zeros(12)
                 numbers[[_RUNNING_LENGTH, _GREATEST_WIDTH, _BEVEL, _BEVEL_WIDTH]] = shape.numbers
-                bent = bent_by(self.request.model, self.at.solution.u, shape)
-                self._directions[name] = _Direction(numbers, 0.0, shape, bent)
+                self._directions[name] = _Direction(numbers, 0.0, shape)
         return self._directions[name]
 
     def _shape_growth(self, name: str, edge: FloatArray) -> Shape:

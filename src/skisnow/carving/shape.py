@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -59,6 +59,11 @@ class Shape:
     edge: FloatArray
     numbers: FloatArray
 
+    @property
+    def stiffness(self) -> tuple[FloatArray, FloatArray]:
+        """EI and GJ."""
+        return self.bending, self.torsion
+
     def combined(self, other: Shape, own: float, others: float) -> Shape:
         """The sum of both, each times a factor."""
         return Shape(*(own * getattr(self, f.name) + others * getattr(other, f.name) for f in fields(Shape)))
@@ -111,7 +116,7 @@ def _growth_of(ski: Ski, name: str, clamp_length: float, elements: int, edge: tu
     value, places = shape_value(ski, name), np.array(edge)
     stiffness = stiffness_growth(ski, name)
     if stiffness is not None:
-        return _stiffer(shape_of(ski, clamp_length, elements, places), ski, *stiffness)
+        return _stiffer(ski, model_nodes(ski, clamp_length, elements), places, *stiffness)
     # a length moves stations over rows of the tables, between which they are linear: a small step
     step = _STEP * abs(value) if value and not name.endswith("_mm") else _STEP
 
@@ -124,12 +129,13 @@ def _growth_of(ski: Ski, name: str, clamp_length: float, elements: int, edge: tu
     return central(step / 2.0).combined(central(step), 4.0 / 3.0, -1.0 / 3.0)
 
 
-def _stiffer(here: Shape, ski: Ski, attribute: str, growth: FloatArray) -> Shape:
+def _stiffer(ski: Ski, node: FloatArray, edge: FloatArray, attribute: str, growth: FloatArray) -> Shape:
     """Growth of a shape by that of one stiffness at the ski's stations."""
-    at_gauss = here.node[:-1, None] - here.length[:, None] * GAUSS_POINTS
-    table = np.interp(at_gauss, ski.station[::-1], growth[::-1])
-    column = "bending" if attribute == "bending_stiffness" else "torsion"
-    return replace(here.combined(here, 0.0, 0.0), **{column: table})
+    length = node[:-1] - node[1:]
+    table = np.interp(node[:-1, None] - length[:, None] * GAUSS_POINTS, ski.station[::-1], growth[::-1])
+    tables = (table, 0.0 * table) if attribute == "bending_stiffness" else (0.0 * table, table)
+    stations, at_edge = np.zeros(2 * len(length)), np.zeros((3, len(edge)))
+    return Shape(0.0 * node, 0.0 * length, stations, stations, stations, *tables, at_edge, np.zeros(4))
 
 
 @functools.lru_cache(maxsize=32)
@@ -167,15 +173,25 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
     return out
 
 
-def beam_gradient(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (n, 4) each."""
-    length = _lengths(model)
-    both = np.array([_values(model, vector) for vector in (u, adjoint)])
-    curvature = curvature_shape(GAUSS_POINTS[None, :], length[:, None])
-    kappa = np.einsum("ngi,kni->kng", curvature, both)
-    turn = (both[:, :, 5] - both[:, :, 2]) / length
-    weight = GAUSS_WEIGHTS * length[:, None]
-    return weight * kappa[0] * kappa[1], weight * (turn[0] * turn[1])[:, None]
+def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Curvature at the Gauss points (n, 4) and rate of twist of the elements (n, 1) for unknowns of the beam."""
+    value, length = _values(model, u), _lengths(model)[:, None]
+    z = GAUSS_POINTS[None, :]
+    bend = (12.0 * z - 6.0) / length**2 * (value[:, :1] - value[:, 3:4])
+    slopes = (6.0 * z - 4.0) / length * value[:, 1:2] + (6.0 * z - 2.0) / length * value[:, 4:5]
+    return bend + slopes, (value[:, 5:] - value[:, 2:3]) / length
+
+
+def beam_gradient(
+    model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoint: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (n, 4) each.
+
+    `bent`: curvature and rate of twist of u.
+    """
+    kappa, turn = curvature_and_turn(model, adjoint)
+    weight = GAUSS_WEIGHTS * _lengths(model)[:, None]
+    return weight * bent[0] * kappa, weight * (bent[1] * turn)
 
 
 def beam_moved(model: ClampedSki, u: FloatArray, place: FloatArray, growth: Shape) -> tuple[FloatArray, FloatArray]:

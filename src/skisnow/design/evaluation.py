@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import repeat
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +32,6 @@ class Evaluator:
     task: DesignTask
     equilibria: int = 0
     snows: tuple[SnowProperties, ...] = ()
-    _near: dict[int, Solution] = field(default_factory=dict)
     _points: dict[bytes, tuple[CarveDerivatives, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -72,19 +72,18 @@ class Evaluator:
                 ski = ski_of_keys(self.keys(z))
             except ParameterError as error:
                 raise SolverError("this ski is impossible: {reason}", code="no_ski", reason=error) from error
-            self._points[place] = tuple(
-                self._point(n, ski, condition) for n, condition in enumerate(self.task.conditions)
-            )
+            near = min(self._points, key=lambda known: float(np.sum((np.frombuffer(known) - z) ** 2)), default=None)
+            begins = [None] * len(self.snows) if near is None else [each.at.solution for each in self._points[near]]
+            self._points[place] = tuple(map(self._point, range(len(self.snows)), repeat(ski), begins))
         return self._points[place]
 
-    def _point(self, number: int, ski: Ski, question: CarveQuestion) -> CarveDerivatives:
+    def _point(self, number: int, ski: Ski, near: Solution | None) -> CarveDerivatives:
         self.equilibria += 1
-        derivatives = carve_at(ski, question, self.snows[number], near=self._near.get(number))
+        derivatives = carve_at(ski, self.task.conditions[number], self.snows[number], near=near)
         if derivatives is None:
             raise SolverError(
                 "there is no equilibrium at condition {number}.", code="no_equilibrium", number=number + 1
             )
-        self._near[number] = derivatives.at.solution
         return derivatives
 
     def goal_values(self, goal: Goal, z: FloatArray) -> FloatArray:
@@ -105,10 +104,7 @@ class Evaluator:
         """Growth of an output at a condition with each variable, from 0 to 1 of its bounds."""
         out = []
         for variable, value in zip(self.task.variables, self.values(z), strict=True):
-            growth = sum(
-                sensitivity.derivative
-                for sensitivity in point.sensitivity(output, combined_names(variable.name), kinks=False)
-            )
+            growth = sum(point.derivative(output, name) for name in combined_names(variable.name))
             out.append(growth * variable.width * self._factor(variable.name, value, z))
         return np.array(out)
 

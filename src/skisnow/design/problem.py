@@ -85,7 +85,7 @@ class Search:
             ]
         else:
             for number, goal in enumerate(self.worst):
-                constraints += [_slack(self, goal, number, side) for side in (1.0, -1.0)]
+                constraints.append(_slack(self, goal, number))
         matrix, lowest = linear_constraints(self.evaluator)
         if len(lowest):
             constraints.append(
@@ -159,17 +159,19 @@ def _constraint(search: Search, value: Any, growth: Any, goal: Goal, *, kind: st
     return {"type": kind, "fun": fun, "jac": lambda x: search._padded(growth(goal, x[: search.count]))(x)}
 
 
-def _slack(search: Search, goal: Goal, number: int, side: float) -> dict[str, Any]:
-    """Slack + side × deviation is 0 or more."""
+def _slack(search: Search, goal: Goal, number: int) -> dict[str, Any]:
+    """Slack + deviation and slack - deviation are 0 or more."""
 
     def fun(x: FloatArray) -> FloatArray:
         try:
-            return np.asarray(x[search.count + number] + side * search.deviations(goal, x[: search.count]))
+            deviations = search.deviations(goal, x[: search.count])
         except SolverError:
-            return np.full(len(goal.conditions or search.evaluator.task.conditions), -_NO_SKI)
+            return np.full(2 * len(goal.conditions or search.evaluator.task.conditions), -_NO_SKI)
+        return np.asarray(x[search.count + number] + np.concatenate([deviations, -deviations]))
 
     def jac(x: FloatArray) -> FloatArray:
-        out = search._padded(side * search.deviation_growth(goal, x[: search.count]))(x)
+        growth = search.deviation_growth(goal, x[: search.count])
+        out = search._padded(np.concatenate([growth, -growth]))(x)
         out[:, search.count + number] = 1.0
         return out
 

@@ -31,7 +31,7 @@ from .outline import radius_of_least_squares_circle
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, eq=False, repr=False)
 class Ski(Shown):
     """A ski as tables from tip to tail, dense enough for linear interpolation. Everything in SI.
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -142,6 +143,10 @@ def _ski_in(path: Path) -> Ski:
         raise error.at(path) from error
 
 
+MADE_OF_KEYS: Final = weakref.WeakSet[Ski]()
+"""Skis whose tables are certainly those of their keys."""
+
+
 def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like: Ski | None = None) -> Ski:
     """Ski of the keys of a ski file without a table.
 
@@ -161,9 +166,11 @@ def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like:
     """
     values = values_of_keys(dict(keys), path)
     try:
-        return FileParts(values, {}).ski(like=like)
+        ski = FileParts(values, {}).ski(like=like)
     except ParameterError as error:
         raise (error if str(error).startswith(str(path)) else error.at(path)) from error
+    MADE_OF_KEYS.add(ski)
+    return ski
 
 
 def keys_text(keys: Mapping[str, Any]) -> str:
