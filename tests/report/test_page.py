@@ -427,7 +427,9 @@ def _contents(folder: Path) -> dict[str, bytes]:
 
 def test_every_figure_and_table_is_there_in_both_forms(reference: Reported) -> None:
     names = set(_contents(reference.folder))
-    assert {f"figures/{name}{ending}" for name in FIGURES for ending in (".svg", ".png", ".pdf", ".eps")} <= names
+    assert {
+        f"figures/{name}{ending}" for name in FIGURES for ending in (".svg", ".png", ".pdf", ".eps", ".csv")
+    } <= names
     tables = {name.removesuffix(".csv") for name in names if name.endswith(".csv")}
     assert {"tables/models_synthetic", "tables/sites_synthetic", "tables/regressions_synthetic"} <= tables
     assert {f"{table}.tex" for table in tables} <= names

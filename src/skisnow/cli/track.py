@@ -54,7 +54,9 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         choices=("slalom", "giant-slalom"),
         help="with --course: check the course against the rules of this discipline",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, EPS) and track.json")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="write figures (PNG, SVG, PDF, EPS, data as CSV) and track.json"
+    )
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print track.json alone to standard output")
     parser.set_defaults(run=summarise, parser=parser)
@@ -160,7 +162,7 @@ def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "--out",
         type=Path,
         metavar="DIR",
-        help="write compare.json and the figure (PNG, SVG, PDF, EPS); of gates their table, figure and report.html too",
+        help="write compare.json, report.html and figures (PNG, SVG, PDF, EPS, CSV); of gates their table, too",
     )
     add_language(parser)
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
@@ -307,4 +309,4 @@ def _write(folder: Path, comparison: Comparison, text: str, language: str, gaps:
             write_gaps(gaps, comparison.names, stage.path, language=language)
         write_file(stage.path / "compare.json", f"{text}\n")
         write_pictures(map(comparison_drawing, [comparison]), stage.path, every=(), language=language)
-    print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF and EPS", file=sys.stderr)
+    print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF, EPS and CSV", file=sys.stderr)

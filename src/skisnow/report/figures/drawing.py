@@ -1,4 +1,4 @@
-"""A figure of a report with its caption, and its SVG, PNG, PDF and EPS."""
+"""A figure of a report with its caption, its SVG, PNG, PDF and EPS, and its data as CSV."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from ..formatting import html
+from .figure_data import figure_data
 from .style import thinning_sentence
 
 if TYPE_CHECKING:
@@ -77,6 +78,7 @@ class Picture:
     png: bytes
     pdf: bytes = b""
     eps: bytes = b""
+    csv: str = ""
 
     @property
     def data_uri(self) -> str:
@@ -86,10 +88,10 @@ class Picture:
     @property
     def files(self) -> dict[str, str | bytes]:
         """Contents by file suffix without the point."""
-        return {"svg": self.svg, "png": self.png, "pdf": self.pdf, "eps": self.eps}
+        return {"svg": self.svg, "png": self.png, "pdf": self.pdf, "eps": self.eps, "csv": self.csv}
 
 
-FORMS: Final = ("png", "svg", "pdf", "eps")
+FORMS: Final = ("png", "svg", "pdf", "eps", "csv")
 Form: TypeAlias = Literal["png", "svg", "pdf", "eps"]
 
 
@@ -99,12 +101,13 @@ def data_uri(svg: str) -> str:
 
 
 def render(drawing: Drawing) -> Picture:
-    """Render a drawing as SVG, PNG, PDF and EPS; the same bytes for the same data."""
+    """Render a drawing as SVG, PNG, PDF and EPS, with its data as CSV; the same bytes for the same data."""
     letter_panels(drawing.figure)
+    csv = figure_data(drawing.figure)
     svg, png, pdf = _render_svg(drawing), _render_as("png", drawing), _render_as("pdf", drawing)
     make_opaque(drawing.figure)
     eps = _EPS_DATE.sub(b"", _render_as("eps", drawing))
-    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, png, pdf, eps)
+    return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, png, pdf, eps, csv)
 
 
 def drawing_svg(drawing: Drawing) -> str:

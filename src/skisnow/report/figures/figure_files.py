@@ -11,6 +11,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import require_writable, write_file
 from .drawing import FORMS, UNDATED, render
+from .figure_data import figure_data
 from .style import journal_style, local_axes
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def write_pictures(
     language: str = ENGLISH,
     progress: Callable[[str], None] | None = None,
 ) -> list[Picture]:
-    """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS.
+    """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
 
     Parameters
     ----------
@@ -112,7 +113,7 @@ def write_picture(picture: Picture, folder: Path) -> None:
 
 PNG_WIDTH: Final = 1200
 """Width of a PNG in pixels."""
-SUFFIXES: Final = (".png", ".svg", ".pdf")
+SUFFIXES: Final = (".png", ".svg", ".pdf", ".csv")
 
 
 def require_drawable(path: Path) -> None:
@@ -141,7 +142,7 @@ def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGL
     Parameters
     ----------
     path
-        Path with the suffix .png (1200 pixels wide), .svg or .pdf.
+        Path with the suffix .png (1200 pixels wide), .svg or .pdf, or .csv for the data of the figure.
     draw
         Function that draws the figure; it is called inside the house style.
     language
@@ -154,6 +155,9 @@ def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGL
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
         figure = draw()
         local_axes(figure)
+        if kind == "csv":
+            write_file(path, figure_data(figure))
+            return
         content = io.BytesIO()
         options: dict[str, Any] = {"dpi": PNG_WIDTH / figure.get_figwidth()} if kind == "png" else {}
         figure.savefig(content, format=kind, metadata=UNDATED[kind], **options)

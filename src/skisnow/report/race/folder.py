@@ -121,8 +121,8 @@ def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, 
     OutputError
         A file cannot be written.
     """
-    write_file(folder / GAPS_CSV, gaps_csv(gaps))
     pictures = write_pictures(_drawings(gaps, names), folder, every=(), language=language)
+    write_file(folder / GAPS_CSV, gaps_csv(gaps))  # the whole table, instead of the points that the figure shows
     write_file(folder / PAGE, gaps_page(gaps, names, pictures, language=language))
 
 
