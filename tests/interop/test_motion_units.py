@@ -1,6 +1,5 @@
 """MuJoCo models and motion in other units."""
 
-import json
 import random
 import struct
 import xml.etree.ElementTree as ET
@@ -11,14 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import load_scenario, read_ski
+from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.geometry.surfaces import Grid
-from skisnow.interop.chrono import write_chrono_terrain
 from skisnow.interop.mujoco import rigid_ski_geoms, ski_mjcf
 from skisnow.interop.opensim import Markers, read_c3d, read_motion, read_trc
-from skisnow.scenario.snow_map import SnowMap
 from tests.coded import Coded, coded, raises
 
 from .c3d_files import BLOCK, DEC, INTEL, MIPS, c3d_bytes
@@ -287,33 +283,3 @@ def test_the_boxes_of_a_rigid_ski_lie_on_its_base() -> None:
         assert wide == pytest.approx(ends.width[1] / 2.0)
         under = z - thick + np.array([1.0, -1.0]) * half * np.tan(pitch)
         assert under == pytest.approx(ends.base_height[[0, 2]], abs=1e-9)
-
-
-def test_a_terrain_has_the_snow_of_the_scenario(tmp_path: Path) -> None:
-    path = write_chrono_terrain(load_scenario("carved-46m"), tmp_path / "chrono", size=(4.0, 2.0), spacing=0.05)
-    terrain = json.loads(path.read_text(encoding="utf-8"))
-    assert terrain["Template"] == "SCMDeformableTerrain"
-    assert terrain["Geometry"] == {"Height": 0.0, "Size": [4.0, 2.0], "Divisions": [80, 40]}
-    soil = json.loads((path.parent / terrain["Soil Parameters"]["Input File"]).read_text(encoding="utf-8"))
-    assert soil["Soil Parameters"] == {
-        "Bekker Kphi": 2e8,
-        "Bekker Kc": 0.0,
-        "Bekker n": 1.0,
-        "Mohr Cohesion": 5e5,
-        "Mohr Friction": 0.0,
-        "Janosi Shear": pytest.approx(2e-5),
-        "Elastic K": 2e9,
-        "Dampening R": 0.0,
-    }
-
-
-def test_snow_that_does_not_fit_is_rejected(tmp_path: Path) -> None:
-    elastic = load_scenario("carved-46m", changes={"snow.unloading_ratio": 1.0})
-    with raises(ParameterError, "out_of_range", unloading_ratio=1.0):
-        write_chrono_terrain(elastic, tmp_path)
-    over = SnowMap(hardness=Grid.along(np.arange(4.0), np.full(4, 2e8)))
-    with raises(ParameterError, "no_data"):
-        write_chrono_terrain(load_scenario("carved-46m").with_(snow_map=over), tmp_path)
-    with raises(ParameterError, "out_of_range", spacing=0.0):
-        write_chrono_terrain(load_scenario("carved-46m"), tmp_path, spacing=0.0)
-    assert not list(tmp_path.iterdir())

@@ -63,13 +63,12 @@ def add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the program's."""
     parser = commands.add_parser(
         "export",
-        help="models for other programs: FMUs, MJCF, terrain",
+        help="models for other programs: FMUs, MJCF",
         description="Write a model for one.",
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
     _add_fmu(kinds)
     _add_mjcf(kinds)
-    _add_chrono(kinds)
 
 
 def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
@@ -106,18 +105,6 @@ def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
     mjcf.set_defaults(run=_mjcf)
 
 
-def _add_chrono(kinds: argparse._SubParsersAction[Parser]) -> None:
-    chrono = kinds.add_parser(
-        "chrono",
-        help="the snow of a scenario as a terrain of Chrono::Vehicle, untested",
-        description="Write the snow of a scenario as a deformable terrain of Chrono::Vehicle, after its manual; "
-        "untested.",
-    )
-    chrono.add_argument("scenario", metavar="SCENARIO", help="a built-in one by its name, or a TOML file")
-    chrono.add_argument("--out", type=Path, metavar="DIR", required=True, help="folder to write into")
-    chrono.set_defaults(run=_chrono)
-
-
 def _fmu(options: argparse.Namespace) -> int:
     if options.skis is not None and not options.contact:
         options.parser.error("--skis goes with --contact: a sledge has two")
@@ -138,12 +125,4 @@ def _mjcf(options: argparse.Namespace) -> int:
     from ..ski import read_ski
 
     print(write_ski_mjcf(read_ski(options.ski), options.out, segments=options.segments))
-    return 0
-
-
-def _chrono(options: argparse.Namespace) -> int:
-    from ..interop.chrono import write_chrono_terrain
-    from ..scenario import scenario_file
-
-    print(write_chrono_terrain(scenario_file(options.scenario).scenario, options.out))
     return 0
