@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from skisnow._support.processes.dask_cluster import scheduler_of
 from skisnow.cli import build_parser
 from skisnow.studies import Shard
 
@@ -41,18 +40,6 @@ def test_job_script_asks_for_each_part_once() -> None:
 def test_job_script_is_one_of_bash() -> None:
     (script,) = blocks("bash")
     assert subprocess.run(["bash", "-n"], input=script.encode(), check=False).returncode == 0
-
-
-def test_files_of_schedulers_are_read(tmp_path: Path) -> None:
-    found = []
-    for text in blocks("toml"):
-        path = tmp_path / "scheduler.toml"
-        path.write_text(text, encoding="utf-8")
-        found.append(scheduler_of(path))
-    assert [(each.address, each.system, each.jobs) for each in found] == [
-        ("tls://host:8786", None, 1),
-        (None, "slurm", 4),
-    ]
 
 
 def test_commands_of_the_page_are_taken() -> None:

@@ -187,7 +187,7 @@ LOCAL = ("processes", "threads")
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
     """Add the option to a command's."""
     about = "who computes: processes (default) or threads of this computer, or the workers of a Dask scheduler"
-    parser.add_argument("--scheduler", metavar="WORD|URL|FILE.toml", help=about)
+    parser.add_argument("--scheduler", metavar="WORD|URL", help=about)
 
 
 def scheduler_of(options: argparse.Namespace) -> str | None:
@@ -196,7 +196,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
     Raises
     ------
     ParameterError
-        It is not a scheduler, its file cannot be read, or Dask is not installed.
+        It is not a scheduler, or Dask is not installed.
     """
     scheduler: str | None = options.scheduler
     if scheduler is not None and scheduler not in LOCAL and options.workers is not None:

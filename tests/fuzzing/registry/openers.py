@@ -57,7 +57,6 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.replay_addresses:RunFolders.title": "job of a run, by read_record as web.runs:Runs._over",
     "web.server:Certificate.__post_init__": "a certificate, parsed by OpenSSL",
     "_support.environment:load_certificate": "a certificate, parsed by OpenSSL",
-    "_support.processes.dask_cluster:_require_certificates": "certificates, parsed by OpenSSL",
     "cli.replay:serve_lab": "opens the store as campaign.store.store:Store.open",
     "cli.store:run": "opens the store as campaign.store.store:Store.open",
     "cli.store:_sync": "opens the store as campaign.store.store:Store.open",

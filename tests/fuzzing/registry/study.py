@@ -8,7 +8,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from skisnow import read_study
-from skisnow._support.processes.dask_cluster import scheduler_of
 from skisnow.design import Measured, measured_ski, read_design
 from skisnow.studies import merge_shards, read_table, run_shard, run_study
 from skisnow.studies.table import stored_rows
@@ -31,7 +30,6 @@ n = 6
 seed = 1
 edge_angle_deg = [30, 60]
 """
-_SCHEDULER = b'wait_s = 5\n[slurm]\ncores = 4\nmemory = "8GB"\njobs = 3\nqueue = "x"\n[tls]\nca_file = "ca.pem"\n'
 
 
 @cache
@@ -155,9 +153,4 @@ READERS = (
     _rows("study .partial", "table.csv.partial", _partial, _gone_on_with,
           "_support.processes.kept_rows:KeptRows.__init__"),
     _rows("study shard", "table.csv.shard-1-of-2", _parts, _merged, "_support.processes.kept_rows:KeptRows.__init__"),
-    Reader(
-        name="scheduler.toml", target="scheduler.toml", files=lambda: {"scheduler.toml": _SCHEDULER},
-        read=lambda folder: scheduler_of(folder / "scheduler.toml"), mutations=TOML,
-        covers=("_support.processes.dask_cluster:scheduler_of",),
-    ),
 )  # fmt: skip

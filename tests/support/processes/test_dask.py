@@ -15,12 +15,13 @@ import pytest
 
 pytest.importorskip("distributed", reason="Dask is not installed: skisnow[dask]")
 
-from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.errors import SkisnowError
+from skisnow._support.processes import dask_cluster
 from skisnow._support.processes.batch import run_batch
-from skisnow._support.processes.dask_cluster import batch_cluster, scheduler_of
 from skisnow.cli import main
 from skisnow.identification import identify
 from skisnow.studies import Study, read_study, run_study
+from tests.coded import raises
 from tests.identification.straight_tracks import SCENARIO, track
 
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
@@ -60,14 +61,14 @@ class Cluster:
         wait_for(place.exists)
         self.address = __import__("json").loads(place.read_text(encoding="utf-8"))["address"]
 
-    def hire(self, count: int, security: Any = None) -> None:
+    def hire(self, count: int) -> None:
         """Start workers, and wait until they are there."""
         begun = len(self.workers)
         self.workers += [
             self._started("dask_worker", self.address, "--nthreads", "1", "--no-nanny") for _ in range(count)
         ]
         distributed = importlib.import_module("distributed")
-        with distributed.Client(self.address, security=security) as client:
+        with distributed.Client(self.address) as client:
             client.wait_for_workers(begun + count, timeout=120)
 
     def kill(self, process: subprocess.Popen[bytes]) -> None:
@@ -206,61 +207,10 @@ def test_a_function_that_workers_have_not_is_reported(
         run_batch([1, 2, 3], row, executor=cluster.address)
 
 
-def test_a_scheduler_that_does_not_answer_is_reported(tmp_path: Path) -> None:
-    path = tmp_path / "scheduler.toml"
-    path.write_text('address = "tcp://127.0.0.1:9"\nwait_s = 0.5\n', encoding="utf-8")
-    with pytest.raises(SkisnowError, match=r"127\.0\.0\.1:9"):
-        run_batch([[("n", 1)]], dict, executor=path)
-
-
-def test_certificates_are_passed_through(tmp_path: Path) -> None:
-    from skisnow._support.processes.dask_cluster import _security
-
-    path = tmp_path / "scheduler.toml"
-    path.write_text('address = "tls://a:1"\n[tls]\nca_file = "ca.pem"\ncert = "c.pem"\nkey = "k.pem"', encoding="utf-8")
-    security = _security(scheduler_of(path).tls)
-    assert security.require_encryption is True
-    files = (security.tls_ca_file, security.tls_client_cert, security.tls_worker_key)
-    assert files == tuple(str(tmp_path / name) for name in ("ca.pem", "c.pem", "k.pem"))
-    assert _security(None) is None
-
-
-SLURM = """
-[slurm]
-jobs = 4
-cores = 16
-memory = "32GB"
-walltime = "02:00:00"
-queue = "short"
-account = "snow"
-"""
-
-
-class TestJobs:
-    """The job given to a batch system."""
-
-    @pytest.fixture(autouse=True)
-    def _jobqueue(self) -> None:
-        pytest.importorskip("dask_jobqueue", reason="dask-jobqueue is not installed: skisnow[dask]")
-
-    def test_job_script_of_slurm(self, tmp_path: Path) -> None:
-        path = tmp_path / "slurm.toml"
-        path.write_text(SLURM, encoding="utf-8")
-        cluster = batch_cluster(scheduler_of(path))
-        try:
-            script = cluster.job_script()
-        finally:
-            cluster.close()
-        for line in ("-p short", "-A snow", "-n 1", "--cpus-per-task=16", "-t 02:00:00"):
-            assert f"#SBATCH {line}\n" in script
-        assert "--mem=30G" in script
-        assert all(words in script for words in ("--nthreads 1 ", "--nworkers 16 "))
-
-    def test_an_option_that_it_has_not_is_rejected(self, tmp_path: Path) -> None:
-        path = tmp_path / "slurm.toml"
-        path.write_text(SLURM + "partition = 'a'\n", encoding="utf-8")
-        with pytest.raises(ParameterError, match=r"\[slurm\]"):
-            batch_cluster(scheduler_of(path))
+def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dask_cluster, "WAIT_S", 0.5)
+    with raises(SkisnowError, "no_scheduler", address="tcp://127.0.0.1:9"):
+        run_batch([[("n", 1)]], dict, executor="tcp://127.0.0.1:9")
 
 
 @pytest.mark.slow

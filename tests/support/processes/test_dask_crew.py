@@ -1,24 +1,16 @@
-"""What is done with Dask, by a stand-in for its client: counting, waiting for it, its errors, certificates."""
+"""What is done with Dask, by a stand-in for its client: counting, waiting for it, its errors."""
 
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from skisnow._support.errors import ParameterError, SkisnowError
+from skisnow._support.errors import SkisnowError
 from skisnow._support.processes import dask_cluster
 from skisnow._support.processes.batch import run_batch
-from skisnow._support.processes.dask_cluster import (
-    SchedulerFile,
-    batch_cluster,
-    crew_of_client,
-    crew_of_scheduler,
-    is_plain,
-    require_scheduler,
-)
+from skisnow._support.processes.dask_cluster import crew_of_client, crew_of_scheduler, is_plain
 from tests.coded import raises
 
 
@@ -136,103 +128,12 @@ def test_the_client_is_closed_at_the_end() -> None:
     client = Client()
     crew_of_client(client, dict, client.close).end(at_once=False)
     assert client.status == "closed"
-    cluster = Client()
-    dask_cluster._closed(client, cluster)
-    assert cluster.status == "closed"
-
-
-def test_certificates_are_those_of_all_three_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Distributed:
-        @staticmethod
-        def Security(**named: Any) -> dict[str, Any]:
-            return named
-
-    monkeypatch.setattr(dask_cluster, "_distributed", lambda: Distributed)
-    assert dask_cluster._security(None) is None
-    assert dask_cluster._security({"ca_file": "a", "cert": "c"}) == {
-        "require_encryption": True, "tls_ca_file": "a", "tls_client_cert": "c", "tls_scheduler_cert": "c",
-        "tls_worker_cert": "c",
-    }  # fmt: skip
-    keyed = dask_cluster._security({"key": "k", "ciphers": "x"})
-    assert (keyed["tls_worker_key"], keyed["tls_ciphers"], "tls_client_cert" in keyed) == ("k", "x", False)
-
-
-def test_a_batch_system_is_asked_with_its_options(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Jobqueue:
-        @staticmethod
-        def SLURMCluster(**options: Any) -> dict[str, Any]:
-            if "wrong" in options:
-                raise TypeError("unexpected 'wrong'")
-            return options
-
-    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: Jobqueue)
-    monkeypatch.setattr(dask_cluster, "_security", lambda tls: "secure" if tls else None)
-    asked = SchedulerFile(system="slurm", options={"cores": 4})
-    assert batch_cluster(asked) == {"cores": 4}
-    encrypted = SchedulerFile(system="slurm", options={"cores": 4}, tls={"ca_file": "a"})
-    assert batch_cluster(encrypted) == {"cores": 4, "security": "secure", "protocol": "tls://"}
-    with raises(ParameterError, "rejected_by_dask", system="slurm"):
-        batch_cluster(SchedulerFile(system="slurm", options={"wrong": 1}))
-
-
-class Job:
-    def __init__(self, *, queue: str = "", cores: int = 1, memory: str = "") -> None: ...
-
-
-class SLURMJob(Job):
-    def __init__(self, *, account: str = "", **options: Any) -> None: ...
-
-
-class SLURMCluster:
-    job_cls = SLURMJob
-
-    def __init__(self, processes: int = 1, **options: Any) -> None: ...
-
-
-@pytest.mark.parametrize("name", ["acount", "queu", "options", "self"])
-def test_unknown_option_of_a_batch_system(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str) -> None:
-    """Options of the cluster's and the job's constructors are known, also those that one passes on to the other."""
-    monkeypatch.setattr(dask_cluster, "_distributed", lambda: None)
-    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=SLURMCluster))
-    file, table = tmp_path / "slurm.toml", '[slurm]\ncores = 2\nmemory = "2GB"\nqueue = "a"\naccount = "b"\n'
-    file.write_text(table)
-    dask_cluster.require_scheduler(file)
-    file.write_text(f'{table}{name} = "c"\n')
-    with pytest.raises(ParameterError) as caught:
-        dask_cluster.require_scheduler(file)
-    assert caught.value.code == "unknown_option"
 
 
 def test_who_does_not_answer_is_reported_with_what_to_start() -> None:
-    plain = dask_cluster._unanswered(SchedulerFile(address="tcp://h:1"), OSError("refused"))
-    assert "tcp://h:1 (refused)" in plain
-    for asked in (SchedulerFile(address="tls://h:1"), SchedulerFile(address="tcp://h:1", tls={"cert": "c"})):
-        assert "uses certificates" in dask_cluster._unanswered(asked, OSError("refused"))
+    assert "tcp://h:1 (refused)" in dask_cluster._unanswered("tcp://h:1", OSError("refused"))
+    assert "uses certificates" in dask_cluster._unanswered("tls://h:1", OSError("refused"))
     assert [is_plain(f"{kind}://h:1") for kind in ("tcp", "tls", "wss", "ws")] == [True, False, False, True]
-
-
-def test_what_a_scheduler_needs_is_requested_before_the_work_begins(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """Dask for an address, the certificates that are named, and dask-jobqueue for a batch system only."""
-    asked: list[str] = []
-    monkeypatch.setattr(dask_cluster, "_distributed", lambda: asked.append("distributed"))
-    jobqueue = SimpleNamespace(SLURMCluster=SLURMCluster)
-
-    def load_jobqueue() -> SimpleNamespace:
-        asked.append("jobqueue")
-        return jobqueue
-
-    monkeypatch.setattr(dask_cluster, "_jobqueue", load_jobqueue)
-    require_scheduler("tcp://h:1")
-    assert asked == ["distributed"]
-    file = tmp_path / "scheduler.toml"
-    file.write_text('[slurm]\ncores = 2\nmemory = "2GB"\n', encoding="utf-8")
-    require_scheduler(file)
-    assert asked == ["distributed", "distributed", "jobqueue"]
-    file.write_text('address = "tls://h:1"\n[tls]\nca_file = "none.pem"\n', encoding="utf-8")
-    with raises(ParameterError, "no_certificate"):
-        require_scheduler(file)
 
 
 def test_a_scheduler_that_dask_does_not_reach_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,31 +145,3 @@ def test_a_scheduler_that_dask_does_not_reach_is_reported(monkeypatch: pytest.Mo
     monkeypatch.setattr(dask_cluster, "_distributed", lambda: Distributed)
     with raises(SkisnowError, "no_scheduler", address="tcp://h:1"):
         crew_of_scheduler("tcp://h:1", dict)
-
-
-def test_jobs_of_a_batch_system_are_ended_behind_the_client(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """So many jobs as the file states, a client of their cluster, whose threads count."""
-    said: list[Any] = []
-    cluster = SimpleNamespace(scale=lambda *, jobs: said.append(jobs), close=lambda: said.append("cluster closed"))
-
-    class ClusterClient(Client):
-        def __init__(self, of: Any) -> None:
-            super().__init__()
-            assert of is cluster
-
-        def close(self) -> None:
-            said.append("client closed")
-
-    class Started(SLURMCluster):
-        def __new__(cls, **_: Any) -> Any:
-            return cluster
-
-    monkeypatch.setattr(dask_cluster, "_distributed", lambda: SimpleNamespace(Client=ClusterClient))
-    monkeypatch.setattr(dask_cluster, "_jobqueue", lambda: SimpleNamespace(SLURMCluster=Started))
-    file = tmp_path / "scheduler.toml"
-    file.write_text('[slurm]\njobs = 3\ncores = 2\nmemory = "2GB"\n', encoding="utf-8")
-    crew = crew_of_scheduler(file, dict)
-    assert crew.size() == 7
-    assert crew.submit([(0, {"n": 1})]).result().rows == [(0, '{"n":1}')]
-    crew.end(at_once=False)
-    assert said == [3, "client closed", "cluster closed"]

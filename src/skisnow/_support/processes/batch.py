@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from itertools import islice
-from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, Self, TypeAlias
 
@@ -44,7 +43,7 @@ def run_batch(
         Number of processes; None: the number of cores available to this process; 1: this process.
     executor
         Executor instead of processes of this computer: "threads"; any `concurrent.futures.Executor`, which is not
-        shut down; a Dask client, the address of a Dask scheduler, or a TOML file of one. The rows do not depend on it.
+        shut down; a Dask client, or the address of a Dask scheduler. The rows do not depend on it.
     progress
         Called with the number of finished points and that of all.
 
@@ -246,9 +245,9 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-ExecutorLike: TypeAlias = Executor | str | Path | Any
+ExecutorLike: TypeAlias = Executor | str | Any
 """Executor: "processes" or "threads" of this computer; any `concurrent.futures.Executor`; a Dask client; the
-address of a Dask scheduler, or a TOML file that says where one is or which batch system is to start one."""
+address of a Dask scheduler."""
 
 LOCAL: Final = ("processes", "threads")
 
@@ -268,7 +267,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     Raises
     ------
     ParameterError
-        It is nothing of these, its file cannot be read, or Dask is not installed.
+        It is none of these, or Dask is not installed.
     SkisnowError
         The scheduler does not answer.
     """
@@ -280,13 +279,13 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
         return ThreadCrew(function, workers)
     from .dask_cluster import crew_of_client, crew_of_scheduler
 
-    if isinstance(executor, str | Path):
+    if isinstance(executor, str):
         return crew_of_scheduler(executor, function)
     if hasattr(executor, "get_executor"):
         return crew_of_client(executor, function)
     raise ParameterError(
-        "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a Dask client, the "
-        "address of a Dask scheduler or a TOML file of one",
+        "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a Dask client, or "
+        "the address of a Dask scheduler",
         code="unknown_executor",
         executor=executor,
         names=list(LOCAL),
@@ -299,9 +298,9 @@ def require_executor(executor: ExecutorLike | None) -> None:
     Raises
     ------
     ParameterError
-        Dask is not installed, its address or its file cannot be read.
+        It is not an address, or Dask is not installed.
     """
-    if executor is None or executor in LOCAL or not isinstance(executor, str | Path):
+    if executor is None or executor in LOCAL or not isinstance(executor, str):
         return
     from .dask_cluster import require_scheduler
 
