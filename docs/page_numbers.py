@@ -48,29 +48,13 @@ def answer(*words: str) -> dict[str, Any]:
 
 
 def how_to_carve(_folder: Path) -> dict[str, str]:
-    """The slips of an edge on a glacier, a tool at rest, and what each choice does to the radius."""
+    """Grip and depth of an edge on a glacier, and depth of a tool at rest."""
     ski = ("carve", "--ski", "slalom", "--edge-angle-deg", "45", "--load-N", "800")
     glacier = answer(*ski, "--published", "glacier", "--unloading-ratio", "10")
     numbers = {
         "glacier limit": f"{glacier['side_force_limit_N']:.0f}",
         "glacier depth": f"{max(glacier['edge_depth_mm']):.1f}",
     }
-    snow = ("--H-V-N-per-mm3", "0.2", "--S-f-N-per-mm2", "0.35")
-    choices = {
-        "as above": (),
-        "clamp": ("--clamp-length-m", "0"),
-        "side force": ("--no-side-force-bending",),
-        "spread": ("--side-force-spread", "base-reaction"),
-        "footprint": ("--footprint-stiffness-N-per-mm2", "30"),
-        "path": ("--groove", "path"),
-        "twist": ("--no-twist",),
-        "elastic": ("--unloading-ratio", "1"),
-    }
-    for name, choice in choices.items():
-        ratio = () if name == "elastic" else ("--unloading-ratio", "10")
-        found = answer(*ski, *snow, *ratio, *choice)
-        numbers[f"{name} boot"] = f"{found['turn_radius_boot_m']:.1f}"
-        numbers[f"{name} ends"] = f"{found['turn_radius_chord_m']:.1f}"
     tool = ("carve", "--ski", "paper-tool", "--edge-angle-deg", "45", "--load-N", "490", "--H-V-N-per-mm3", "0.04")
     at_rest = answer(*tool, "--at-rest", "--clamp-length-m", "0")
     return {**numbers, "tool depth": f"{max(at_rest['edge_depth_mm']):.1f}"}
