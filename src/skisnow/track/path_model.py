@@ -19,6 +19,7 @@ Optim. 4, 626-636, doi 10.1137/0804035; Rue, Martino and Chopin (2009), J. R. St
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -98,16 +99,26 @@ class PathFit:
     log_evidence: float
 
 
-class _Residuals(NamedTuple):
-    """Residuals of the transitions and points, the terms that their derivatives need, and half their weighted sum."""
+class _Weights(NamedTuple):
+    """Precisions of the transitions, and the part of the normal equations that no state changes."""
 
-    transition: FloatArray
+    place: FloatArray
+    turn: FloatArray
+    speed: FloatArray
+    band: FloatArray
+
+
+class _Residuals(NamedTuple):
+    """Residuals of places and points, weighted ones of both chains, what derivatives need, half the weighted sum."""
+
+    place: FloatArray
+    turn_pull: FloatArray
+    speed_pull: FloatArray
     point: FloatArray
     turn: FloatArray
     mean_speed: FloatArray
     shortening: FloatArray
-    cosine: FloatArray
-    sine: FloatArray
+    direction: FloatArray
     misfit: float
 
 
@@ -175,7 +186,6 @@ class PathModel:
         self.place = place
         self._speed = speed_chain(scales.speed_time, self.step)
         self._turns: dict[float, Chain] = {}
-        self._band = _band_places(self.count)
 
     def initial_state(self, place_noise: float) -> FloatArray:
         """A path (n, 7) through places of this noise (m), from splines of x and y."""
@@ -202,12 +212,12 @@ class PathModel:
 
     def fit(self, parameters: MotionParameters, state: FloatArray) -> PathFit | None:
         """The most probable path, from an initial one; None if the steps fail."""
-        weight = self._weights(parameters)
-        residuals = self._residuals(state, parameters, weight)
+        weights = self._weights(parameters)
+        residuals = self._residuals(state, parameters, weights)
         damping = 0.0
         factor = None
         for _ in range(_MOST_STEPS):
-            band, gradient = self._normal_equations(state, residuals, parameters, weight)
+            band, gradient = self._normal_equations(state, residuals, parameters, weights)
             while True:
                 damped = band.copy()
                 damped[0] *= 1.0 + damping
@@ -217,7 +227,7 @@ class PathModel:
                     return None
                 change = cho_solve_banded((factor, True), gradient.ravel(), check_finite=False)
                 moved = state - change.reshape(-1, STATES)
-                moved_residuals = self._residuals(moved, parameters, weight)
+                moved_residuals = self._residuals(moved, parameters, weights)
                 if moved_residuals.misfit <= residuals.misfit * (1.0 + 1e-9) + 1e-9:
                     break
                 damping = max(5.0 * damping, 1e-4)
@@ -232,13 +242,26 @@ class PathModel:
         evidence = self._log_prior_scale(parameters) - residuals.misfit - float(np.sum(np.log(factor[0])))
         return PathFit(state, factor, evidence) if np.isfinite(evidence) else None
 
-    def _weights(self, parameters: MotionParameters) -> FloatArray:
-        """Precision (n - 1, 7, 7) of each transition."""
-        weight = np.zeros((len(self.step), STATES, STATES))
-        weight[:, 0, 0] = weight[:, 1, 1] = 1.0 / (parameters.drift**2 * self.step)
-        weight[:, _TURN, _TURN] = self._turn(parameters).precision / parameters.turn_rate**2
-        weight[:, _SPEED, _SPEED] = self._speed.precision / parameters.acceleration**2
-        return weight
+    def _weights(self, parameters: MotionParameters) -> _Weights:
+        """Precisions, and the part of the normal equations that they determine."""
+        place = 1.0 / (parameters.drift**2 * self.step)
+        turn = self._turn(parameters).precision / parameters.turn_rate**2
+        speed = self._speed.precision / parameters.acceleration**2
+        band = np.zeros((2 * STATES, self.count, STATES))
+        band[STATES, :-1, _X] = -place[:, None]
+        band[0, :-1, _X] += place[:, None]
+        band[0, 1:, _X] += place[:, None]
+        band[0, self.points, _X] += 1.0 / parameters.place_noise**2
+        band[0, 0] += _first_precision(parameters)
+        for precision, chain, first in ((turn, self._turn(parameters), _THETA), (speed, self._speed, _V)):
+            below = -precision @ chain.transition
+            before = -chain.transition.transpose(0, 2, 1) @ below
+            for row, column in itertools.product(range(precision.shape[1]), repeat=2):
+                band[STATES + row - column, :-1, first + column] += below[:, row, column]
+                if row >= column:
+                    band[row - column, :-1, first + column] += before[:, row, column]
+                    band[row - column, 1:, first + column] += precision[:, row, column]
+        return _Weights(place, turn, speed, band)
 
     def _turn(self, parameters: MotionParameters) -> Chain:
         if parameters.period not in self._turns:
@@ -253,69 +276,64 @@ class PathModel:
         scale += self._turn(parameters).log_scale + self._speed.log_scale + np.log(parameters.period)
         return float(scale - 2 * points * np.log(parameters.place_noise))
 
-    def _residuals(self, state: FloatArray, parameters: MotionParameters, weight: FloatArray) -> _Residuals:
+    def _residuals(self, state: FloatArray, parameters: MotionParameters, weights: _Weights) -> _Residuals:
         """Residuals; over a step with the turn Δθ the chord is shorter than the arc by 1 - Δθ²/24."""
         heading, speed = state[:, _THETA], state[:, _V]
         turn = np.diff(heading)
         middle = (heading[1:] + heading[:-1]) / 2.0
         mean_speed = (speed[1:] + speed[:-1]) / 2.0
         shortening = 1.0 - turn**2 / 24.0
-        cosine, sine = np.cos(middle), np.sin(middle)
-        chord = self.step * mean_speed * shortening
-        transition = np.empty((len(self.step), STATES))
-        transition[:, 0] = np.diff(state[:, 0]) - chord * cosine
-        transition[:, 1] = np.diff(state[:, 1]) - chord * sine
-        transition[:, _TURN] = state[1:, _TURN] - np.einsum(
-            "nij,nj->ni", self._turn(parameters).transition, state[:-1, _TURN]
-        )
-        transition[:, _SPEED] = state[1:, _SPEED] - np.einsum("nij,nj->ni", self._speed.transition, state[:-1, _SPEED])
+        direction = np.stack([np.cos(middle), np.sin(middle)], axis=1)
+        place = np.diff(state[:, _X], axis=0) - (self.step * mean_speed * shortening)[:, None] * direction
+        turns = state[1:, _TURN] - _times(self._turn(parameters).transition, state[:-1, _TURN])
+        speeds = state[1:, _SPEED] - _times(self._speed.transition, state[:-1, _SPEED])
+        pulls = _times(weights.turn, turns), _times(weights.speed, speeds)
         point = state[self.points, _X] - self.place
-        first = state[0]
-        misfit = np.einsum("ni,nij,nj->", transition, weight, transition) + np.sum(point**2) / parameters.place_noise**2
-        misfit += float(np.sum(_first_precision(parameters) * (first - _FIRST) ** 2))
-        return _Residuals(transition, point, turn, mean_speed, shortening, cosine, sine, 0.5 * float(misfit))
-
-    def _derivatives(self, residuals: _Residuals, parameters: MotionParameters) -> tuple[FloatArray, FloatArray]:
-        """Derivatives (n - 1, 7, 7) of the transitions by the state before and the state after."""
-        turn, cosine, sine = residuals.turn, residuals.cosine, residuals.sine
-        chord = self.step * residuals.mean_speed * residuals.shortening
-        by_turn = self.step * residuals.mean_speed * turn / 12.0
-        before = np.zeros((len(self.step), STATES, STATES))
-        after = np.zeros_like(before)
-        for axis, along, across in ((0, cosine, -sine), (1, sine, cosine)):
-            before[:, axis, axis], after[:, axis, axis] = -1.0, 1.0
-            before[:, axis, _THETA] = -(by_turn * along + 0.5 * chord * across)
-            after[:, axis, _THETA] = -(-by_turn * along + 0.5 * chord * across)
-            before[:, axis, _V] = after[:, axis, _V] = -0.5 * self.step * residuals.shortening * along
-        before[:, _TURN, _TURN] = -self._turn(parameters).transition
-        before[:, _SPEED, _SPEED] = -self._speed.transition
-        after[:, _TURN, _TURN], after[:, _SPEED, _SPEED] = np.eye(3), np.eye(2)
-        return before, after
+        misfit = weights.place @ np.sum(place**2, axis=1) + np.sum(turns * pulls[0]) + np.sum(speeds * pulls[1])
+        misfit += np.sum(point**2) / parameters.place_noise**2
+        misfit += np.sum(_first_precision(parameters) * (state[0] - _FIRST) ** 2)
+        return _Residuals(place, *pulls, point, turn, mean_speed, shortening, direction, 0.5 * float(misfit))
 
     def _normal_equations(
-        self, state: FloatArray, residuals: _Residuals, parameters: MotionParameters, weight: FloatArray
+        self, state: FloatArray, residuals: _Residuals, parameters: MotionParameters, weights: _Weights
     ) -> tuple[FloatArray, FloatArray]:
         """Lower banded matrix (14, 7 n) and gradient (n, 7) of the misfit."""
-        before, after = self._derivatives(residuals, parameters)
-        weighted_before, weighted_after = weight @ before, weight @ after
-        pull = np.einsum("nij,nj->ni", weight, residuals.transition)
-        diagonal, gradient = np.zeros((self.count, STATES, STATES)), np.zeros((self.count, STATES))
-        diagonal[:-1] += before.transpose(0, 2, 1) @ weighted_before
-        diagonal[1:] += after.transpose(0, 2, 1) @ weighted_after
-        gradient[:-1] += np.einsum("nji,nj->ni", before, pull)
-        gradient[1:] += np.einsum("nji,nj->ni", after, pull)
-        point_weight = 1.0 / parameters.place_noise**2
+        band, gradient = weights.band.copy(), np.zeros((self.count, STATES))
+        gradient[self.points, _X] = residuals.point / parameters.place_noise**2
+        gradient[0] += _first_precision(parameters) * (state[0] - _FIRST)
+        for part, chain, pull in (
+            (_TURN, self._turn(parameters), residuals.turn_pull),
+            (_SPEED, self._speed, residuals.speed_pull),
+        ):
+            gradient[1:, part] += pull
+            gradient[:-1, part] -= _times(chain.transition.transpose(0, 2, 1), pull)
+        by_turn = self.step * residuals.mean_speed * residuals.turn / 12.0
+        half_chord = 0.5 * self.step * residuals.mean_speed * residuals.shortening
+        one = np.ones(len(self.step))
         for axis in range(2):
-            diagonal[self.points, axis, axis] += point_weight
-        gradient[self.points, _X] += point_weight * residuals.point
-        first = _first_precision(parameters)
-        diagonal[0, range(STATES), range(STATES)] += first
-        gradient[0] += first * (state[0] - _FIRST)
-        band = np.zeros((2 * STATES, self.count * STATES))
-        rows, columns, lower, upper = self._band
-        band[rows[0], columns[0]] = diagonal[:, lower, upper]
-        band[rows[1], columns[1]] = (after.transpose(0, 2, 1) @ weighted_before).reshape(len(self.step), -1)
-        return band, gradient
+            along, across = residuals.direction[:, axis], (2 * axis - 1) * residuals.direction[:, 1 - axis]
+            by_speed = -0.5 * self.step * residuals.shortening * along
+            before = -one, -by_turn * along - half_chord * across, by_speed
+            after = one, by_turn * along - half_chord * across, by_speed
+            columns = axis, _THETA, _V
+            pull = weights.place * residuals.place[:, axis]
+            for column, earlier, later in zip(columns, before, after, strict=True):
+                gradient[:-1, column] += pull * earlier
+                gradient[1:, column] += pull * later
+            for row, column in itertools.product(range(3), repeat=2):
+                offset, left = columns[row] - columns[column], columns[column]
+                if row == column == 0:  # in the constant part
+                    continue
+                band[STATES + offset, :-1, left] += weights.place * after[row] * before[column]
+                if row >= column:
+                    band[offset, :-1, left] += weights.place * before[row] * before[column]
+                    band[offset, 1:, left] += weights.place * after[row] * after[column]
+        return band.reshape(2 * STATES, -1), gradient
+
+
+def _times(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Products (n, k) of matrices (n, k, k) and vectors (n, k)."""
+    return np.einsum("nij,nj->ni", matrices, vectors)
 
 
 _FIRST: Final = np.array([0.0, 0.0, 0.0, 0.0, 0.0, USUAL_SPEED[0], 0.0])
@@ -327,17 +345,3 @@ def _first_precision(parameters: MotionParameters) -> FloatArray:
     turn = parameters.turn_rate**-2
     rate = turn * (parameters.period / (2.0 * np.pi)) ** 2
     return np.array([0.0, 0.0, HEADING_PRECISION, turn, rate, USUAL_SPEED[1] ** -2, parameters.acceleration**-2])
-
-
-def _band_places(
-    count: int,
-) -> tuple[tuple[IntArray, IntArray], tuple[IntArray, IntArray], IntArray, IntArray]:
-    """Rows and columns in the banded matrix of the lower triangles of the diagonal blocks, and of the blocks below."""
-    lower, upper = np.tril_indices(STATES)
-    begin = STATES * np.arange(count)[:, None]
-    row, column = (indices.ravel() for indices in np.indices((STATES, STATES)))
-    rows = (
-        np.broadcast_to(lower - upper, (count, len(lower))),
-        np.broadcast_to(STATES + row - column, (count - 1, len(row))),
-    )
-    return rows, (begin + upper, begin[:-1] + column), lower, upper
