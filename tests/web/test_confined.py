@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 import os
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
@@ -26,36 +24,12 @@ from skisnow.web.widgets import _short
 from skisnow.web.words import typed_number
 from tests.coded import raises
 
+from .confined_work import dies, is_wrong, other_process, refuse, takes_memory, takes_time
 from .conftest import Served, fill
 from .test_day import create
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
-
-
-def other_process(word: str) -> tuple[str, int]:
-    return word, os.getpid()
-
-
-def refuse() -> None:
-    raise FieldDataError(["a row is missing"])
-
-
-def dies() -> None:
-    ctypes.string_at(0)
-
-
-def is_wrong() -> None:
-    raise ZeroDivisionError
-
-
-def takes_memory() -> int:
-    return len(bytearray(400_000_000))
-
-
-def takes_time() -> None:
-    while True:
-        time.sleep(0.01)
 
 
 def test_the_answer_and_the_errors_come_back() -> None:
