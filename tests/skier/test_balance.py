@@ -169,7 +169,7 @@ def skidded(slope: float, **keys: object) -> Run:
     return simulate(base.with_(course=Course(gates=gates), skier=skier, start=start))
 
 
-@pytest.mark.parametrize("keys", [{}, {"assumed_hardness": 0.63e9}])
+@pytest.mark.parametrize("keys", [{}, pytest.param({"assumed_hardness": 0.63e9}, marks=pytest.mark.slow)])
 def test_skidded_turns_brake_on_15_degrees_and_load_the_outer_ski(keys: dict[str, object]) -> None:
     """A carving skier gains 2 m/s a gate there. Commanded 65 % outside, with H_V assumed 3 times too high too."""
     run = skidded(15.0, **keys)

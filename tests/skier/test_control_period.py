@@ -25,7 +25,7 @@ def moments(run: Run, times: np.ndarray) -> np.ndarray:
     return run.place[rows]
 
 
-@pytest.mark.parametrize("method", ["fast", "default"])
+@pytest.mark.parametrize("method", ["fast", pytest.param("default", marks=pytest.mark.slow)])
 def test_outputs_do_not_change_a_skier_s_run(method: str) -> None:
     """A relative change of the start speed by 1e-9 moves the end of this run by 0.2 m: the runs must be the same."""
     changes = {"solver.method": method, "run.duration_s": 2.0}
@@ -72,7 +72,7 @@ def test_the_period_changes_the_run() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", ["fast", "default"])
+@pytest.mark.parametrize("method", ["fast", pytest.param("default", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ["slalom-20-gates", "giant-slalom-20-gates"])
 def test_all_gates_are_passed_and_ends_agree_with_all_outputs(name: str, method: str) -> None:
     runs = [run_with(output_ms, name, **{"solver.method": method}) for output_ms in (5.0, 10.0, 20.0)]

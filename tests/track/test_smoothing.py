@@ -239,7 +239,9 @@ def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
     assert found.length().value > found.length(with_heights=False).value
 
 
-@pytest.mark.parametrize("name", ["constant speed, noise 0.5 m", "varied speed, noise 0.5 m"])
+@pytest.mark.parametrize(
+    "name", ["varied speed, noise 0.5 m", pytest.param("constant speed, noise 0.5 m", marks=pytest.mark.slow)]
+)
 def test_intervals_contain_the_truth(name: str) -> None:
     """A short form of the benchmark: of 16 tracks chance leaves out at most 4 in 999 of 1000 cases."""
     found = estimates(replace(KINDS[name], duration=15.0), range(16))
