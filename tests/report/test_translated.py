@@ -12,7 +12,7 @@ from matplotlib.text import Text
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.messages import Message, in_language
-from skisnow.comparison import compare_tracks
+from skisnow.comparison import compare_tracks, comparison_dict
 from skisnow.identification import uncertainty as words
 from skisnow.identification.result import Identification
 from skisnow.report import identification as identify_report
@@ -22,10 +22,12 @@ from skisnow.report.campaign.page import DRAWERS
 from skisnow.report.figures.drawing import Drawing, Picture
 from skisnow.report.figures.style import journal_style, local_axes, site_styles
 from skisnow.report.formatting import days_words, figure_text
+from skisnow.report.pair_verdicts import run_verdict
 from skisnow.report.race import folder as gaps_report
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
 from skisnow.report.table import Column, record_table, table_html
+from skisnow.report.track.comparison_page import comparison_page
 from skisnow.report.track.report import comparison_drawing, track_drawings
 from skisnow.report.turn import page as turn_report
 from skisnow.report.turn.chain import TurnChain
@@ -269,8 +271,15 @@ def test_no_text_of_german_gaps_is_left_in_english() -> None:
     names = frozenset(NAMES)
 
     def page(language: str) -> str:
-        pictures = drawn(gaps_report._drawings(GAPS, NAMES), names, language)
-        return gaps_report.gaps_page(GAPS, NAMES, pictures, language=language)
+        pictures = drawn(gaps_report.gap_drawings(GAPS, NAMES), names, language)
+        way = np.linspace(0.0, 40.0, 300)
+        place = np.column_stack([way, 3.0 * np.sin(way / 5.0), 0.0 * way])
+        tracks = [
+            Track(name, way / speed, place, np.full(300, np.nan), "local", "made by hand")
+            for name, speed in zip(NAMES, (8.0, 9.0), strict=True)
+        ]
+        compared, verdict = comparison_dict(compare_tracks(*tracks)), run_verdict(*tracks)
+        return comparison_page(compared, pictures, verdict=verdict, gaps=GAPS, language=language)
 
     assert left(page, names, fewest=12) == set()
 

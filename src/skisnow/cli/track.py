@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +14,7 @@ from .output import Progress, announced, prepare_output, print_json, print_warni
 if TYPE_CHECKING:
     import argparse
 
+    from .._support.messages import Message
     from ..comparison import Comparison
     from ..track.course import Course, CourseResult
     from ..track.course.gates_table import GateGap
@@ -197,20 +196,19 @@ def compare(options: argparse.Namespace) -> int:
         )
     if options.out is not None:
         prepare_output(options.out)
-    comparison = _compared(options)
+    comparison, verdict = _compared(options)
     from ..comparison import comparison_dict
     from ..track.course.gates_table import gap_rows, read_gate_gaps
 
     gaps = read_gate_gaps(options.simulated, options.measured)
     answer = comparison_dict(comparison) | ({} if gaps is None else {"gates": gap_rows(gaps)})
     print_warnings(comparison.warnings)
-    text = json.dumps(answer, ensure_ascii=False, allow_nan=False, indent=1)
     if options.json:
-        print(text, flush=True)
+        print_json(answer)
     else:
         from ..report.track.summary import compare_summary
 
-        if verdict := _run_verdict(options):
+        if verdict is not None:
             print(f"{verdict}\n")
         print(compare_summary(answer), flush=True)
         if gaps is not None:
@@ -218,27 +216,28 @@ def compare(options: argparse.Namespace) -> int:
 
             print(f"\n{gaps_text(gaps, comparison.names)}", flush=True)
     if options.out is not None:
-        _write(options.out, comparison, text, options.language, gaps)
+        _write(options.out, comparison, answer, verdict, options.language, gaps)
     return 0
 
 
-def _compared(options: argparse.Namespace) -> Comparison:
+def _compared(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
     from ..comparison.alignment import require_offsets
 
     fit = _offsets(options)
     require_offsets(fit)
     with announced("reading the tracks and finding nearest places"):
         from ..comparison import compare_tracks
+        from ..report.pair_verdicts import read_compared, time_verdict
 
-        measured = _read(options.measured)
-        simulated = _read(options.simulated)
+        measured = read_compared(options.measured)
+        simulated = read_compared(options.simulated)
         if simulated.origin is not None and measured.origin is not None:
             simulated = simulated.at_origin(measured.origin)
         angle = None if options.slope_angle_deg is None else options.slope_angle_deg * DEGREE
         pairs = ((simulated, measured), (measured, simulated))
         tracks = [_in_slope(track, options, other.slope_angle if angle is None else angle) for track, other in pairs]
         time_from = options.time_from and options.time_from.replace("-", "_")
-        return compare_tracks(
+        compared = compare_tracks(
             *tracks,
             fit=fit,
             time_from=time_from,
@@ -246,43 +245,11 @@ def _compared(options: argparse.Namespace) -> Comparison:
             known_to=options.known_to_m,
             slope_angle=angle if options.fall_line_azimuth_deg is None else None,
         )
-
-
-def _run_verdict(options: argparse.Namespace) -> str | None:
-    """Sentence on the times of two computed runs; None where a track was measured."""
-    from ..report.pair_verdicts import run_verdict
-
-    first, other = (_read(path) for path in (options.simulated, options.measured))
-    return None if None in (first.slope_angle, other.slope_angle) else run_verdict(first, other)
+        return compared, time_verdict(simulated, measured)
 
 
 def _offsets(options: argparse.Namespace) -> list[str]:
     return [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
-
-
-def _read(path: Path) -> Track:
-    """A track under the name by which the user called it; that of a run with the angle of its slope."""
-    from ..track.read import read_track
-
-    file = path / "track.csv" if path.is_dir() else path
-    track = read_track(file)
-    angle = _slope_angle_of_run(file) if track.axes == "file" else None
-    return replace(track, name=str(path), slope_angle=angle)
-
-
-def _slope_angle_of_run(file: Path) -> float | None:
-    """Inclination (rad) of x and y of a run's track.csv, 0 on a profile or grid; None for another track."""
-    from .._support.errors import SkisnowError
-    from .._support.user_files import is_file, read_json
-
-    summary = file.with_name("summary.json")
-    if file.name != "track.csv" or not is_file(summary):
-        return None
-    try:
-        slope = read_json(summary)["scenario"]["slope"]
-        return float(slope["angle_deg"]) * DEGREE if slope["kind"] == "plane" else 0.0
-    except (SkisnowError, KeyError, TypeError, ValueError):  # another program's summary, or a damaged one
-        return None
 
 
 def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | None) -> Track:
@@ -297,16 +264,26 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
     )
 
 
-def _write(folder: Path, comparison: Comparison, text: str, language: str, gaps: tuple[GateGap, ...] | None) -> None:
+def _write(
+    folder: Path,
+    comparison: Comparison,
+    answer: dict[str, Any],
+    verdict: Message | None,
+    language: str,
+    gaps: tuple[GateGap, ...] | None,
+) -> None:
     from .._support.staging import staged, write_file
     from ..report.figures.figure_files import write_pictures
+    from ..report.formatting import json_text
     from ..report.race.folder import FILES, write_gaps
+    from ..report.track.comparison_page import comparison_page
     from ..report.track.report import comparison_drawing
 
     with staged(folder, last="compare.json") as stage:
         stage.stale += FILES
-        if gaps is not None:
-            write_gaps(gaps, comparison.names, stage.path, language=language)
-        write_file(stage.path / "compare.json", f"{text}\n")
-        write_pictures(map(comparison_drawing, [comparison]), stage.path, every=(), language=language)
+        pictures = [] if gaps is None else write_gaps(gaps, comparison.names, stage.path, language=language)
+        pictures += write_pictures(map(comparison_drawing, [comparison]), stage.path, every=(), language=language)
+        page = comparison_page(answer, pictures, verdict=verdict, gaps=gaps, language=language)
+        write_file(stage.path / "report.html", page)
+        write_file(stage.path / "compare.json", f"{json_text(answer)}\n")
     print(f"Figure: {folder / 'track_comparison.png'}, and as SVG, PDF, EPS and CSV", file=sys.stderr)

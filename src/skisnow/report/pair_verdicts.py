@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from .._support.errors import SkisnowError
 from .._support.messages import Message
+from .._support.units import DEGREE
+from .._support.user_files import is_file, read_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from ..track.track import Track
 
@@ -93,3 +98,29 @@ def run_verdict(first: Track, other: Track) -> Message | None:
         "scatter, so there is no interval; simulate --verify shows how exact each run is.",
         a=fast.name, b=slow.name, seconds=abs(one - two), length=length,
     )  # fmt: skip
+
+
+def read_compared(path: Path) -> Track:
+    """Track of a file, or of a run's folder with the angle of its slope, under the name by which the user called it."""
+    from ..track.read import read_track
+
+    file = path / "track.csv" if path.is_dir() else path
+    track = read_track(file)
+    return replace(track, name=str(path), slope_angle=_slope_angle_of_run(file) if track.axes == "file" else None)
+
+
+def _slope_angle_of_run(file: Path) -> float | None:
+    """Inclination (rad) of x and y of a run's track.csv, 0 on a profile or grid; None for another track."""
+    summary = file.with_name("summary.json")
+    if file.name != "track.csv" or not is_file(summary):
+        return None
+    try:
+        slope = read_json(summary)["scenario"]["slope"]
+        return float(slope["angle_deg"]) * DEGREE if slope["kind"] == "plane" else 0.0
+    except (SkisnowError, KeyError, TypeError, ValueError):  # another program's summary, or a damaged one
+        return None
+
+
+def time_verdict(first: Track, other: Track) -> Message | None:
+    """Which of two computed runs is faster; None if one of the tracks was measured."""
+    return None if None in (first.slope_angle, other.slope_angle) else run_verdict(first, other)

@@ -19,7 +19,7 @@ from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ..replay.run_file import RUN_FILE, replay_of_file
-from ..report.race.folder import gaps_of_folders
+from ..report.track.comparison_page import page_of_folders
 from ..ski import read_ski
 from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
 from .layout import plain_page
@@ -149,7 +149,7 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         try:
             page = confined(
-                BOUNDS, gaps_of_folders, runs.folder_of(run), runs.folder_of(ghost), language_of_request(request)
+                BOUNDS, page_of_folders, runs.folder_of(run), runs.folder_of(ghost), language_of_request(request)
             )
         except ParameterError as error:
             sentence = error.text(language_of_request(request))

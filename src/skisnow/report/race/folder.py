@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
-from ..._support.errors import ParameterError
-from ..._support.messages import ENGLISH, Message, in_language, local_number, outcome_words
+from ..._support.messages import ENGLISH, Message, local_number, outcome_words
 from ..._support.staging import write_file
 from ...racing import write_line
-from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv, read_gate_gaps
+from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv
 from ..figures.course import run_course
 from ..figures.drawing import FORMS
-from ..figures.figure_files import render_pictures, write_figure, write_pictures
+from ..figures.figure_files import write_figure, write_pictures
 from ..formatting import aligned_rows, html, json_text, prose
-from ..sheet import Header, Section, sheet
+from ..sheet import Section
 from ..table import Column, Table
 from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines, race_worth
 
@@ -98,8 +97,7 @@ def _write_gaps(worth: Worth, gates: Sequence[str], folder: Path, own: str) -> N
 
 
 GAPS_CSV: Final = "gate_gaps.csv"
-PAGE: Final = "report.html"
-FILES: Final = (GAPS_CSV, PAGE, *(f"gate_gaps.{form}" for form in FORMS))
+FILES: Final = (GAPS_CSV, *(f"gate_gaps.{form}" for form in FORMS))
 """Files that `write_gaps` can write."""
 _TIMES: Final = ("time_s", "other_time_s", "gap_s", "lost_s")
 
@@ -113,54 +111,29 @@ def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     return "\n".join([heading, *aligned_rows(rows), _result(gaps, names)])
 
 
-def write_gaps(gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, *, language: str = ENGLISH) -> None:
-    """Write gate_gaps.csv, the figure gate_gaps and report.html; the language applies to figure and page.
+def write_gaps(
+    gaps: tuple[GateGap, ...], names: tuple[str, str], folder: Path, *, language: str = ENGLISH
+) -> list[Picture]:
+    """Write gate_gaps.csv and the figure gate_gaps, whose picture is returned for the page.
 
     Raises
     ------
     OutputError
         A file cannot be written.
     """
-    pictures = write_pictures(_drawings(gaps, names), folder, every=(), language=language)
+    pictures = write_pictures(gap_drawings(gaps, names), folder, every=(), language=language)
     write_file(folder / GAPS_CSV, gaps_csv(gaps))  # the whole table, instead of the points that the figure shows
-    write_file(folder / PAGE, gaps_page(gaps, names, pictures, language=language))
+    return pictures
 
 
-def gaps_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
-    """HTML of the page that compares the runs of two folders; nothing is written.
-
-    Raises
-    ------
-    ParameterError
-        The runs have no gates in common.
-    """
-    gaps, names = read_gate_gaps(folder, other), (folder.name, other.name)
-    if gaps is None:
-        raise ParameterError(
-            "{first} and {second} did not go through the same gates: choose two runs on one course",
-            code="different_courses",
-            first=names[0],
-            second=names[1],
-        )
-    pictures = render_pictures(_drawings(gaps, names), language=language)
-    return gaps_page(gaps, names, pictures, language=language)
+def gaps_section(gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture]) -> Section:
+    """Section of a page with the time lost from gate to gate, in the current language."""
+    key = [html(_result(gaps, names))]
+    return Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[gaps_table(gaps, names)])
 
 
-def gaps_page(
-    gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture], *, language: str = ENGLISH
-) -> str:
-    """HTML of the page that compares two runs gate by gate."""
-    with in_language(language):
-        header = Header(
-            Message("Two runs through the same gates"),
-            Message("Gates of {run} against {other}", run=names[0], other=names[1]), [], headline=_headline(gaps),
-        )  # fmt: skip
-        key = [html(_result(gaps, names))]
-        section = Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[gaps_table(gaps, names)])
-        return sheet(header, [section])
-
-
-def _drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:
+def gap_drawings(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Iterator[Drawing]:
+    """Figure of the time lost from gate to gate, if both crossed a gate."""
     if _crossed_by_both(gaps):
         yield gate_gaps_drawing(gaps, names)
 
@@ -191,7 +164,8 @@ def _gap_cell(name: str, value: Any) -> str | None:
     return None if text is None else local_number(text)
 
 
-def _headline(gaps: tuple[GateGap, ...]) -> Markup:
+def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
+    """Gap at the last gate that both crossed; empty without one."""
     crossed = _crossed_by_both(gaps)
     if not crossed:
         return Markup("")

@@ -94,7 +94,7 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
         _select("ghost", Message("Laid over it, translucent"), {NONE: NONE, **titles}, other)
         _select("track", Message("Measured track next to it"), {name: name for name in (NONE, *tracks)}, track or NONE)
         submit_button(Message("Watch together"), kind="main")
-        submit_button(Message("Compare times at gates"), address=GATES)
+        submit_button(Message("Compare tracks and times"), address=GATES)
 
 
 def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:

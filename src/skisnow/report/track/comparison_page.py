@@ -1,0 +1,91 @@
+"""Page that compares two tracks or runs: verdict, distances, and the time lost from gate to gate."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..._support.messages import ENGLISH, Message, in_language
+from ...comparison import compare_tracks, comparison_dict
+from ...track.course.gates_table import read_gate_gaps
+from ..figures.figure_files import render_pictures
+from ..formatting import html
+from ..pair_verdicts import read_compared, time_verdict
+from ..race.folder import gap_drawings, gaps_headline, gaps_section
+from ..sheet import Header, Section, sheet
+from ..table import Column, Table
+from .report import comparison_drawing
+from .summary import TITLES, track_verdict
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from typing import Any
+
+    from ...track.course.gates_table import GateGap
+    from ..figures.drawing import Picture
+
+
+def comparison_page(
+    comparison: Mapping[str, Any],
+    pictures: Sequence[Picture],
+    *,
+    verdict: Message | None = None,
+    gaps: tuple[GateGap, ...] | None = None,
+    language: str = ENGLISH,
+) -> str:
+    """HTML of the page.
+
+    Parameters
+    ----------
+    comparison
+        Contents of `skisnow.comparison.comparison_dict`.
+    pictures
+        Pictures of the tracks, and of the gates.
+    verdict
+        Verdict on the times of two computed runs (default: none).
+    gaps
+        Time lost from gate to gate (default: no gates in common).
+    language
+        Language of the page (en, de).
+    """
+    names = comparison["simulated"]["name"], comparison["measured"]["name"]
+    with in_language(language):
+        measured = comparison["nearest"]["rms_m"] is not None
+        key = [html(text) for text in (verdict, track_verdict(comparison) if measured else None) if text]
+        of_gates = [picture for picture in pictures if picture.name == "gate_gaps"]
+        tracks = [picture for picture in pictures if picture.name != "gate_gaps"]
+        sections = [
+            Section("tracks", Message("Tracks"), key=key, pictures=tracks, tables=[_distances_table(comparison)]),
+        ]
+        if gaps is not None:
+            sections.insert(0 if not measured else 1, gaps_section(gaps, names, of_gates))
+        title = Message("{run} compared with {other}", run=names[0], other=names[1])
+        headline = (gaps_headline(gaps) if gaps is not None else "") or next(iter(key), "")
+        return sheet(Header(Message("Two tracks"), title, [], headline=headline), sections)
+
+
+def _distances_table(comparison: Mapping[str, Any]) -> Table:
+    keys = (("max_m", Message("Maximum")), ("mean_m", Message("Mean")), ("rms_m", Message("Root mean square")))
+    columns = (
+        Column("definition", Message("Distance at"), "text"),
+        *(Column(key, words, unit="m") for key, words in (*keys, ("compared_m", Message("Compared length")))),
+    )
+    rows = [
+        (title, *(comparison[kind][column.key] for column in columns[1:]))
+        for kind, title in TITLES.items()
+    ]  # fmt: skip
+    exact = comparison["known_to_m"]
+    note = Message("A place is known to {exact:g} m.", exact=exact) if exact else ""
+    return Table("distances", Message("Distances between the tracks."), columns, rows, note=note)
+
+
+def page_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
+    """HTML of the page that compares the runs of two folders; nothing is written."""
+    first, second = (replace(read_compared(path), name=path.name) for path in (folder, other))
+    comparison, gaps = compare_tracks(first, second), read_gate_gaps(folder, other)
+    pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
+    if gaps is not None:
+        pictures += render_pictures(gap_drawings(gaps, comparison.names), language=language)
+    verdict = time_verdict(first, second)
+    return comparison_page(comparison_dict(comparison), pictures, verdict=verdict, gaps=gaps, language=language)
