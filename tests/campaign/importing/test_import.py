@@ -97,6 +97,13 @@ def test_everyday_workbook_needs_no_answer() -> None:
     assert proposal.files["original/Hang.xlsx"] == bytes_of(everyday()) or proposal.files["original/Hang.xlsx"]
 
 
+def test_sheet_named_like_a_table_is_imported_once() -> None:
+    book = everyday()
+    book["Hang oben"].title = "shear"
+    proposal = propose(FILE, bytes_of(book), Answers(site={"shear": "Hang oben"}))
+    require_right(proposal)
+
+
 def _set(sheet: str, cell: str, value: Any) -> Callable[[Workbook], None]:
     def change(book: Workbook) -> None:
         book[sheet][cell] = value

@@ -78,7 +78,7 @@ def unfolded(files: CampaignFiles) -> UnfoldedFiles:
     workbooks = UnfoldedFiles(files)
     names = files.names()
     for name in sorted(names):
-        if names[name] and is_workbook(name):
+        if names[name] and "/" not in name and is_workbook(name):
             _read_workbook(workbooks, name)
     for name in sorted(set(names) & set(workbooks.of_sheets)):
         workbooks.of_sheets.pop(name)
