@@ -1,6 +1,6 @@
-"""The source files that one value of a scenario file passes on its way to the compiled core.
+"""The source files that a value passes: of a scenario file to the compiled core, of a typed reading to its hardness.
 
-The scenario is read and run with an unusual number. A file counts when one of its frames holds that number, in the
+The value is an unusual number. A file counts when one of its frames holds that number, in the
 unit of the file or in SI, in a local variable or in a field of one (three levels deep).
 """
 
@@ -14,7 +14,11 @@ from typing import Any
 import numpy as np
 
 from skisnow import load_scenario, simulate
+from skisnow.campaign.store import Journals, Store, campaign_in_memory, replay_journal
+from skisnow.estimation.result_rows import experiment_hardness
 from skisnow.scenario import scenario_text
+
+from .campaign.store.test_journal import TOML, reading
 
 FILE_VALUE = 0.2012345
 """H_V in N/mm³; close to that of the scenario below, so that the run is sound."""
@@ -82,3 +86,23 @@ def test_hardness_passes_few_files_on_its_way_to_the_core(tmp_path: Path) -> Non
     passed = files_passed(lambda: simulate(load_scenario(path)), (FILE_VALUE, FILE_VALUE * 1e9))
     assert {"scenario/resolution.py", "contact/snow_contact.py"} <= passed.keys()
     assert len(passed) <= 15, passed
+
+
+TYPED_MM = 1.234567
+
+
+def test_a_typed_reading_passes_few_files_on_its_way_to_the_hardness(tmp_path: Path) -> None:
+    """From the entry that the lab stores; the files after `estimation/hardness.py` do not count."""
+    journals = Journals(Store.open(tmp_path / "store.sqlite3"))
+    id_ = journals.begin(TOML)
+
+    def enter_and_estimate() -> None:
+        for position, depth in enumerate((0.7, TYPED_MM, 1.9)):
+            seen = journals.entries(id_)[-1].sequence if position else 0
+            journals.append(id_, reading("1", position, str(20 * (position + 1)), str(depth)), seen=seen)
+        experiment_hardness(campaign_in_memory(replay_journal(journals.entries(id_))))
+
+    passed = list(files_passed(enter_and_estimate, (TYPED_MM, TYPED_MM * 1e-3)))
+    before = passed[: passed.index("estimation/hardness.py") + 1]
+    assert "campaign/store/journal.py" in before
+    assert len(before) <= 22, before
