@@ -14,6 +14,8 @@ from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any, Final, NamedTuple
 
+from .small_figure import SmallFigure
+
 MM: Final = 1e-3
 """Metres in a millimetre."""
 MM2: Final = 1e-6
@@ -151,6 +153,14 @@ class Shown:
     def _facts(self) -> Facts:
         raise NotImplementedError
 
+    def _values(self) -> Facts:
+        """Title and rows of a notebook's table, where a row may have a value that the text has in its title."""
+        return self._facts()
+
+    def _small_figure(self) -> SmallFigure | None:
+        """Figure below a notebook's table; None without one."""
+        return None
+
     def __repr__(self) -> str:
         """Title and rows, below ten lines."""
         title, rows = self._facts()
@@ -163,17 +173,19 @@ class Shown:
         return "\n".join([_cut(head), *(_cut(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
 
     def _repr_html_(self) -> str:
-        """The same as a table, which a notebook shows."""
+        """The same as a table with a small figure, which a notebook shows."""
         from html import escape
 
-        title, rows = self._facts()
+        title, rows = self._values()
         caption = escape(f"{type(self).__name__} {title}".strip())
         cells = "".join(
             f'<tr><th scope="row" style="text-align:left">{escape(name)}</th>'
             f'<td style="text-align:left">{escape(text)}</td></tr>'
             for name, text in _few(rows)
         )
-        return f'<table><caption style="text-align:left">{caption}</caption>{cells}</table>'
+        figure = self._small_figure()
+        drawn = "" if figure is None else figure.svg()
+        return f'<table><caption style="text-align:left">{caption}</caption>{cells}</table>{drawn}'
 
 
 class ShownFields(Shown):

@@ -12,6 +12,7 @@ import numpy as np
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.small_figure import SmallFigure
 from .._support.units import MM, Facts, Shown, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
@@ -213,6 +214,11 @@ class Equilibrium(Shown):
             ("warnings", str(len(self.warnings))),
         )
         return Facts(self.outcome.replace("_", " "), rows)
+
+    def _small_figure(self) -> SmallFigure | None:
+        depth = self.edge_depth
+        lines = () if depth is None else [(self.station[depth > 0.0], depth[depth > 0.0] / MM)]
+        return SmallFigure("station (m), tip at the right", "edge depth (mm)", lines)
 
 
 def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:

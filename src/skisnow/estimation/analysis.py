@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.units import Facts, Shown, amount, span
+from .._support.small_figure import SmallFigure
+from .._support.units import MM, Facts, Shown, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..snow import SnowProperties
@@ -211,6 +212,12 @@ class Analysis(Shown):
             ("sites", ", ".join(dict.fromkeys(row.site for row in self.site_means)) or "none"),
         ]
         return Facts(f"of {self.campaign.name!r}", tuple(rows))
+
+    def _small_figure(self) -> SmallFigure | None:
+        tests = self.campaign.penetration
+        if tests is None:
+            return None
+        return SmallFigure("depth (mm)", "load (N)", [(tests.penetration_depth / MM, tests.load)], points=True)
 
 
 def _own(mean: OwnValue, unit: str) -> str:

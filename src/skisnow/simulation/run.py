@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
+from .._support.small_figure import SmallFigure
 from .._support.units import DEGREE, MM, Facts, Shown, amount, field_facts, name_with_values, span
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
@@ -318,6 +319,10 @@ class Run(Shown):
             ("computed in", f"{self.steps} steps, {amount(self.wall_s, 's')}"),
         )
         return Facts(self.outcome.replace("_", " "), rows)
+
+    def _small_figure(self) -> SmallFigure:
+        x, y = self.place[:, 0], self.place[:, 1]
+        return SmallFigure("down the fall line (m)", "to the left (m)", [(x, y)], equal=True)
 
     @property
     def speed(self) -> FloatArray:

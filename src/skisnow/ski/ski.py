@@ -13,7 +13,8 @@ import numpy.typing as npt
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import Facts, Shown
+from .._support.small_figure import SmallFigure
+from .._support.units import Facts, Shown, amount
 from ..parameters import APART
 from .checks import (
     STRAIGHT,
@@ -188,6 +189,21 @@ class Ski(Shown):
         widths = "-".join(f"{width * 1e3:.4g}" for width in self.sidecut_widths)
         radius = f"radius of the side line {self.sidecut_radius_of_edge_line:.4g} m"
         return Facts(f"{self.name!r}: {self.length:.4g} m, {widths} mm, {radius}, {self.mass:.4g} kg")
+
+    def _values(self) -> Facts:
+        middle = int(np.argmin(np.abs(self.station)))
+        rows = (
+            ("length", amount(self.length, "m")),
+            ("widths", f"{'-'.join(f'{width * 1e3:.4g}' for width in self.sidecut_widths)} mm"),
+            ("radius of the side line", amount(self.sidecut_radius_of_edge_line, "m")),
+            ("EI at the boot", amount(float(self.bending_stiffness[middle]), "N m²")),
+            ("GJ at the boot", amount(float(self.torsional_stiffness[middle]), "N m²")),
+            ("mass", amount(self.mass, "kg")),
+        )
+        return Facts(repr(self.name), rows)
+
+    def _small_figure(self) -> SmallFigure:
+        return SmallFigure("station (m), tip at the right", "width (mm)", [(self.station, self.width * 1e3)])
 
     @property
     def length(self) -> float:

@@ -7,6 +7,7 @@ from typing import Annotated, Final, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .._support.small_figure import SmallFigure
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount, span
 from ..parameters import Quantity, Search, Word, require_declared
 
@@ -127,6 +128,21 @@ class SnowProperties(Shown):
 
     def _facts(self) -> Facts:
         return Facts(self.in_words)
+
+    def _values(self) -> Facts:
+        rows = (
+            ("H_V", _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")),
+            ("S_f", _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")),
+            ("k_u/H_V", _with_interval(self.unloading_ratio, self.unloading_ratio_interval, 1.0, "")),
+            ("u_y", _with_interval(self.shear_displacement, self.shear_displacement_interval, MM, "mm")),
+        )
+        return Facts(self.source, rows)
+
+    def _small_figure(self) -> SmallFigure:
+        depths = (0.0, 10.0)
+        hardnesses = (self.snow_hardness, *(self.snow_hardness_interval or ()))
+        lines = [(depths, [hardness / N_PER_MM3 * depth for depth in depths]) for hardness in hardnesses]
+        return SmallFigure("depth (mm)", "pressure (N/mm²)", lines)
 
 
 def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:
