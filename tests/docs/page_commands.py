@@ -18,7 +18,7 @@ FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "da
 BLOCK = re.compile(r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
 MARK = re.compile(r"<!-- (?P<kind>not run|needs): (?P<reason>[\w ]+) -->")
 REASONS = {"server", "scheduler", "package index", "other checks"}
-PACKAGES = {"mujoco", "exudyn"}
+PACKAGES = {"fmpy", "mujoco", "exudyn"}
 """Reasons of a mark, and packages without which a block cannot be run."""
 
 
