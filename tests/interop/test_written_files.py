@@ -193,6 +193,7 @@ def test_readings_are_si_and_belong_to_their_experiment(written: Any) -> None:
     np.testing.assert_allclose(values["penetration_test_edge_angle"], [0.0, np.pi / 4.0])
     np.testing.assert_allclose(values["shear_test_lever_arm"], [0.25])
     np.testing.assert_allclose(values["shear_test_snow_density"], [410.0])
+    assert written.variables["shear_test_snow_density"].standard_name == b"snow_density"
 
 
 def test_absent_numbers_are_missing_and_texts_are_kept(written: Any) -> None:

@@ -209,6 +209,8 @@ def _write(file: Any, variable: _Variable) -> None:
         written[:] = np.frombuffer(b"".join(text.ljust(length, b"\0") for text in encoded), "S1").reshape(-1, length)
         written._Encoding = b"utf-8"
     written.long_name = variable.meaning.encode("utf-8")
+    if variable.name.endswith("_snow_density"):  # CF names no other of these quantities
+        written.standard_name = b"snow_density"
     if variable.units:
         written.units = variable.units.encode("ascii")
     if variable.sample_of:
