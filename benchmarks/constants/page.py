@@ -31,13 +31,19 @@ PARTS_AT_1_DEGREE: Final = (
     (2.5, 27.584, 27.754, 27.742),
 )
 """Length of a part, and the end (m): as it is, with the history followed again, and with vertices, too."""
-NOT_RUN: Final = "not varied yet"
-"""The reason of those that the runs have not come to."""
+SKID_BY_TOLERANCE: Final = (
+    ("none", "33.945, 19.986", "33.937, 19.992"),
+    ("`DOWN`", "34.000, 20.011", "34.035, 20.037"),
+    ("`MILNE`", "34.010, 20.013", "34.072, 20.053"),
+    ("`SAFETY`", "33.956, 20.000", "33.963, 20.004"),
+    ("`UP`", "34.003, 20.010", "34.056, 20.044"),
+)
+"""Halved constant of the step control, and the end of the skid (m) with the default tolerance and a tenth of it."""
 
 
 def reasons_by_key(reasons: Reasons) -> dict[str, str]:
-    """The reason of each key, but for those that are not varied yet."""
-    return {key: reason for reason, keys in reasons.items() if reason != NOT_RUN for key in keys}
+    """The reason of each key."""
+    return {key: reason for reason, keys in reasons.items() for key in keys}
 
 
 def page(found: Sequence[Constant], moved: Sequence[Moved], reasons: Reasons) -> str:
@@ -64,9 +70,22 @@ def _head(count: int, varied: int) -> Iterator[str]:
     ways = ", ".join(f"{way} mm ({case})" for case, way in BY_S_F.items())
     yield "In mm on the slope; another outcome where the run does not end as it did. The default method's own error is"
     yield f"7 mm after 46 m. A change of S_f by 0.1 % moves ends by {ways}. A constant of the solver should not move"
-    yield "them by more than the larger of both. `MARGIN`, `MILNE`, `MOST_TURN`, `PART_ACROSS`, `PART_ALONG`, `SLOW`"
-    yield "and `UP` do; `SLIPPING`, a share, if no edge counts as slipping (× 2). Shape, snow and skier may."
-    yield "`KNOT_AREA` moves nothing here, because a run takes it from `solver.groove_tolerance`."
+    yield "them by more than the larger of both. These do:"
+    yield ""
+    yield "* Steps: `DOWN`, `MILNE`, `SAFETY`, `UP` and `SLOW`. Lines and parts: `MARGIN`, `MOST_TURN`, `STEEP`,"
+    yield "  `PART_ACROSS` and `PART_ALONG`; `SLIPPING`, a share, if no edge counts as slipping (× 2)."
+    yield "* `ELEMENTS` in the skid: it is the key `solver.elements`. `SHEAR_DISPLACEMENT`, `CLAMP_LENGTH` and"
+    yield "  `CAMBER_ROUNDING` are keys of snow, scenario and ski. Other constants of `ski` are shape."
+    yield "* `KNOT_AREA` and `TOLERANCE` move nothing here: a run takes them from `solver.groove_tolerance` and"
+    yield "  `solver.tolerance_mm`."
+    yield ""
+    yield "**Tighter steps do not reduce this.** End of the skid (m):"
+    yield ""
+    yield "| halved | default tolerance | a tenth of it |\n| --- | --- | --- |"
+    yield from (f"| {' | '.join(row)} |" for row in SKID_BY_TOLERANCE)
+    yield ""
+    yield "An error of the steps would fall with the tolerance. These distances grow up to twofold, so they come from"
+    yield "what the steps press: the history between the end that is extrapolated and the end that is found."
     yield ""
     yield from _parts()
 

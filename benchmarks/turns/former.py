@@ -101,16 +101,18 @@ def _numbers(name: str, place: Path) -> list[float]:
 
 
 def print_ends(folder: Path) -> None:
-    """Print a Markdown table of the ends of built-in scenarios with both builds, by the default method."""
+    """Print a Markdown table of the ends of built-in scenarios with both builds, and write it for the page."""
     places = (build(COMMIT, folder / COMMIT), ROOT / "src")
-    print(f"| scenario | {COMMIT} (m) | now (m) | moved by (m) | outcome |")
-    print("| --- | --- | --- | ---: | --- |")
+    lines = [f"| scenario | {COMMIT} (m) | now (m) | moved by (m) | outcome |", "| --- | --- | --- | ---: | --- |"]
+    print(*lines, sep="\n")
     for file in sorted((places[0] / "skisnow/scenario/catalogue").glob("*.toml")):
         rows = [_numbers_and_outcome(file.stem, {}, place) for place in places]
         ends = [row[4:6] for row in rows]
         outcomes = " → ".join(dict.fromkeys(row[-1].replace("_", " ") for row in rows))
         cells = " | ".join(f"{x:.3f}, {y:.3f}" for x, y in ends)
-        print(f"| `{file.stem}` | {cells} | {math.dist(*ends):.3f} | {outcomes} |", flush=True)
+        lines.append(f"| `{file.stem}` | {cells} | {math.dist(*ends):.3f} | {outcomes} |")
+        print(lines[-1], flush=True)
+    write_tables("benchmarks", {"ends": lines})
 
 
 def _numbers_and_outcome(scenario: str, changes: Mapping[str, object], place: Path) -> list[Any]:

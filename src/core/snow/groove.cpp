@@ -103,7 +103,7 @@ double triangle(const Ground& ground, int i, int j, int k) {
   return 0.5 * std::fabs((y[j] - y[i]) * (g[k] - g[i]) - (y[k] - y[i]) * (g[j] - g[i]));
 }
 
-constexpr double ALIKE = 1.0 + 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are alike but for rounding
+constexpr double ALIKE = 1e-4, TINY_AREA = 1e-24;  // (m²): of areas that are alike but for rounding
 
 }  // namespace
 
@@ -204,7 +204,7 @@ void Ground::simplify(double area, int most) {
   double size[ROOM];
   for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
   while (count > 2) {
-    const double least = *std::min_element(size + 1, size + count - 1), alike = least * ALIKE + TINY_AREA;
+    const double least = *std::min_element(size + 1, size + count - 1), alike = least * (1.0 + ALIKE) + TINY_AREA;
     if (least > area && count <= most) break;
     int first = 1, last = count - 2;
     while (size[first] > alike) first++;
