@@ -66,6 +66,7 @@ def test_units_come_from_the_names() -> None:
         "unloading_ratio",
         "delayed_share",
         "mu_0",
+        "liquid_water_percent",
         "damping_ratio",
         "groove_tolerance",
         "transverse_friction",

@@ -77,7 +77,7 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
             assert load_input(name).values[full] == SCENARIO_KEYS[full].default
     left_out = {"elements", "line_spacing_mm", "footprint_stiffness_N_per_mm2", "camber_rounding_mm"}
     left_out |= {"snow_density_kg_per_m3", "dynamic_shear_strength_N_per_mm2"}  # of laws other than the default
-    left_out |= {"layer_depth_mm", "lower_H_V_N_per_mm3"}
+    left_out |= {"layer_depth_mm", "lower_H_V_N_per_mm3", "law_file", "temperature_C", "liquid_water_percent"}
     given = {line.split(" = ")[0] for line in lines}
     assert not left_out & given  # from ski and snow
     absent = ("course.",) if "\n[skier]\n" in scenario_text(name) else ("course.", "skier.")

@@ -56,6 +56,7 @@ class PhotoCellTimes:
 
     def __post_init__(self) -> None:
         scenario = self.scenario.scenario
+        scenario.contact.require_linear_friction()
         self._line = slope_line(scenario.slope, scenario.start.x)
         self._skis = 2.0 * scenario.ski.mass
         stated = {run.time_sd is not None for run in self.cells.runs}

@@ -84,6 +84,7 @@ class PointRacer:
                 "a point races on a plane; the scenario has a profile or a grid. Use the skier", code="not_supported"
             )
         ski, air, contact = scenario.ski, scenario.air, scenario.contact
+        contact.require_linear_friction()
         return cls(
             slope_angle=scenario.slope.angle,
             mass=scenario.sledge.mass + 2.0 * ski.mass,

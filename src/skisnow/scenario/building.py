@@ -11,6 +11,7 @@ from typing import Any
 from .._support.errors import ParameterError, most_like
 from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
+from ..forces.friction import read_friction_file
 from ..parameters import Word, changed, made, nearest, values_of
 from ..ski import Ski, read_ski, ski_names
 from ..ski.ski_file import Sources
@@ -26,6 +27,7 @@ from .slope import Plane, read_profile
 from .snow_map import SnowMap
 from .terrain import Slope, read_terrain
 
+LAW_FILE = "friction.law_file"
 SNOW_CHOICES = "Give snow.H_V_N_per_mm3 and snow.S_f_N_per_mm2, or snow.results, or snow.published"
 
 
@@ -39,7 +41,7 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     """
     values = dict(resolution.values)
     for name, key in SCENARIO_KEYS.items():
-        if key.needed:
+        if key.needed and not (name == "friction.mu_0" and LAW_FILE in values):
             _require(values, name, Message("It has no default"))
     ski, ski_warnings = _ski(resolution, sources)
     slope = _slope(resolution)
@@ -160,6 +162,9 @@ def _contact(resolution: Resolution) -> Contact:
     measured: dict[str, Any] = {"unloading_ratio": snow.unloading_ratio if ratio is None else ratio}
     if snow.shear_displacement is not None:
         measured["shear_displacement"] = snow.shear_displacement
+    if LAW_FILE in values:
+        law = read_friction_file(resolution.files[LAW_FILE])
+        measured |= {"friction_law": law, "friction": values.get("friction.mu_0", 0.0)}
     return made(Contact, values, snow=snow, snow_map=resolution.snow_map, **measured)
 
 

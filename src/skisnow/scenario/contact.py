@@ -7,12 +7,14 @@ from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from ..forces.friction import FrictionFile, FrictionLaw, LinearFriction
 from ..forces.friction.load import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
-from ..parameters import Condition, Quantity, Search, Section, Word, declared_text, require_declared
+from ..parameters import APART, Condition, Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
+from ..snow.measured_range import without_range_warnings
 from .snow_map import SnowMap
 
 Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
@@ -27,6 +29,10 @@ def _penetration(unloading_ratio: float) -> Penetration:
 
 def _map_source(snow_map: SnowMap | None) -> str | None:
     return None if snow_map is None else snow_map.source
+
+
+def _law_path(law: FrictionFile | None) -> str | None:
+    return None if law is None else law.path
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -51,6 +57,9 @@ class Contact:
         c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
     friction, friction_by_speed, friction_acts_on, friction_direction
         μ = μ_0 + μ_1 v: μ_0 ≥ 0, and μ_1 (s/m); the load that it multiplies, and the direction of the force.
+    friction_law, temperature, liquid_water
+        μ over speed and snow instead of μ_0 and μ_1, which are 0 then; temperature of the snow's surface (°C), None:
+        not known; liquid water (% of the volume), None: dry.
 
     See Also
     --------
@@ -225,6 +234,39 @@ class Contact:
             origin="Coulomb's law; the paper's turns had friction along the ski",
         ),
     ] = "vector"
+    friction_law: Annotated[
+        FrictionFile | None,
+        APART,
+        Word(
+            "friction.law_file",
+            "TOML file of μ over speed, temperature and liquid water, in place of μ_0 and μ_1",
+            word_of=_law_path,
+            names_file=True,
+            label=Message("file of the friction over the snow's state"),
+        ),
+    ] = None
+    temperature: Annotated[
+        float | None,
+        Quantity(
+            "friction.temperature_C",
+            "temperature of the snow's surface, for friction.law_file",
+            label=Message("snow temperature"),
+            lowest=-60.0,
+            highest=0.0,
+            origin="none; a law file with temperatures needs it",
+        ),
+    ] = None
+    liquid_water: Annotated[
+        float | None,
+        Quantity(
+            "friction.liquid_water_percent",
+            "liquid water in the volume of wet snow, for friction.law_file",
+            label=Message("liquid water of the snow (%)"),
+            lowest=0.0,
+            highest=50.0,
+            origin="none: dry snow; goes with friction.law_file and 0 °C",
+        ),
+    ] = None
     snow_map: Annotated[
         SnowMap | None,
         Word(
@@ -256,6 +298,7 @@ class Contact:
             raise ParameterError(
                 "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none", code="contradiction"
             )
+        self._require_one_friction()
         if not self.is_layered:
             return
         if self.snow_map is not None and self.snow_map.hardness is not None:
@@ -268,6 +311,50 @@ class Contact:
             raise ParameterError(
                 "layers of snow cannot be combined with snow.damping_N_s_per_mm3 or snow.delayed_share. Remove one",
                 code="contradiction",
+            )
+
+    def _require_one_friction(self) -> None:
+        if self.friction_law is None:
+            if self.temperature is not None or self.liquid_water is not None:
+                raise ParameterError(
+                    "friction.temperature_C and friction.liquid_water_percent go with friction.law_file. Add it, or "
+                    "remove them",
+                    code="contradiction",
+                )
+        elif self.friction != 0.0 or self.friction_by_speed != 0.0:
+            raise ParameterError(
+                "friction.law_file gives μ. Set friction.mu_0 and friction.mu_1_s_per_m to 0", code="contradiction"
+            )
+        else:
+            self.friction_law.at(self.temperature, self.liquid_water or 0.0)
+
+    @property
+    def glide_friction(self) -> FrictionLaw:
+        """μ over the speed."""
+        with without_range_warnings():  # a scenario has its own words for friction that is unlikely
+            if self.friction_law is not None:
+                return self.friction_law.at(self.temperature, self.liquid_water or 0.0)
+            return LinearFriction(friction_at_rest=self.friction, friction_slope=self.friction_by_speed)
+
+    def friction_at(self, speed: float) -> float:
+        """μ at a speed (m/s)."""
+        if self.friction_law is not None:
+            return float(self.glide_friction.coefficient(speed))
+        return self.friction + self.friction_by_speed * speed  # may be below 0
+
+    def require_linear_friction(self) -> None:
+        """Reject a law file where μ_0 and μ_1 are all that is used.
+
+        Raises
+        ------
+        ParameterError
+            The scenario has a law file.
+        """
+        if self.friction_law is not None:
+            raise ParameterError(
+                "this computation has μ = μ_0 + μ_1 v. Give friction.mu_0 and friction.mu_1_s_per_m instead of "
+                "friction.law_file",
+                code="not_supported",
             )
 
     @property

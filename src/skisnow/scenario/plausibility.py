@@ -116,8 +116,8 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
         SNOW_HARDNESS.warn_outside(contact.snow.snow_hardness, ABOUT)
         FAILURE_SHEAR_STRESS.warn_outside(contact.snow.failure_shear_stress or math.nan, ABOUT)
         PENETRATION_EDGE_ANGLE.warn_outside(abs(scenario.sledge.edge_angle), ABOUT)
-        if contact.friction > 0.0:  # 0 is friction switched off
-            GLIDE_FRICTION.warn_outside(contact.friction + contact.friction_by_speed * scenario.start.speed, ABOUT)
+        if contact.friction > 0.0 or contact.friction_law is not None:  # 0 is friction switched off
+            GLIDE_FRICTION.warn_outside(contact.friction_at(scenario.start.speed), ABOUT)
         if scenario.air.drag_area > 0.0:
             DRAG_AREA.warn_outside(scenario.air.drag_area, ABOUT)
     return [warning.message.message for warning in caught if isinstance(warning.message, RangeWarning)]

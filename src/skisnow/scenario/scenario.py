@@ -216,7 +216,7 @@ class Scenario(Shown):
             clamp_length=self.clamp_length,
             start=self.start,
             shear=self.shear,
-            friction=self.contact.friction + self.contact.friction_by_speed * self.start.speed,
+            friction=self.contact.friction_at(self.start.speed),
         )
         if self.course is not None and self.course.axes != "metres":
             object.__setattr__(self, "course", course_on_slope(self.course, self.slope))
@@ -264,6 +264,8 @@ class Scenario(Shown):
         slope = amount(self.slope.angle / DEGREE, "°") if isinstance(self.slope, Plane) else repr(self.slope)
         end = [(self.stop.duration, "s"), (self.stop.length, "m")]
         friction = f"μ = {amount(contact.friction)} + {amount(contact.friction_by_speed, 's/m')} v"
+        if contact.friction_law is not None:
+            friction = f"μ of {contact.friction_law.source}"
         rows = (
             ("slope", slope),
             (

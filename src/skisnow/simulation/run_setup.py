@@ -15,13 +15,11 @@ from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
 from ..dynamics.motion import LONGEST_STEP, DynamicsState
-from ..forces.friction import LinearFriction
 from ..geometry.surfaces import Grid
 from ..scenario import Plane, Scenario, SnowMap, Solver
 from ..scenario.terrain import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam import clamped
 from ..skier import BalancedSkier
-from ..snow.measured_range import without_range_warnings
 from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, TableControl
 from .run import Strength
 from .sledge_body import sledge_body
@@ -320,8 +318,6 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
 
 def _snow(scenario: Scenario, laws: Laws) -> SnowField:
     contact = scenario.contact
-    with without_range_warnings():  # a scenario has its own words for friction that is unlikely
-        friction = LinearFriction(friction_at_rest=contact.friction, friction_slope=contact.friction_by_speed)
     over_place = contact.snow_map
     carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
     return SnowField(
@@ -330,7 +326,7 @@ def _snow(scenario: Scenario, laws: Laws) -> SnowField:
         else over_place.hardness or contact.snow.snow_hardness,
         failure_shear_stress=0.0 if carries_side_force else contact.snow.failure_shear_stress or 0.0,
         unloading_ratio=contact.unloading_ratio,
-        friction=laws.friction or friction,
+        friction=laws.friction or contact.glide_friction,
         friction_acts_on=contact.friction_acts_on,
         friction_direction=contact.friction_direction,
         shear=laws.shear

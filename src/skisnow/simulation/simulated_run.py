@@ -156,7 +156,7 @@ def simulate(
         if other.outcome not in ("energy_open", *_COMPUTED_WRONG):
             run, setup = replace(other, scenario=scenario), other_setup
             _warn_of_closer_lines(spacing, run.numbers["line_spacing_m"])
-    _warn_of_zero_friction(run)
+    _warn_of_friction(run)
     _warn_of_unseen_tracks(setup)
     return replace(run, laws=laws, strength_along=strength_along)
 
@@ -224,11 +224,14 @@ def _led(scenario: Scenario, controller: Controller, boots: BootControl | None) 
     return BalancedSkier(scenario, controller)
 
 
-def _warn_of_zero_friction(run: Run) -> None:
-    """Warn if the run was fast enough for a friction that falls with speed to reach 0, where the core keeps it."""
+def _warn_of_friction(run: Run) -> None:
+    """Warn of speeds and snow beyond a law file, and of friction that falls to 0, where the core keeps it."""
     contact = run.scenario.contact
     fastest = float(run.speed.max(initial=0.0))
-    if contact.friction + contact.friction_by_speed * fastest < 0.0:
+    if contact.friction_law is not None:
+        speeds = float(run.speed.min(initial=fastest)), fastest
+        contact.friction_law.warn_outside(contact.temperature, contact.liquid_water or 0.0, speeds)
+    elif contact.friction_at(fastest) < 0.0:
         zero_at = -contact.friction / contact.friction_by_speed
         text = Message(
             "mu_0 + mu_1 v is below 0 above {zero_at:.3g} m/s, and the run reached {fastest:.3g} m/s: friction counts "

@@ -4,6 +4,7 @@ from typing import Final
 
 from .constant import ConstantFriction
 from .law import FrictionLaw
+from .law_file import FrictionFile, SnowState, read_friction_file
 from .linear import LinearFriction
 from .quadratic import QuadraticFriction
 from .water_film import WaterFilmFriction
@@ -11,4 +12,14 @@ from .water_film import WaterFilmFriction
 LAWS: Final[tuple[type[FrictionLaw], ...]] = (ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction)
 """Every law for glide friction: one set of tests runs over all of them."""
 
-__all__ = ["LAWS", "ConstantFriction", "FrictionLaw", "LinearFriction", "QuadraticFriction", "WaterFilmFriction"]
+__all__ = [
+    "LAWS",
+    "ConstantFriction",
+    "FrictionFile",
+    "FrictionLaw",
+    "LinearFriction",
+    "QuadraticFriction",
+    "SnowState",
+    "WaterFilmFriction",
+    "read_friction_file",
+]
