@@ -11,7 +11,6 @@ from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import FitError, FitWarning, ParameterError
 from skisnow.statistics import linear_fit, polynomial_fit, regress, variance_shares
-from skisnow.statistics.bounded import non_negative_fit
 from skisnow.statistics.clusters import cluster_intervals
 from skisnow.statistics.linear import chebyshev_columns, exact_way_back
 
@@ -243,7 +242,6 @@ def test_every_linear_regression_warns_by_the_condition_number(
         lambda: linear_fit(y, X),
         lambda: regress(y, with_ones(X)),
         lambda: cluster_intervals(y, X, np.arange(len(y)) % 3),
-        lambda: non_negative_fit(X[:, -5:], y),
     )
     for fit in regressions:
         with pytest.warns(FitWarning, match="condition number"):

@@ -1,6 +1,6 @@
 """Least squares with intervals, bounded fits, nested F tests, resampling. Knows no snow."""
 
-from .bounded import NonNegativeFit, non_negative_fit, non_negative_fits
+from .bounded import non_negative_fits
 from .clusters import ClusterIntervals, cluster_intervals
 from .combined_uncertainty import expanded_factor, percentile_interval, resampling_counts, welch_satterthwaite
 from .f_tests import Anova, NestedTest, nested_f_test, one_way_anova, tests_per_group
@@ -13,7 +13,6 @@ __all__ = [
     "ClusterIntervals",
     "LinearFit",
     "NestedTest",
-    "NonNegativeFit",
     "NonlinearFit",
     "Regress",
     "RegressStatistics",
@@ -22,7 +21,6 @@ __all__ = [
     "expanded_factor",
     "linear_fit",
     "nested_f_test",
-    "non_negative_fit",
     "non_negative_fits",
     "nonlinear_fit",
     "one_way_anova",

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .._support.errors import ParameterError
-from .least_squares import as_predictors, as_response, warn_if_ill_conditioned
+from .least_squares import as_predictors, as_response
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,83 +28,6 @@ _KKT_TOLERANCE = 1e-12
 """Share of the gradient, for columns of length one: some thousand roundings."""
 _DEPENDENT = 1e-13
 """A pivot of a scaled Gram matrix not above this is zero but for rounding."""
-
-
-@dataclass(frozen=True)
-class NonNegativeFit:
-    """A least-squares fit with coefficients ≥ 0.
-
-    Attributes
-    ----------
-    coefficients
-        Shape (p,); exactly 0.0 on the bound.
-    at_bound
-        Shape (p,): True if the bound holds the coefficient.
-    sse
-        Σ w r², with the weights of the fit (1 where none were given).
-    residuals
-        Observed minus fitted, shape (n,), not weighted.
-    rank
-        Rank of the (weighted) design without bounds.
-    """
-
-    coefficients: FloatArray
-    at_bound: BoolArray
-    sse: float
-    residuals: FloatArray
-    rank: int
-
-
-def non_negative_fit(
-    design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None
-) -> NonNegativeFit:
-    """Minimise Σ w (response - design β)² over β ≥ 0.
-
-    Parameters
-    ----------
-    design
-        Shape (n, p) or (n,), 1 ≤ p ≤ 6; no column is added.
-    response
-        Shape (n,).
-    weights
-        w ≥ 0, shape (n,), or None for all one.
-
-    Returns
-    -------
-    NonNegativeFit
-        If columns depend on each other, many β are equally good; one of those with the fewest coefficients above zero
-        is returned, and ``rank`` is below p.
-
-    Raises
-    ------
-    ParameterError
-        If shapes do not fit, values are not finite, a weight is below zero, or p is not between 1 and 6.
-
-    Warns
-    -----
-    FitWarning
-        If the condition number of the columns is above 1,000: the coefficients lose digits.
-
-    Notes
-    -----
-    The design is scaled by columns and factorised as QR; all sets of active bounds are solved in the triangle.
-
-    Examples
-    --------
-    The free fit of y = b1 x + b2 would be b1 = 2, b2 = -1; with b2 held at 0, b1 = (1·1 + 2·3 + 3·5)/(1 + 4 + 9).
-
-    >>> fit = non_negative_fit([[1, 1], [2, 1], [3, 1]], [1, 3, 5])
-    >>> round(float(fit.coefficients[0]), 12) == round(22 / 14, 12), fit.at_bound.tolist()
-    (True, [False, True])
-    """
-    y = as_response(response)
-    A = as_predictors(design, len(y))
-    few = condensed(A, y, weights=weights)
-    warn_if_ill_conditioned(few.design)
-    solution = few.solved()
-    residuals = y - A @ solution.coefficients
-    sse = float(np.sum((_root_weights(weights, len(y)) * residuals) ** 2))
-    return NonNegativeFit(solution.coefficients, solution.coefficients == 0.0, sse, residuals, solution.rank)
 
 
 class Solved(NamedTuple):
@@ -144,6 +67,9 @@ class Condensed:
             Shape (p, q), q from 1 to 6; None: β are the coefficients of the columns themselves.
         offset
             Shape (p,), coefficients that are given; None: none.
+
+        If columns depend on each other, many β are equally good; one of those with the fewest coefficients above zero
+        is returned, and the rank is below their number.
         """
         A, z = self.design * self.scale, self.response
         z = z if offset is None else z - A @ offset
@@ -155,10 +81,26 @@ class Condensed:
 
 
 def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None) -> Condensed:
-    """Factorise a design once for many fits to the same response; shapes and errors are those of `non_negative_fit`.
+    """Factorise a design once for many fits of Σ w (response - design β)² to the same response.
+
+    Parameters
+    ----------
+    design
+        Shape (n, p) or (n,), 1 ≤ p ≤ 6; no column is added.
+    response
+        Shape (n,).
+    weights
+        w ≥ 0, shape (n,), or None for all one.
+
+    Raises
+    ------
+    ParameterError
+        Shapes do not fit, values are not finite, or a weight is below zero.
 
     Examples
     --------
+    The free fit of y = b1 x + b2 would be b1 = 2, b2 = -1; with b2 held at 0, b1 = (1·1 + 2·3 + 3·5)/(1 + 4 + 9).
+
     >>> few = condensed([[1, 1], [2, 1], [3, 1]], [1, 3, 5])
     >>> few.solved(np.array([[1.0], [0.0]])).coefficients.round(6).tolist()  # without the column of ones
     [1.571429]
@@ -267,7 +209,7 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     Notes
     -----
     For bootstrap samples, of which only the cross products are known. These hold half the digits of the design; for a
-    point estimate use `non_negative_fit`.
+    point estimate use `condensed`.
 
     Examples
     --------
