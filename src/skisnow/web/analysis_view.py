@@ -12,12 +12,12 @@ from nicegui import ui
 from .._support.messages import Message, template
 from ..report.formatting import counted
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
-from .elements import Words, html_words, named
+from .elements import Words, add_items, folded, html_words, named
 from .layout import error_sentence, heading, sentence
 from .words import language_of, said
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable, Sequence
+    from collections.abc import Awaitable, Callable
     from typing import TypeAlias
 
     from nicegui.events import ValueChangeEventArguments
@@ -119,7 +119,8 @@ class AnalysisView:
             return
         self._status.set_text(Message("This campaign cannot be analysed yet. Errors in its files:"))
         with self._results:
-            _list_errors(refusal.errors)
+            with ui.element("ul").classes("errors"):  # with headings and cells as they are in the files
+                add_items(refusal.errors, lambda line: ui.label(said(line)))
             if self._page.kind == "kept":
                 sentence(
                     Message("Correct the files and import them again. Single cells can be corrected under Correct.")
@@ -155,12 +156,8 @@ class AnalysisView:
         with self._results:
             heading(numbers.results["campaign"]["name"])
             with ui.element("ul").classes("results"):
-                for verdict in numbers.verdicts:
-                    with ui.element("li"):
-                        sentence(verdict)
-                for words in numbers.key_results[language_of()]:
-                    with ui.element("li"):
-                        html_words(words)
+                add_items(numbers.verdicts, sentence)
+                add_items(numbers.key_results[language_of()], html_words)
             for warning in numbers.results["penetration"]["warnings"]:
                 sentence(warning, "quiet")
             tables = numbers.tables[language_of()]
@@ -231,18 +228,9 @@ class AnalysisView:
         await self.compute()
 
 
-def _list_errors(lines: Sequence[str]) -> None:
-    """List errors with headings and cells as they are in the files."""
-    with ui.element("ul").classes("errors"):
-        for line in lines:
-            with ui.element("li"):
-                ui.label(said(line))
-
-
 def _add_folded(words: str, fill: Callable[[], object]) -> None:
     """Add a folded section that is filled when it is opened."""
-    with ui.element("details") as details, ui.element("summary"):
-        Words(words)
+    details = folded(words)
 
     def opened() -> None:
         if len(details.default_slot.children) == 1:

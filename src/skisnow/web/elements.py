@@ -12,7 +12,7 @@ from ..report.formatting import SYMBOL
 from .words import said
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from typing import TypeVar
 
     AnyElement = TypeVar("AnyElement", bound=ui.element)
@@ -83,6 +83,19 @@ class TypedField(ui.input):
         super().__init__(said(label) or None, value=value)
 
 
+class Outcome(Words):
+    """Outcome of an action in one line, which screen readers announce."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text)
+        self.classes("status").props("role=status")
+
+    def say(self, text: str, *, bad: bool = False) -> None:
+        """Show a text, marked as good or bad."""
+        self.set_text(text)
+        self.classes(add="bad" if bad else "good", remove="good" if bad else "bad")
+
+
 class StatusLine(ui.element):
     """Outcome of the last action, with a list of problems; screen readers announce it."""
 
@@ -99,15 +112,35 @@ class StatusLine(ui.element):
         self._outcome.classes(remove="good bad", add=kind)
         self._problems.clear()
         with self._problems:
-            for item in items:
-                with ui.element("li"):
-                    ui.label(item)
+            add_items(items, ui.label)
 
 
 def named(element: AnyElement, name: str) -> AnyElement:
     """Give an element a name for screen readers."""
     element.props["aria-label"] = said(name, element.client)
     return element
+
+
+def add_items(items: Iterable[str], add: Callable[[str], object] = Words) -> None:
+    """Add the items of a list, each by a function that adds its text."""
+    for item in items:
+        with ui.element("li"):
+            add(item)
+
+
+def add_head(columns: Iterable[str]) -> None:
+    """Add the row of headings of a table."""
+    with ui.element("thead"), ui.element("tr"):
+        for words in columns:
+            with ui.element("th").props("scope=col"):
+                Words(words)
+
+
+def folded(words: str, *, is_open: bool = False) -> ui.element:
+    """Section that the reader can open, with its title; ``is_open`` at first."""
+    with ui.element("details").props("open" if is_open else "") as made, ui.element("summary"):
+        Words(words)
+    return made
 
 
 def html_words(html: str) -> ui.html:

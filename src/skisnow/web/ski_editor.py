@@ -14,7 +14,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
-from .elements import Words, button, field, named
+from .elements import Words, add_head, button, field, folded, named
 from .lab_skis import ski_of_texts
 from .layout import heading, sentence
 from .words import number_said, said, typed_number
@@ -60,9 +60,7 @@ class SkiEditor:
         return made
 
     def _file(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
-        with ui.element("details"):
-            with ui.element("summary"):
-                Words(Message("The file of the ski"))
+        with folded(Message("The file of the ski")):
             sentence(
                 Message(
                     "With units in its keys. Draw the file takes it as it is written here; factors and "
@@ -75,9 +73,7 @@ class SkiEditor:
                 .props("outlined autogrow")
                 .classes("code")
             )
-            with ui.element("details"):
-                with ui.element("summary"):
-                    Words(Message("Its table, where it has one"))
+            with folded(Message("Its table, where it has one")):
                 rows = (
                     ui.textarea(said(Message("Table of the edited ski")), value=table).props("outlined").classes("code")
                 )
@@ -135,10 +131,7 @@ class SkiEditor:
         self._cells = {}
         self._shown = {place: number_said(text, self._table.client) for place, text in cells.items()}
         with self._table, ui.element("table").classes("cells"):
-            with ui.element("thead"), ui.element("tr"):
-                for words in (POSITION, *CELLS.values()):
-                    with ui.element("th").props("scope=col"):
-                        Words(words)
+            add_head((POSITION, *CELLS.values()))
             with ui.element("tbody"):
                 for i, station in enumerate(self._stations):
                     with ui.element("tr"):

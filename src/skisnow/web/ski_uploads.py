@@ -10,7 +10,7 @@ from starlette.datastructures import FormData
 
 from .._support.errors import SkisnowError
 from .._support.messages import Message
-from .elements import Words, button, field
+from .elements import Outcome, button, field, folded
 from .lab_skis import (
     LISTS,
     MEASURED,
@@ -63,9 +63,7 @@ class SkiImportForms:
     def __init__(self, skis: LabSkis, added: Callable[[str], None]) -> None:
         self._skis = skis
         self._added = added
-        with ui.element("details").classes("adding"):
-            with ui.element("summary"):
-                Words(Message("Add a measured ski"))
+        with folded(Message("Add a measured ski")).classes("adding"):
             heading(Message("From its files"), 3)
             _file_form()
             heading(Message("From three widths"), 3)
@@ -85,7 +83,7 @@ class SkiImportForms:
                 }
             with ui.element("div").classes("acts"):
                 button(Message("Add this ski"), self._add, "main", once=True)
-            self._said = Words("").classes("status").props("role=status")
+            self._said = Outcome()
 
     async def _add(self) -> None:
         name = " ".join(str(self._name.value or "").split())
@@ -104,8 +102,7 @@ class SkiImportForms:
 
     def _refuse(self, why: str) -> None:
         """Show an error at the button and at its field, and put the focus on the field."""
-        self._said.set_text(Message("Not saved: {why}", why=why))
-        self._said.classes(add="bad")
+        self._said.say(Message("Not saved: {why}", why=why), bad=True)
         for key, words in MEASURED.items():
             if why.startswith(f"{words}: "):
                 self._fields[key].error = said(Message("a number is needed here"))
@@ -127,9 +124,7 @@ def _file_form() -> None:
             file_input("files", Message("Files of the ski"), "ski-files", 'multiple accept=".toml,.csv,.json"')
         with ui.element("div").classes("acts"):
             text_input(NAME, Message("Another name for it"), f"ski-{NAME}")
-        with ui.element("details"):
-            with ui.element("summary"):
-                Words(Message("With a file of MonkeyCAM"))
+        with folded(Message("With a file of MonkeyCAM")):
             for key, words in STIFFNESS.items():
                 with ui.element("div").classes("acts"):
                     text_input(key, words, f"ski-{key}", "" if key in LISTS else "inputmode=decimal")

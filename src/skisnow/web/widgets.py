@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from nicegui import ui
 from nicegui.element import Element
 
 from .._support.errors import ParameterError
-from .._support.messages import Message, decimal_sign
+from .._support.messages import Message, decimal_sign, joined
 from ..report.formatting import significant
-from .elements import button
+from .elements import Words, button, named
 from .layout import error_sentence, heading, sentence
+from .runs import STATES, progress_words
 from .words import language_of, said
 
 if TYPE_CHECKING:
@@ -148,14 +149,37 @@ def _short(values: Sequence[float | None]) -> list[float | None]:
 EVERY_S: Final = 1.0
 
 
-class JobCard(Protocol):
-    """Card of a job with its buttons."""
+class JobCard:
+    """Card of a job of a queue: title, state in words, progress, and buttons; a page adds its own buttons."""
 
-    place: ui.element
+    def __init__(self, runs: Any, job: Any, act: Act) -> None:
+        self.runs = runs
+        with ui.element("section").classes("card") as self.place:
+            with ui.element("h3"):
+                self._title = Words("")
+            self._words = sentence("", "quiet").props("aria-live=polite")
+            self._progress = sentence("", "quiet progress")  # not announced, as it changes each second
+            with ui.element("div").classes("acts"):
+                cancel = button(Message("Cancel"), lambda: act(runs.cancel, job.name))
+                self._cancel = named(cancel, Message("Cancel {name}", name=job.name))
+                self.add_buttons(job, act)
+
+    def add_buttons(self, job: Any, act: Act) -> None:
+        """Add further buttons."""
+        raise NotImplementedError
+
+    def inputs(self, job: Any) -> tuple[str, ...]:
+        """Subject and inputs of the job in words."""
+        raise NotImplementedError
 
     def show(self, job: Any) -> None:
         """Show the state of the job."""
-        ...
+        self._title.set_text(job.shown_name)
+        parts = (*self.inputs(job), STATES[job.state], job.said)
+        self._words.set_text(joined([part for part in parts if part], " · "))
+        self._progress.set_text(progress_words(self.runs.progress) if job.state == "running" else "")
+        self._progress.set_visibility(bool(self._progress.text))
+        self._cancel.set_visibility(job.state in ("waiting", "running"))
 
 
 class JobList:

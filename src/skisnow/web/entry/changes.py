@@ -10,7 +10,7 @@ from ..._support.messages import Message, joined, template
 from ...campaign.reading.columns import is_unloading_cell
 from ...campaign.reading.table_forms import BRANCH
 from ...campaign.store.stored_tables import cell_of
-from ..elements import Words, button, field
+from ..elements import add_items, button, field, folded
 from ..page_requests import asking_button, form
 from ..words import label, minute_words, number_said, said
 
@@ -146,15 +146,13 @@ def changes(
 def _history(test: ReplayedTest, view: TableView) -> None:
     if not test.history:
         return
-    with ui.element("details"):
-        with ui.element("summary"):
-            Words(Message("History of {name}", name=test.name))
-        with ui.element("ol"):
-            for entry in test.history:
-                with ui.element("li"):
-                    parts = (minute_words(entry.at), entry.who, _done(entry, view))
-                    words: str = joined([part for part in parts if part], " · ")
-                    Words(Message("{entry} (undone)", entry=words) if entry.sequence in test.undone else words)
+    lines = []
+    for entry in test.history:
+        parts = (minute_words(entry.at), entry.who, _done(entry, view))
+        words: str = joined([part for part in parts if part], " · ")
+        lines.append(Message("{entry} (undone)", entry=words) if entry.sequence in test.undone else words)
+    with folded(Message("History of {name}", name=test.name)), ui.element("ol"):
+        add_items(lines)
 
 
 def _cell_words(key: str, text: str, view: TableView) -> Message:

@@ -9,7 +9,7 @@ from nicegui import ui
 
 from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
-from ..elements import Words, button, choice, field, named
+from ..elements import Words, button, choice, field, folded, named
 from ..layout import heading, sentence
 from ..page_requests import answering, asking_button, current_request, entering, form
 from ..words import label, number_said
@@ -160,9 +160,7 @@ class SeriesForm:
         if not steps:
             return
         begun = any(test.row_under(*step) or step in unstored for step in steps)
-        with ui.element("details").props("open" if begun else ""):
-            with ui.element("summary"):
-                Words(Message("Discs taken off one by one"))
+        with folded(Message("Discs taken off one by one"), is_open=begun):
             self._draw_fields(test, steps, unstored)
 
     def _unstored(self) -> dict[Step, str]:
@@ -252,13 +250,10 @@ class SeriesForm:
             self.show(self._head["experiment"], self._head)
             return True
 
-        with ui.element("details"):
-            with ui.element("summary"):
-                Words(Message("A load that is not in the disc set"))
-            with form(sends=done):
-                load = field(Message("Further load (N)"), numeric=True)
-                depth = field(Message("Its depth (mm)"), numeric=True)
-                asking_button(Message("Store it"), done)
+        with folded(Message("A load that is not in the disc set")), form(sends=done):
+            load = field(Message("Further load (N)"), numeric=True)
+            depth = field(Message("Its depth (mm)"), numeric=True)
+            asking_button(Message("Store it"), done)
 
     def _entered(self, step: Step, *, left: bool = False) -> bool:
         """Store a first depth, or ask for the reason of a changed one; ``left``: the focus is in another field."""

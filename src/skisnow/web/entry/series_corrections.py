@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from nicegui import ui
 
 from ..._support.messages import Message, template
-from ..elements import Words, field, named
+from ..elements import Words, field, folded, named
 from ..entry.readings import STORED
 from ..page_requests import asking_button, form
 from ..words import label, number_said
@@ -156,16 +156,16 @@ class AfterWaiting:
         """Draw the fields, folded without a depth."""
         test = self._test
         stored = {load: _stored(test, load) for load in loads}
-        with ui.element("details").props("open" if any(stored.values()) or unstored else ""):
-            with ui.element("summary"):
-                Words(Message("Depths read once more after waiting"))
-            with form("readings", sends=lambda: self._store(ask)):
-                for load, text in stored.items():
-                    self._fields[load] = self._field(
-                        load, text, unstored.get(load, number_said(text)), closed=bool(test.cancelled)
-                    )
-                if not test.cancelled:
-                    asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
+        is_open = any(stored.values()) or bool(unstored)
+        with (
+            folded(Message("Depths read once more after waiting"), is_open=is_open),
+            form("readings", sends=lambda: self._store(ask)),
+        ):
+            for load, text in stored.items():
+                typed = unstored.get(load, number_said(text))
+                self._fields[load] = self._field(load, text, typed, closed=bool(test.cancelled))
+            if not test.cancelled:
+                asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
 
     def focus(self) -> None:
         """Put the focus on the first unstored field."""
@@ -183,14 +183,8 @@ class AfterWaiting:
 
         def show() -> None:
             depth_after = _stored(self._test, load)
-            show_state(
-                state,
-                CHANGED
-                if depth_after and is_other(str(depth.value or ""), depth_after)
-                else STORED
-                if depth_after
-                else "",
-            )
+            is_changed = is_other(str(depth.value or ""), depth_after)
+            show_state(state, "" if not depth_after else CHANGED if is_changed else STORED)
 
         show()
         depth.on_value_change(show)

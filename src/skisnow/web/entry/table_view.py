@@ -16,7 +16,7 @@ from ...campaign.reading.table_forms import PENETRATION, SHEAR
 from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.stored_tables import FORMS
 from ...report.formatting import significant
-from ..elements import StatusLine, Words, choice, field, link, named
+from ..elements import StatusLine, Words, add_items, choice, field, link, named
 from ..layout import error_sentence, heading
 from ..page_requests import current_request, entering
 from ..widgets import BEHIND, ChartLine, LineChart
@@ -363,9 +363,7 @@ class LiveResults:
             return
         self._verdicts.clear()
         with self._verdicts:
-            for verdict in verdicts:
-                with ui.element("li"):
-                    Words(verdict)
+            add_items(verdicts)
 
     def _show(self, name: str, results: QuickResults, unsaid: frozenset[str]) -> None:
         key = self._view.file, name
@@ -376,10 +374,8 @@ class LiveResults:
         self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))
         self._marks.clear()
         with self._marks:
-            for code, sentence in results.flags.get(key, {}).items():
-                if code not in unsaid:
-                    with ui.element("li"):
-                        Words(in_words(sentence))
+            flags = results.flags.get(key, {})
+            add_items(in_words(sentence) for code, sentence in flags.items() if code not in unsaid)
         if self._chart is not None:
             self._chart.show(list(_lines(key, results.curves)), from_zero="xy")
 

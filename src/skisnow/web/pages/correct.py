@@ -10,7 +10,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
-from ..elements import Words, choice, field, link
+from ..elements import choice, field, folded, link
 from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import table_links, table_view
@@ -201,12 +201,13 @@ def list_tests(session: CorrectionSession, file: str) -> None:
         sites.setdefault(next(iter(rows.values())).get("site", ""), []).append(name)
     heading(Message("Tests"))
     for site, names in sites.items():
-        with ui.element("details").props("open" if len(sites) == 1 and len(names) <= FEW else ""):
-            with ui.element("summary"):
-                Words(f"{site or Message('No site')}: {len(names)}")
-            with ui.element("div").classes("acts so-far"):
-                for name in names:
-                    link(_link_text(session.test(file, name)), correcting(session.id, table=file, test=name), "small")
+        is_open = len(sites) == 1 and len(names) <= FEW
+        with (
+            folded(f"{site or Message('No site')}: {len(names)}", is_open=is_open),
+            ui.element("div").classes("acts so-far"),
+        ):
+            for name in names:
+                link(_link_text(session.test(file, name)), correcting(session.id, table=file, test=name), "small")
 
 
 def _link_text(test: ReplayedTest) -> str:

@@ -11,7 +11,7 @@ from ..._support.messages import Message, joined
 from ...carving.edge_line import BOOT_REACH
 from ...ski.ski_file import keys_text
 from ..carved_turn import NUMBERS, SLIDERS, Asked, CarvedTurn, Solver, taken
-from ..elements import Words, button, choice, field, option_texts
+from ..elements import Outcome, button, choice, field, option_texts
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
 from ..layout import error_sentence, framed
 from ..snow_choice import SnowChoice
@@ -143,14 +143,14 @@ class _Design(CarvedTurn):
         with ui.element("div").classes("acts"):
             self._target = field(Message("Wanted radius (m)"), "12", numeric=True)
             self._search = button(Message("Find the design"), self._find, "main")
-        self._found = Words("").classes("status").props("role=status")
+        self._found = Outcome()
 
     def _add_saving(self) -> None:
         with ui.element("div").classes("acts"):
             self._name = field(Message("New name"))
             button(Message("Save in the lab"), self._save, once=True)
             button(Message("Download the file"), self._export)
-        self._saved = Words("").classes("status").props("role=status")
+        self._saved = Outcome()
 
     def _begin(self) -> None:
         for key, (_, _, start) in SHAPES.items():
@@ -182,7 +182,7 @@ class _Design(CarvedTurn):
         return super().fact(key, answer)
 
     async def _find(self) -> None:
-        _tell(self._found, Message("Searching …"))
+        self._found.say(Message("Searching …"))
         self._search.disable()
         try:
             target = typed_number(Message("the wanted radius"), str(self._target.value or ""))
@@ -191,7 +191,7 @@ class _Design(CarvedTurn):
             asked = Asked([{"ski": self._keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
             design = await run.io_bound(found_design, asked, target)
         except SkisnowError as error:
-            _tell(self._found, error_sentence(error), bad=True)
+            self._found.say(error_sentence(error), bad=True)
             return
         finally:
             self._search.enable()
@@ -200,7 +200,7 @@ class _Design(CarvedTurn):
         for key, spec in ((SIDECUT, "+.3g"), (STIFFNESS, ".3g")):
             self.sliders[key].put(design.values[key], spec)
         done = Message("Sidecut and stiffness are set: the ski makes this radius.")
-        _tell(self._found, done if design.reached else joined(design.remarks[:-1]), bad=not design.reached)
+        self._found.say(done if design.reached else joined(design.remarks[:-1]), bad=not design.reached)
         self.ask()
 
     async def _save(self) -> None:
@@ -208,10 +208,10 @@ class _Design(CarvedTurn):
         try:
             await run.io_bound(self._skis.save_texts, name, keys_text(self._keys()), "")
         except SkisnowError as error:
-            _tell(self._saved, Message("Not saved: {error}", error=error_sentence(error)), bad=True)
+            self._saved.say(Message("Not saved: {error}", error=error_sentence(error)), bad=True)
             return
         self._other.set_options(option_texts(_others(self._skis)))
-        _tell(self._saved, Message("Saved: {name}. Carve and Simulate have it too.", name=name))
+        self._saved.say(Message("Saved: {name}. Carve and Simulate have it too.", name=name))
 
     def _export(self) -> None:
         ui.download(keys_text(self._keys()).encode(), FILE)
@@ -219,8 +219,3 @@ class _Design(CarvedTurn):
 
 def _others(skis: LabSkis) -> dict[str, str]:
     return {NOTHING: Message("nothing"), **{name: name for name in skis.names()}}
-
-
-def _tell(label: ui.label, text: str, *, bad: bool = False) -> None:
-    label.set_text(text)
-    label.classes(add="bad" if bad else "good", remove="good" if bad else "bad")

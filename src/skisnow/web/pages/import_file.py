@@ -13,7 +13,7 @@ from ..._support.messages import Message, template
 from ...campaign.importing import Answers
 from ...campaign.importing.columns import FROM_NOTES
 from ...campaign.reading.headings import units_for
-from ..elements import Words, button, choice, field, named
+from ..elements import Outcome, Words, add_head, add_items, button, choice, field, named
 from ..layout import error_sentence, framed, heading, sentence
 from ..settings import BUILD_S
 from ..subprocesses import BOUNDS, confined
@@ -74,7 +74,7 @@ class _Import:
             choice(Message("Template"), options, "").on_value_change(self._use_template)
         with ui.element("div").classes("acts"):
             self._store = button(Message("Store the campaign"), self._keep, "main", once=True)
-            self._status = Words("").classes("status").props("role=status aria-live=polite")
+            self._status = Outcome()
         with ui.element("div").classes("acts"):
             self._name = field(Message("Name of the template"), "")
             button(Message("Save the answers as a template"), self._save_template, "small")
@@ -88,7 +88,7 @@ class _Import:
         try:
             self.tried = await run.io_bound(confined, BOUNDS, try_import, name, data, self.answers)
         except SkisnowError as error:
-            self._say(error_sentence(error), good=False)
+            self._status.say(error_sentence(error), bad=True)
             self._store.set_enabled(False)
             return
         if self.tried is None:  # the server ends
@@ -113,16 +113,12 @@ class _Import:
         self._store.set_enabled(not proposal.problems)
         if proposal.problems:
             count = len(proposal.problems)
-            self._say(Message("Not ready: {count} open questions or errors.", count=count), good=False)
+            self._status.say(Message("Not ready: {count} open questions or errors.", count=count), bad=True)
         elif tried.hardness is not None:
             series, value = tried.hardness
-            self._say(Message("H_V of {series}: {value:.3f} N/mm³", series=series, value=value), good=True)
+            self._status.say(Message("H_V of {series}: {value:.3f} N/mm³", series=series, value=value))
         else:
-            self._say(Message("Ready."), good=True)
-
-    def _say(self, text: str, *, good: bool) -> None:
-        self._status.set_text(text)
-        self._status.classes(remove="good bad", add="good" if good else "bad")
+            self._status.say(Message("Ready."))
 
     def _question(self, question: Question) -> None:
         words = Message(QUESTIONS[question.option], key=question.key)
@@ -181,7 +177,7 @@ class _Import:
 
     def _save_template(self) -> None:
         self.imports.save_template(str(self._name.value), self._ready_files())
-        self._say(Message("Template saved for the next campaign: {name}", name=self._name.value), good=True)
+        self._status.say(Message("Template saved for the next campaign: {name}", name=self._name.value))
 
     def _ready_files(self) -> Mapping[str, bytes]:
         if self.tried is None or self.tried.proposal.problems:
@@ -215,9 +211,7 @@ def _list_problems(proposal: Proposal) -> None:
     if problems:
         heading(Message("Errors"))
         with ui.element("ul").classes("errors"):
-            for problem in problems:
-                with ui.element("li"):
-                    Words(problem.message)
+            add_items(problem.message for problem in problems)
 
 
 def _show_rows(table: ImportedTable) -> None:
@@ -230,10 +224,7 @@ def _show_rows(table: ImportedTable) -> None:
     with ui.element("div").classes("table"), ui.element("table"):
         with ui.element("caption"):
             Words(words)
-        with ui.element("thead"), ui.element("tr"):
-            for name in names:
-                with ui.element("th").props("scope=col"):
-                    Words(label(name))
+        add_head(label(name) for name in names)
         with ui.element("tbody"):
             for row in table.rows[:_SHOWN_ROWS]:
                 with ui.element("tr"):

@@ -9,7 +9,7 @@ from nicegui import app, ui
 from ..._support.messages import Message
 from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
-from ..elements import Words, link, named
+from ..elements import Words, folded, link, named
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
 from ..layout import framed, heading, sentence
 from ..page_requests import file_input, submit_button, text_input, upload_form
@@ -109,9 +109,7 @@ def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:
 
 def _track_form() -> None:
     """Form for a measured track."""
-    with ui.element("details"):
-        with ui.element("summary"):
-            Words(Message("Add a measured track"))
+    with folded(Message("Add a measured track")):
         sentence(
             Message(
                 "CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {largest_track_bytes} MB and {most_points} "

@@ -10,18 +10,18 @@ from urllib.parse import quote
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
-from ..._support.messages import Message, joined
+from ..._support.messages import Message
 from ...replay.run_file import RUN_FILE
-from ..elements import Words, button, choice, field, link, named
+from ..elements import Outcome, Words, button, choice, field, folded, link, named
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import add_upload, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
-from ..runs import STATES, Job, Runs, duration_words, estimated_s, progress_words
+from ..runs import Job, Runs, duration_words, estimated_s
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice, require_scenario, results_and_snow_words, snow_words
-from ..widgets import JobList
+from ..widgets import JobCard, JobList
 from ..words import language_of, number_said
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class _Form:
         with ui.element("div").classes("acts"):
             button(Message("Simulate"), self.ask, "main", once=True)
             self._estimate = Words("").classes("quiet").props("role=status")
-        self._status = Words("").classes("status").props("role=status")
+        self._status = Outcome()
         with ui.element("fieldset").classes("redrawn"):
             self._expert = ui.element("div")
         self._draw()
@@ -142,12 +142,8 @@ class _Form:
         with self._basic:
             for name in basic(values):
                 add(name)
-        with (
-            self._expert,
-            ui.element("details").classes("expert").props("open" if typed.keys() - set(basic(values)) else ""),
-        ):
-            with ui.element("summary"):
-                Words(Message("Expert inputs"))
+        is_open = bool(typed.keys() - set(basic(values)))
+        with self._expert, folded(Message("Expert inputs"), is_open=is_open).classes("expert"):
             for section in SECTIONS:
                 names = [name for name in expert(values) if name.startswith(f"{section}.")]
                 if names:
@@ -198,8 +194,7 @@ class _Form:
         except SkisnowError as error:
             self._refuse(error)
             return
-        self._status.set_text(Message("{shown_name} is in the queue.", shown_name=job.shown_name))
-        self._status.classes(remove="bad")
+        self._status.say(Message("{shown_name} is in the queue.", shown_name=job.shown_name))
 
     def _refuse(self, error: SkisnowError) -> None:
         """Show an error at the button and at its field, and put the focus on the field."""
@@ -209,8 +204,7 @@ class _Form:
         if faulty is not None:
             faulty.refuse(words)
             faulty.focus()
-        self._status.set_text(Message("Not begun: {words}", words=words))
-        self._status.classes(add="bad")
+        self._status.say(Message("Not begun: {words}", words=words), bad=True)
 
     async def _add_job(self, scenario: str, changes: dict[str, str]) -> Job:
         for made in self._fields.values():
@@ -298,9 +292,7 @@ def _keep_course(courses: LabCourses, form: FormData) -> str:
 
 def _course_form() -> None:
     """Form for a course."""
-    with ui.element("details"):
-        with ui.element("summary"):
-            Words(Message("Add a course"))
+    with folded(Message("Add a course")):
         sentence(
             Message(
                 "CSV with the columns gate, x_m, y_m, side (left or right, where the pole is passed), in "
@@ -329,36 +321,26 @@ def _rename(runs: Runs, title: ui.input, name: str) -> None:
     runs.rename(name, str(title.value))
 
 
-class _Card:
-    """Card of a run with its buttons."""
+class _Card(JobCard):
+    """Card of a run."""
 
     def __init__(self, runs: Runs, job: Job, act: Act) -> None:
-        self._runs = runs
-        with ui.element("section").classes("card") as self.place:
-            with ui.element("h3"):
-                self._title = Words("")
-            self._words = sentence("", "quiet").props("aria-live=polite")
-            self._progress = sentence("", "quiet progress")  # not announced, as it changes each second
-            with ui.element("div").classes("acts"):
-                self._cancel = named(
-                    button(Message("Cancel"), lambda: act(runs.cancel, job.name)),
-                    Message("Cancel {name}", name=job.name),
-                )
-                self._watch = named(
-                    link(Message("Watch"), show_address(job.name), "main"), Message("Watch {name}", name=job.name)
-                )
-            with ui.element("details"):
-                with ui.element("summary"):
-                    Words(Message("Rename"))
-                title = field(Message("Name of the run"), job.shown_name)
-                button(Message("Use this name"), lambda: act(partial(_rename, runs, title), job.name))
+        super().__init__(runs, job, act)
+        with self.place, folded(Message("Rename")):
+            title = field(Message("Name of the run"), job.shown_name)
+            button(Message("Use this name"), lambda: act(partial(_rename, runs, title), job.name))
+
+    def add_buttons(self, job: Job, act: Act) -> None:  # noqa: ARG002
+        """Add the link to the replay."""
+        watch = link(Message("Watch"), show_address(job.name), "main")
+        self._watch = named(watch, Message("Watch {name}", name=job.name))
+
+    def inputs(self, job: Job) -> tuple[str, ...]:
+        """Scenario, its changes, and inputs that were chosen by name."""
+        changed = {key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME}
+        return job.scenario, _changes_in_words(changed), job.given
 
     def show(self, job: Job) -> None:
-        self._title.set_text(job.shown_name)
-        changed = _changes_in_words({key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME})
-        parts = (job.scenario, changed, job.given, STATES[job.state], job.said)
-        self._words.set_text(joined([part for part in parts if part], " · "))
-        self._progress.set_text(progress_words(self._runs.progress) if job.state == "running" else "")
-        self._progress.set_visibility(bool(self._progress.text))
-        self._cancel.set_visibility(job.state in ("waiting", "running"))
-        self._watch.set_visibility((self._runs.folder / job.name / RUN_FILE).is_file())
+        """Show the state of the run."""
+        super().show(job)
+        self._watch.set_visibility((self.runs.folder / job.name / RUN_FILE).is_file())

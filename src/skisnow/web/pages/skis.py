@@ -10,7 +10,7 @@ from nicegui import run, ui
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message
 from ...report.charts import SkiDrawing, ski_drawing
-from ..elements import Words, button, choice, field, link, named, option_texts
+from ..elements import Outcome, Words, button, choice, field, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import carving
@@ -73,7 +73,7 @@ class _Skis:
         with ui.element("div").classes("fields"):
             self._first = choice(Message("Ski"), names, chosen)
             self._second = choice(Message("Compared with"), _others(names), NOTHING)
-        self._status = Words("").classes("status").props("role=status")
+        self._status = Outcome()
         self._facts = ui.element("div").classes("table")
         with ui.element("div").classes("two"):
             with named(ui.element("section").classes("drawing"), Message("Drawing")):
@@ -103,7 +103,7 @@ class _Skis:
         with ui.element("div").classes("acts"):
             button(Message("Save in the lab"), self._save, "main", once=True)
             button(Message("Download the file"), self._download)
-        self._saved = Words("").classes("status").props("role=status")
+        self._saved = Outcome()
         self._next = ui.element("div").classes("acts")
 
     async def _begin(self) -> None:
@@ -126,12 +126,12 @@ class _Skis:
             loaded = await run.io_bound(self._load, words, edit)
         except SkisnowError as error:
             if number == self._asked:
-                _show_status(self._status, error_sentence(error), bad=True)
+                self._status.say(error_sentence(error), bad=True)
             return
         if loaded is None or number != self._asked:  # the server ends, or a newer request exists
             return
         skis, edited = loaded
-        _show_status(self._status, " ".join(item.warned for item in skis if item.warned), bad=False)
+        self._status.say(" ".join(item.warned for item in skis if item.warned))
         self._editor.show(edited.station, edited.cells)
         self._show([ski_drawing(item.ski) for item in skis])
 
@@ -160,13 +160,13 @@ class _Skis:
             self._editor.require_drawn()
             await run.io_bound(self._save_edited, name, edit)
         except SkisnowError as error:
-            _show_status(self._saved, Message("Not saved: {error}", error=error_sentence(error)), bad=True)
+            self._saved.say(Message("Not saved: {error}", error=error_sentence(error)), bad=True)
             return
         names = self._skis.names()
         self._first.set_options(names)
         self._second.set_options(option_texts(_others(names)))
         self._second.set_value(name)  # which draws it
-        _show_status(self._saved, Message("Saved: {name}. Carve and Simulate have it too.", name=name), bad=False)
+        self._saved.say(Message("Saved: {name}. Carve and Simulate have it too.", name=name))
         first = str(self._first.value)
         self._next.clear()
         with self._next:
@@ -193,15 +193,10 @@ class _Skis:
             self._editor.require_drawn()
             files = await run.io_bound(_files, self._editor.edit())
         except SkisnowError as error:
-            _show_status(self._saved, error_sentence(error), bad=True)
+            self._saved.say(error_sentence(error), bad=True)
             return
         for name, text in (files or {}).items():
             ui.download(text.encode(), name)
-
-
-def _show_status(label: ui.label, text: str, *, bad: bool) -> None:
-    label.set_text(text)
-    label.classes(add="bad" if bad else "good", remove="good" if bad else "bad")
 
 
 def _files(edit: SkiEditInput) -> dict[str, str]:

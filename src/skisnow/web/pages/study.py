@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
-from ..._support.messages import Message, joined
+from ..._support.messages import Message
 from ...estimation.results import results_json
 from ...report.campaign.page import RESULTS
 from ..carved_turn import OF_SNOW as CARVE_SNOW
 from ..carved_turn import SLIDERS
-from ..elements import Words, button, choice, link, named, option_texts
+from ..elements import Outcome, Words, button, choice, folded, link, named, option_texts
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
-from ..runs import STATES, Runs, progress_words
+from ..runs import Runs
 from ..scenario_fields import ScenarioField, called, in_labels
 from ..snow_choice import SnowChoice
 from ..studies import Studies, StudyJob, estimate_words, unit_s
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
-from ..widgets import JobList
+from ..widgets import JobCard, JobList
 from ..words import language_of, said, typed_number
 from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, with_given
 from .simulate import OF_SNOW as SCENARIO_SNOW
@@ -95,7 +95,7 @@ class _Form:
         with ui.element("div").classes("acts"):
             button(Message("Start the study"), self.ask, "main", once=True)
             self._estimate = Words("").classes("quiet").props("role=status")
-        self._status = Words("").classes("status").props("role=status")
+        self._status = Outcome()
         if studies.elsewhere:
             sentence(Message("The workers of {elsewhere} compute.", elsewhere=studies.elsewhere), "quiet")
         self._draw()
@@ -144,9 +144,7 @@ class _Form:
                     self._add(ScenarioField(SCENARIO_KEYS[name], values.get(name), None))
 
         draw(basic(values))
-        with ui.element("details").classes("expert"):
-            with ui.element("summary"):
-                Words(Message("Expert inputs"))
+        with folded(Message("Expert inputs")).classes("expert"):
             for section, words in SECTION_WORDS.items():
                 if names := [name for name in expert(values) if name.startswith(f"{section}.")]:
                     heading(words, 3)
@@ -210,12 +208,11 @@ class _Form:
             job = await run.io_bound(self._studies.ask_for, question, language_of())
         except SkisnowError as error:
             keys = [field.key for field in self._fields.values()]
-            self._status.set_text(said(Message("Not begun: {error}", error=in_labels(error_sentence(error), *keys))))
-            self._status.classes(add="bad")
+            wrong = in_labels(error_sentence(error), *keys)
+            self._status.say(said(Message("Not begun: {error}", error=wrong)), bad=True)
             return
         if job is not None:
-            self._status.set_text(Message("{name} is in the queue.", name=job.name))
-            self._status.classes(remove="bad")
+            self._status.say(Message("{name} is in the queue.", name=job.name))
 
     def _question(self) -> StudyQuestion:
         axes = [axis for axis in self._axes if axis.name]
@@ -284,32 +281,22 @@ class _Form:
         return where, {RESULTS: results_json(snow.analysis.results)}, [Message("snow: {snow}", snow=snow.words)]
 
 
-class _Card:
-    """Card of a study with its buttons."""
+class _Card(JobCard):
+    """Card of a study."""
 
-    def __init__(self, studies: Studies, job: StudyJob, act: Act) -> None:
-        self._studies = studies
-        with ui.element("section").classes("card") as self.place:
-            heading(job.name, 3)
-            self._words = sentence("", "quiet").props("aria-live=polite")
-            self._progress = sentence("", "quiet progress")
-            with ui.element("div").classes("acts"):
-                cancel = button(Message("Cancel"), lambda: act(studies.cancel, job.name))
-                self._cancel = named(cancel, Message("Cancel {name}", name=job.name))
-                self._go_on = named(
-                    button(Message("Go on"), lambda: act(studies.go_on, job.name)),
-                    Message("Go on with {name}", name=job.name),
-                )
-                table = link(Message("Table and figure"), table_address(job.name), "main")
-                self._table = named(table, Message("Table and figure of {name}", name=job.name))
+    def add_buttons(self, job: StudyJob, act: Act) -> None:
+        """Add Go on, and the link to the table."""
+        go_on = button(Message("Go on"), lambda: act(self.runs.go_on, job.name))
+        self._go_on = named(go_on, Message("Go on with {name}", name=job.name))
+        table = link(Message("Table and figure"), table_address(job.name), "main")
+        self._table = named(table, Message("Table and figure of {name}", name=job.name))
+
+    def inputs(self, job: StudyJob) -> tuple[str, ...]:
+        """Subject and varied inputs."""
+        return CARVED if job.scenario == CARVE else job.scenario, job.given
 
     def show(self, job: StudyJob) -> None:
         """Show the state of the study."""
-        of = CARVED if job.scenario == CARVE else job.scenario
-        varied = job.given
-        self._words.set_text(joined([part for part in (of, varied, STATES[job.state], job.said) if part], " · "))
-        self._progress.set_text(progress_words(self._studies.progress) if job.state == "running" else "")
-        self._progress.set_visibility(bool(self._progress.text))
-        self._cancel.set_visibility(job.state in ("waiting", "running"))
+        super().show(job)
         self._go_on.set_visibility(job.state in ("cancelled", "failed"))
         self._table.set_visibility(job.state == "done")

@@ -14,7 +14,7 @@ from starlette.responses import FileResponse, Response
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, outcome_words
 from ...report.formatting import significant
-from ..elements import Words, choice, link, named
+from ..elements import Words, add_head, choice, link, named
 from ..layout import error_sentence, framed, heading, plain_page, sentence
 from ..scenario_fields import called, written
 from ..studies import FIGURE, Studies
@@ -173,10 +173,7 @@ class _ResultsView:
         columns = {name: self._called(name) for name in study.varied} | self._results
         place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), Message("Table"))
         with place, ui.element("table"):
-            with ui.element("thead"), ui.element("tr"):
-                for words in (*columns.values(), Message("Outcome")):
-                    with ui.element("th").props("scope=col"):
-                        Words(words)
+            add_head((*columns.values(), Message("Outcome")))
             with ui.element("tbody"):
                 for row in self._table.rows[:ROWS]:
                     _add_row(row, list(columns))

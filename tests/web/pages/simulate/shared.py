@@ -27,7 +27,7 @@ def asked(desk: Desk, page: Sheet) -> dict[str, Any]:
     page.press("Simulate")
     page.until(lambda: len(jobs(desk)) > before)
     job = jobs(desk)[0]
-    page.shows(f"[status] {job['title']} is in the queue.")
+    page.shows(f"[status good] {job['title']} is in the queue.")
     return job
 
 

@@ -28,7 +28,7 @@ def asked(desk: Desk, page: Sheet) -> tuple[dict[str, Any], dict[str, Any]]:
     page.press("Start the study")
     page.until(lambda: len(jobs(desk)) > before)
     job = jobs(desk)[0]
-    page.shows(f"[status] {job['name']} is in the queue.")
+    page.shows(f"[status good] {job['name']} is in the queue.")
     return job, tomllib.loads((desk.lab.runs / "studies" / job["name"] / "study.toml").read_text(encoding="utf-8"))
 
 
