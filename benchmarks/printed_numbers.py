@@ -10,7 +10,7 @@ import argparse
 import sys
 import warnings
 from collections import defaultdict
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -40,6 +40,15 @@ PAIRS: Final = {
     ("H_V_N_per_mm3", "drop_cone_depth_mm", "all"): "H_V on drop-cone depth: p",
     ("S_f_N_per_mm2", "H_V_N_per_mm3", "all"): "S_f on H_V: p",
 }
+KINDS: Final[tuple[tuple[Literal["penetration", "shear"], str, str, str], ...]] = (
+    ("penetration", "H_V_N_per_mm3", "H_V, lowest (N/mm³)", "H_V, highest (N/mm³)"),
+    ("shear", "S_f_N_per_mm2", "S_f, lowest (N/mm²)", "S_f, highest (N/mm²)"),
+)
+COUNTS: Final = {
+    ("S_f_N_per_mm2", "edge_angle_rad", "site I"): "shear tests at varied angle, hard snow",
+    ("S_f_N_per_mm2", "edge_angle_rad", "site J"): "shear tests at varied angle, soft snow",
+    ("S_f_N_per_mm2", "H_V_N_per_mm3", "all"): "tests with S_f and H_V",
+}
 PRINTED: Final = {
     **{RMSE_ROWS[model]: f"{rmse:g}" for model, rmse in moessner_2013.PRINTED_RMSE_N.items()},
     "Eqn 11: b_0": "0.99",
@@ -60,6 +69,23 @@ PRINTED: Final = {
     "mean density, shear tests (kg/m³)": "563",
     "mean drop-cone depth, penetration tests (mm)": "13.6",
     "mean drop-cone depth, shear tests (mm)": "24.8",
+    "H_V, lowest (N/mm³)": "0.04",
+    "H_V, highest (N/mm³)": "90",
+    "S_f, lowest (N/mm²)": "0.04",
+    "S_f, highest (N/mm²)": "0.40",
+    "lowest density, penetration tests (kg/m³)": "420",
+    "highest density, penetration tests (kg/m³)": "620",
+    "lowest density, shear tests (kg/m³)": "420",
+    "highest density, shear tests (kg/m³)": "740",
+    "lowest drop-cone depth, penetration tests (mm)": "7.4",
+    "highest drop-cone depth, penetration tests (mm)": "21.2",
+    "lowest drop-cone depth, shear tests (mm)": "8.0",
+    "highest drop-cone depth, shear tests (mm)": "47.0",
+    "penetration tests": "236",
+    "shear tests": "108",
+    "shear tests at varied angle, hard snow": "20",
+    "shear tests at varied angle, soft snow": "30",
+    "tests with S_f and H_V": "35",
 }
 """Printed number of each row that needs raw data."""
 
@@ -119,6 +145,8 @@ def values_of(seed: int) -> dict[str, float]:
         pair = (row["response"], row["terms"][1], row["group"])
         if pair in PAIRS:
             values[PAIRS[pair]] = row["p"]
+        if pair in COUNTS:
+            values[COUNTS[pair]] = row["n"]
         if pair == ("S_f_N_per_mm2", "edge_angle_rad", "site J"):
             values["Eqn 13: S_f at 0° (N/mm²)"] = row["b"][0]
             values["Eqn 13: relative decrease (1/rad)"] = -row["b"][1] / row["b"][0]
@@ -126,14 +154,18 @@ def values_of(seed: int) -> dict[str, float]:
         if pair == ("S_f_N_per_mm2", "snow_density_kg_per_m3", "all"):
             values["Eqn 14: intercept (N/mm²)"], values["Eqn 14: slope (N/mm² per kg/m³)"] = row["b"]
             values["Eqn 14: rmse (N/mm²)"] = row["rmse"]
-    for kind in ("penetration", "shear"):
+    for kind, result, lowest, highest in KINDS:
+        tests = results[kind]["experiments"]
+        values[f"{kind} tests"] = len(tests)
+        estimates = [row[result] for row in tests if row["used"]]
+        values |= {lowest: min(estimates), highest: max(estimates)}
         columns = analysis.observations[kind].columns
         for name, column in (
-            ("mean density, {} tests (kg/m³)", "snow_density_kg_per_m3"),
-            ("mean drop-cone depth, {} tests (mm)", "drop_cone_depth_mm"),
+            ("density, {} tests (kg/m³)", "snow_density_kg_per_m3"),
+            ("drop-cone depth, {} tests (mm)", "drop_cone_depth_mm"),
         ):
-            if column in columns and np.any(np.isfinite(columns[column])):
-                values[name.format(kind)] = float(np.nanmean(columns[column]))
+            for word, of in (("mean", np.nanmean), ("lowest", np.nanmin), ("highest", np.nanmax)):
+                values[f"{word} {name.format(kind)}"] = float(of(columns[column]))
     return values
 
 

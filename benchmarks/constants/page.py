@@ -1,4 +1,4 @@
-"""Text of docs/methods/contact-constants.md from the constants, what they move, and the reasons of the others."""
+"""Text on constants in docs/validation/simulated-turn.md from the constants, what they move, and the reasons of the others."""
 
 from __future__ import annotations
 

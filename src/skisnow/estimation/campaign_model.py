@@ -9,7 +9,7 @@ Series i with the readings e_ij under the loads F_ij, F_i7 the largest of them:
 τ (seating), σ_g (layering) and s (relative scatter of the force) belong to all series of a group, by default the whole
 campaign. The campaign estimates them; weak priors keep them above 0 with few series. Each interval adds the parts that
 the spreads cause and has Student's factor with the degrees of freedom of Welch and Satterthwaite. The model is ours:
-docs/methods/statistics.md derives it and reports its coverage.
+docs/methods/intervals.md derives it and reports its coverage.
 """
 
 from __future__ import annotations
