@@ -1,4 +1,4 @@
-"""Text on constants in docs/validation/simulated-turn.md from the constants, what they move, and the reasons of the others."""
+"""Effect of the constants (docs/validation/simulated-turn.md): what they move, and the reasons of the others."""
 
 from __future__ import annotations
 
