@@ -103,7 +103,7 @@ class EditSession:
 
     def tests_of_site(self, site: str) -> list[ReplayedTest]:
         """All tests at a site, and the snow data of the site."""
-        return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells["site"] == site]
+        return [test for test in self.campaign.tests.values() if test.rows and test.rows[0].cells.get("site") == site]
 
     def quick_results(self, site: str) -> QuickResults:
         """Quick results of a site, computed as an analysis of the exported folder would."""

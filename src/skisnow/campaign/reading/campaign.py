@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files of a campaign, in the order of reading; workbooks can replace them."""
+ATTACHMENTS: Final = "attachments.csv"
+"""Photos and positions of tests, which no number depends on."""
 
 
 class _ReadFiles(Container[str]):
@@ -257,7 +259,9 @@ def _sort_problems(problems: list[Problem]) -> tuple[Problem, ...]:
 def _unread_files(there: Mapping[str, bool]) -> tuple[str, ...]:
     """Files that are not part of a campaign, without hidden ones and Excel's lock files."""
     files = sorted(name for name, is_file in there.items() if is_file)
-    return tuple(name for name in files if name not in CAMPAIGN_FILES and not name.startswith((".", "~$")))
+    return tuple(
+        name for name in files if name not in (*CAMPAIGN_FILES, ATTACHMENTS) and not name.startswith((".", "~$"))
+    )
 
 
 def _units_without_heading(headings: Headings, tables: Mapping[str, Table]) -> list[Problem]:

@@ -1,5 +1,12 @@
 """The store, a file or on a server: campaigns byte for byte, and journals (event sourcing) of those being entered."""
 
+from .attachments import (
+    Position,
+    attachments_of,
+    photo_entry,
+    position_entry,
+    write_campaign,
+)
 from .conflict import Conflict, Side
 from .export import (
     ExportedCampaign,
@@ -20,7 +27,6 @@ from .replayed import (
     campaign_files,
     campaign_in_memory,
     replay_journal,
-    write_campaign,
 )
 from .server import ServerAddress, StorePlace, store_place
 from .store import AddedCampaign, Finding, Store, StoredCampaign, StoredFile, default_path
@@ -38,6 +44,7 @@ __all__ = [
     "Journals",
     "NewEntry",
     "OvertakenError",
+    "Position",
     "Reading",
     "ReplayedCampaign",
     "ReplayedTest",
@@ -50,6 +57,7 @@ __all__ = [
     "StoredTable",
     "SyncResult",
     "add_corrections",
+    "attachments_of",
     "campaign_files",
     "campaign_in_memory",
     "corrected_files",
@@ -58,6 +66,8 @@ __all__ = [
     "export_corrected",
     "export_entered",
     "find_campaign",
+    "photo_entry",
+    "position_entry",
     "replay_journal",
     "store_place",
     "stored_tables",

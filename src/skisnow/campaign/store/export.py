@@ -11,17 +11,16 @@ from ..._support.staging import write_file
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
 from ..reading.text import UnreadableTextError, inspect_csv
+from .attachments import exported_files, write_campaign
 from .engine import database_errors, file_errors, reading
 from .folder import StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
 from .replayed import (
     COLUMNS,
-    campaign_files,
     correction_cells,
     correction_of_cell,
     guarded_csv,
     replay_journal,
-    write_campaign,
 )
 from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
 from .stored_tables import cell_of
@@ -183,9 +182,8 @@ def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in 
 
 def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A002
     """Files that `export_entered` writes, sorted by path; errors as there."""
-    texts = campaign_files(replay_journal(Journals(store).entries(id)))
-    contents = {path: text.encode() for path, text in sorted(texts.items())}
-    return tuple(StoredFile(path, len(data), sha256(data).hexdigest()) for path, data in contents.items())
+    contents = exported_files(replay_journal(Journals(store).entries(id)))
+    return tuple(StoredFile(path, len(data), sha256(data).hexdigest()) for path, data in sorted(contents.items()))
 
 
 def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002

@@ -20,7 +20,6 @@ from .journal_entry import DESCRIPTION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
 
     from ..problems import Problem
     from ..reading.table_forms import TableForm
@@ -249,12 +248,6 @@ def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]
     for index, reading in enumerate(test.rows):
         cancelled = index == 0 and test.cancelling is not None
         yield reading, reading.cells | {STATUS: test.cancelled} if cancelled else reading.cells
-
-
-def write_campaign(campaign: ReplayedCampaign, folder: Path, *, of: Iterable[ReplayedTest] | None = None) -> None:
-    """Write the campaign's files to an existing folder, without flushing: they can be written again at any time."""
-    for name, text in campaign_files(campaign, of=of).items():
-        (folder / name).write_text(text, encoding="utf-8", newline="")
 
 
 def _columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:

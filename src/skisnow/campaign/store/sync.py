@@ -384,7 +384,7 @@ def _rename(here: Connection, there: Connection, divergence: Divergence, who: st
     for entry in divergence.here:
         about = None if entry.about is None else numbers[entry.about]
         plain = {field: getattr(entry, field) for field in ("action", "file", "position", "who", "why")}
-        cells = _renamed_cells(entry.cells, FORMS[file].key, test, name)
+        cells = _renamed_cells(entry.cells, FORMS[file].key if file in FORMS else "", test, name)
         written = write_entry(
             here, divergence.journal_id, NewEntry(**plain, test=name, cells=cells, about=about), at=entry.at
         )

@@ -77,6 +77,11 @@ class TableView:
         """Label of a column, with the unit of its cells."""
         return label(column, unit=self.session.unit(self.file, column))
 
+    @property
+    def writer(self) -> str:
+        """Name of the writer."""
+        return str(self._who.value or "")
+
     def tests(self) -> list[ReplayedTest]:
         """All tests of the table, in the order of entry."""
         return self.session.campaign.of_file(self.file)
@@ -94,7 +99,7 @@ class TableView:
             test=name,
             cells=cells,
             position=position,
-            who=self._who.value or "",
+            who=self.writer,
             once=current_request().once,
         )
         return self._write(entry, seen, said)
@@ -124,7 +129,7 @@ class TableView:
             test=test.name,
             about=row,
             cells=cells,
-            who=self._who.value or "",
+            who=self.writer,
             why=why.strip(),
         )
         return self._write(entry, test.last, said)
@@ -134,9 +139,7 @@ class TableView:
         if not why.strip():
             self.say(Message("A test is cancelled with a reason."), "bad")
             return False
-        entry = NewEntry(
-            action="cancel", file=self.file, test=test.name, who=self._who.value or "", why=" ".join(why.split())
-        )
+        entry = NewEntry(action="cancel", file=self.file, test=test.name, who=self.writer, why=" ".join(why.split()))
         return self._write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
 
     def undo(self, test: ReplayedTest) -> bool:
@@ -145,7 +148,7 @@ class TableView:
         if last is None:
             self.say(Message("There is nothing to undo."), "bad")
             return False
-        entry = NewEntry(action="undo", file=self.file, test=test.name, about=last.sequence, who=self._who.value or "")
+        entry = NewEntry(action="undo", file=self.file, test=test.name, about=last.sequence, who=self.writer)
         return self._write(entry, test.last, Message("Undone."))
 
     def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
@@ -175,7 +178,7 @@ class SeriesList:
     def __init__(self, view: TableView) -> None:
         self._view = view
         self._place = ui.element("div")
-        self._current = ""
+        self.current = ""
         self._results: dict[str, tuple[str, list[str]]] = {}
         """Result in short and codes of the flags by test."""
         self._drawn: object = None
@@ -201,14 +204,14 @@ class SeriesList:
                 value = row[column]
                 short = f"{symbol} {significant(value)}" if value is not None else ""
                 self._results[name] = short, list(results.flags.get((file, name), {}))
-        self.show(self._current)
+        self.show(self.current)
 
     def _shown(self) -> list[ReplayedTest]:
         return [test for test in self._view.tests()[-MOST:] if test.rows]
 
     def show(self, current: str) -> None:
         """Draw the list again if a test is new or changed; ``current``: name of the test in the form."""
-        self._current = current
+        self.current = current
         tests = list(reversed(self._shown()))
         lines = [(test.name, test.rows[0].cells["site"], *self._words(test)) for test in tests]
         if self._drawn == (current, lines):

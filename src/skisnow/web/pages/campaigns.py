@@ -24,7 +24,7 @@ from ..layout import framed, heading, sentence
 from ..page_requests import analysis, correcting, entering, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..transfer import IMPORT
-from ..words import language_of, minute_words
+from ..words import TABLES, language_of, minute_words
 
 if TYPE_CHECKING:
     from ...campaign.store import StoredCampaign
@@ -92,7 +92,7 @@ def _list_drafts(lab: Lab) -> None:
         except StoreError as error:
             _add_damaged(head.id, error)
             continue
-        tests = [test for test in session.campaign.tests.values() if test.rows]
+        tests = [test for test in session.campaign.tests.values() if test.rows and test.file in TABLES]
         with ui.element("section").classes("card"):
             heading(session.described.name or Message("(no name)"), 3)
             words = [

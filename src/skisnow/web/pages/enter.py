@@ -10,6 +10,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ...campaign.store.stored_tables import checked_cell
 from ..edit_session import EditSession
+from ..entry.attachments import Attachments
 from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
@@ -51,6 +52,7 @@ def add_page(lab: Lab) -> None:
                 places,
             ):
                 series_list = live_results.series_list = SeriesList(view) if view.file == FILE else None
+                Attachments(view, lambda: series_list.current if series_list is not None else test)
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
             _show_form(view, (test, row), head, (live_results, places), series_list)
 
