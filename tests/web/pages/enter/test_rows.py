@@ -132,7 +132,7 @@ def test_the_next_repeat_of_a_cone_is_requested(desk: Desk) -> None:
     assert list(values(page.between("h2 New test", "button[main] Store")).values()) == ["c", "A", "2", ""]
     store(page, cone="13")
     assert [entry.position for entry in history(desk, id_)] == [0, 1]
-    assert [line[-2:] for line in page.between("h3 So far")[1::2]] == ["13", "12"]
+    assert [line[-2:] for line in page.between("h3 So far", "Photo and position")[1::2]] == ["13", "12"]
     store(page, repeat="2", cone="14")
     assert len(page.refusals()) == 1
     assert len(history(desk, id_)) == 2
