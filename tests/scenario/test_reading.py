@@ -93,6 +93,7 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
         "results",
         "site",
         "map_file",
+        "layers_file",
     }
     other_ways |= {"file"}
     values = scenario_values(load_scenario(name))

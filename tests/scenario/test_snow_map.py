@@ -10,12 +10,13 @@ import pytest
 from skisnow import simulate
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
-from skisnow.forces.penetration import LayeredPoint
+from skisnow.forces.penetration import LayeredPoint, ProfilePoint
 from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
 from skisnow.scenario.run_settings import Start
 from skisnow.scenario.sledge import Shear
+from skisnow.scenario.snow_layers import read_snow_layers
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises
@@ -206,6 +207,43 @@ def test_a_run_on_equal_layers_is_that_on_one() -> None:
     two = load_scenario("carved-46m", changes=short | layers)
     found, expected = simulate(two), simulate(one)
     np.testing.assert_allclose(found.place, expected.place, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "shares"),
+    [
+        ("depth_mm,hardness_share\n0,1\n5,10\n", (1.0, 10.0)),
+        ("depth_mm,force_N\n0,1\n2,4\n8,9\n", (1.0 / 3.25, 4.0 / 3.25, 9.0 / 3.25)),  # mean (2 + 24)/8
+    ],
+)
+def test_layers_of_a_file(tmp_path: Path, text: str, shares: tuple[float, ...]) -> None:
+    path = tmp_path / "layers.csv"
+    path.write_text(text, encoding="utf-8")
+    given = scenario_file("carved-46m", changes={"snow.layers_file": str(path)})
+    law = given.scenario.contact.penetration
+    assert isinstance(law, ProfilePoint)
+    assert law.shares == pytest.approx(shares)
+    assert law.bends == pytest.approx([float(line.split(",")[0]) / 1e3 for line in text.split()[2:]])
+    assert given.values["snow.layers_file"] == str(path)
+    with raises(ParameterError, "contradiction"):
+        load_scenario("carved-46m", changes={"snow.layers_file": str(path), **LAYERS})
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("depth_mm,hardness_share\n1,1\n", "not_rising"),
+        ("depth_mm,hardness_share\n0,1\n0,2\n", "not_rising"),
+        ("depth_mm,hardness_share\n0,0\n", "out_of_range"),
+        ("depth_mm,hardness_share,force_N\n0,1,1\n", "wrong_kind"),
+        ("depth_mm\n0\n", "wrong_kind"),
+    ],
+)
+def test_wrong_layers(tmp_path: Path, text: str, code: str) -> None:
+    path = tmp_path / "layers.csv"
+    path.write_text(text, encoding="utf-8")
+    with raises(ParameterError, code):
+        read_snow_layers(path)
 
 
 S_F = 0.4e6

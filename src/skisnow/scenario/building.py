@@ -24,6 +24,7 @@ from .keys import SCENARIO_KEYS, full_name
 from .resolution import CONDITIONS, DISPLACEMENT, H_V, S_F, UNLOADING, ContradictionError, Resolution
 from .scenario import Scenario, course_on_slope
 from .slope import Plane, read_profile
+from .snow_layers import read_snow_layers
 from .snow_map import SnowMap
 from .terrain import Slope, read_terrain
 
@@ -165,6 +166,8 @@ def _contact(resolution: Resolution) -> Contact:
     if LAW_FILE in values:
         law = read_friction_file(resolution.files[LAW_FILE])
         measured |= {"friction_law": law, "friction": values.get("friction.mu_0", 0.0)}
+    if "snow.layers_file" in values:
+        measured["layers"] = read_snow_layers(resolution.files["snow.layers_file"])
     return made(Contact, values, snow=snow, snow_map=resolution.snow_map, **measured)
 
 

@@ -9,12 +9,13 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..forces.friction import FrictionFile, FrictionLaw, LinearFriction
 from ..forces.friction.load import ActsOn, Direction
-from ..forces.penetration import LayeredPoint, PointLaw
+from ..forces.penetration import LayeredPoint, PointLaw, ProfilePoint
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.displacement import SHEAR_DISPLACEMENT
 from ..parameters import APART, Condition, Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
 from ..snow.measured_range import without_range_warnings
+from .snow_layers import SnowLayers
 from .snow_map import SnowMap
 
 Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
@@ -35,6 +36,10 @@ def _law_path(law: FrictionFile | None) -> str | None:
     return None if law is None else law.path
 
 
+def _layers_source(layers: SnowLayers | None) -> str | None:
+    return None if layers is None else layers.source
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Contact:
     """Contact of skis and snow.
@@ -53,6 +58,8 @@ class Contact:
         u_y > 0 (m).
     hardness_growth, layer_depth, lower_hardness
         γ' ≥ 0 (1/m); depth (m) at which a lower layer begins, and its H_V (N/m³); None: one layer.
+    layers
+        Hardness of several layers over H_V instead.
     damping, delayed_share, retardation_time
         c ≥ 0 (N s/m³) of the snow's answer to the rate of depth; H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of its delayed depth.
     friction, friction_by_speed, friction_acts_on, friction_direction
@@ -148,6 +155,17 @@ class Contact:
             lowest=0.0001,
             highest=10000.0,
             origin="none; goes with snow.layer_depth_mm",
+        ),
+    ] = None
+    layers: Annotated[
+        SnowLayers | None,
+        APART,
+        Word(
+            "snow.layers_file",
+            "CSV file of layers: depth_mm of each top, hardness_share of H_V or force_N of a SnowMicroPen",
+            word_of=_layers_source,
+            names_file=True,
+            label=Message("file of the snow over the depth"),
         ),
     ] = None
     damping: Annotated[
@@ -299,6 +317,12 @@ class Contact:
                 "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none", code="contradiction"
             )
         self._require_one_friction()
+        if self.layers is not None and (self.layer_depth is not None or self.hardness_growth > 0.0):
+            raise ParameterError(
+                "snow.layers_file gives the hardness over the depth. Remove it, or snow.layer_depth_mm and "
+                "snow.hardness_growth_per_mm",
+                code="contradiction",
+            )
         if not self.is_layered:
             return
         if self.snow_map is not None and self.snow_map.hardness is not None:
@@ -360,12 +384,14 @@ class Contact:
     @property
     def is_layered(self) -> bool:
         """True if the pressure is not proportional to the depth."""
-        return self.layer_depth is not None or self.hardness_growth > 0.0
+        return self.layers is not None or self.layer_depth is not None or self.hardness_growth > 0.0
 
     @property
     def penetration(self) -> PointLaw | None:
         """The law of layered snow; None: H_V and k_u alone."""
         if not self.is_layered:
             return None
+        if self.layers is not None:
+            return ProfilePoint(self.snow.snow_hardness, self.unloading_ratio, self.layers.tops, self.layers.shares)
         depth, hardness = self.layer_depth or 1e3, self.lower_hardness or self.snow.snow_hardness
         return LayeredPoint(self.snow.snow_hardness, self.unloading_ratio, depth, hardness, self.hardness_growth)

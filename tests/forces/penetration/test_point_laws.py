@@ -3,6 +3,7 @@
 import math
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +20,7 @@ from skisnow.forces.penetration import (
     LayeredPoint,
     MeanPressurePoint,
     PointLaw,
+    ProfilePoint,
     VolumeWithAnglePoint,
 )
 
@@ -34,6 +36,7 @@ SAMPLES: tuple[PointLaw, ...] = (
     MeanPressurePoint(A / 4.0, B / 4.0, 5.0, RAMP),
     LayeredPoint(H_V, 10.0, layer_depth=0.02, lower_hardness=5.0 * H_V),
     LayeredPoint(H_V, 2.0, layer_depth=0.02, lower_hardness=0.2 * H_V),
+    ProfilePoint(H_V, 2.0, (0.0, 0.02, 0.03), (1.0, 5.0, 0.2)),
 )
 EVERY_LAW = pytest.mark.parametrize("law", SAMPLES, ids=repr)
 
@@ -45,6 +48,8 @@ def stronger(law: PointLaw) -> PointLaw:
             return MeanPressurePoint(3 * law.pressure_slope, 3 * law.pressure_offset, law.unloading_ratio, RAMP)
     if isinstance(law, LayeredPoint):
         return LayeredPoint(3 * H_V, law.unloading_ratio, law.layer_depth, 3 * law.lower_hardness)
+    if isinstance(law, ProfilePoint):
+        return replace(law, snow_hardness=3 * H_V)
     if isinstance(law, HypoplasticPoint | VolumeWithAnglePoint):
         return type(law)(3 * H_V, law.unloading_ratio)
     return ElasticPoint(3 * H_V)
@@ -56,6 +61,8 @@ def at_5_cm(law: PointLaw) -> float:
         return 2.0 * law.pressure_slope * 0.05 + law.pressure_offset
     if isinstance(law, LayeredPoint):
         return H_V * law.layer_depth + law.lower_hardness * (0.05 - law.layer_depth)
+    if isinstance(law, ProfilePoint):
+        return H_V * (0.02 + 5.0 * 0.01 + 0.2 * 0.02)
     return (0.99 if isinstance(law, VolumeWithAnglePoint) else 1.0) * H_V * 0.05
 
 
@@ -65,6 +72,8 @@ def steepest(law: PointLaw) -> float:
         return law.unloading_ratio * (2.0 * law.pressure_slope + law.pressure_offset / RAMP)
     if isinstance(law, LayeredPoint):
         return law.unloading_ratio * max(H_V, law.lower_hardness)
+    if isinstance(law, ProfilePoint):
+        return law.unloading_ratio * 5.0 * H_V
     ratio = getattr(law, "unloading_ratio", 1.0)
     return float(ratio if ratio < 1e6 else 1.0) * H_V
 
@@ -288,3 +297,15 @@ def test_equal_layers_are_one() -> None:
         np.testing.assert_allclose(getattr(two, name)(depth, deepest), getattr(one, name)(depth, deepest), atol=1e-6)
     for name in ("residual_depth", "lost_energy"):
         np.testing.assert_allclose(getattr(two, name)(deepest), getattr(one, name)(deepest), rtol=1e-12, atol=1e-12)
+
+
+def test_a_profile_of_two_layers_is_the_law_of_two() -> None:
+    depth, deepest = np.meshgrid(np.linspace(0.0, 0.04, 41), np.linspace(0.0, 0.04, 41))
+    two = LayeredPoint(H_V, 10.0, layer_depth=0.013, lower_hardness=5.0 * H_V)
+    several = ProfilePoint(H_V, 10.0, (0.0, 0.006, 0.013, 0.02), (1.0, 1.0, 5.0, 5.0))
+    for name in ("stress", "stored_energy"):
+        np.testing.assert_allclose(
+            getattr(several, name)(depth, deepest), getattr(two, name)(depth, deepest), atol=1e-6
+        )
+    for name in ("residual_depth", "lost_energy"):
+        np.testing.assert_allclose(getattr(several, name)(deepest), getattr(two, name)(deepest), rtol=1e-12, atol=1e-12)

@@ -18,6 +18,7 @@ from skisnow.scenario.boots import read_boots
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.reading import load_input
+from skisnow.scenario.snow_layers import read_snow_layers
 from skisnow.scenario.snow_map import read_snow_map
 from tests.forces.friction.test_law_file import STATES
 
@@ -93,6 +94,7 @@ _TERRAIN = b"x_m,y_m,z_m\n" + b"".join(
 _MAP = b"x_m,y_m,H_V_N_per_mm3,S_f_N_per_mm2\n" + b"".join(
     b"%d,%d,%.2f,0.5\n" % (2 * i, 2 * j, 0.2 + 0.01 * i) for i in range(5) for j in range(4)
 )
+_LAYERS = b"depth_mm,hardness_share\n0,1\n5,10\n12,3\n"
 _FRICTION = STATES.encode()
 _ALONG = b"x_m,H_V_N_per_mm3\n0,0.2\n3,0.21\n10,0.3\n11,0.2\n"
 _ESRI = b"ncols 5\nnrows 4\nxllcorner 100.0\nyllcorner 200.0\ncellsize 2.0\nNODATA_value -9999\n" + b"".join(
@@ -149,6 +151,10 @@ def _used_terrain(path: Path) -> object:
 def _used_map(path: Path) -> object:
     found = read_snow_map(path)
     return found.mean_hardness, found.mean_stress, repr(found)
+
+
+def _used_layers(path: Path) -> object:
+    return repr(read_snow_layers(path))
 
 
 def _used_friction(path: Path) -> object:
@@ -232,6 +238,7 @@ READERS = (
     _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
     _of("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
     _of("friction.toml", _FRICTION, _used_friction, TOML, "forces.friction.law_file:read_friction_file"),
+    _of("layers.csv", _LAYERS, _used_layers, TABLE, "scenario.snow_layers:read_snow_layers"),
     _of("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots:read_boots"),
     _of("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots:read_boots"),
 )  # fmt: skip

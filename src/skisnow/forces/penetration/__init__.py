@@ -9,7 +9,7 @@ from .elastic_point import ElasticPoint
 from .element_count import ElementCountLaw
 from .hypoplastic_point import HypoplasticPoint
 from .law import PenetrationLaw
-from .layered_point import LayeredPoint
+from .layered_point import LayeredPoint, ProfilePoint
 from .mean_pressure import MeanPressureLaw
 from .mean_pressure_point import MeanPressurePoint
 from .point_law import PointLaw
@@ -34,6 +34,7 @@ POINT_LAWS: Final[tuple[type[PointLaw], ...]] = (
     VolumeWithAnglePoint,
     MeanPressurePoint,
     LayeredPoint,
+    ProfilePoint,
 )
 """Every law for one place on the snow."""
 
@@ -51,6 +52,7 @@ __all__ = [
     "MeanPressurePoint",
     "PenetrationLaw",
     "PointLaw",
+    "ProfilePoint",
     "VolumeLaw",
     "VolumeWithAngleLaw",
     "VolumeWithAnglePoint",

@@ -1,7 +1,8 @@
-"""Snow in two layers at one place, the upper one harder below: hard snow under soft, or snow of finite depth."""
+"""Snow in layers at one place: hard snow under soft, snow of finite depth, or a measured profile."""
 
 from __future__ import annotations
 
+import abc
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +14,53 @@ from ..parameter_checks import require_above_zero, require_not_below_zero
 from .point_law import PointLaw
 
 
+class DeepeningPoint(PointLaw):
+    """Virgin loading by the depth, q(ε), and unloading by a multiple of its steepest growth so far.
+
+    A law gives ``unloading_ratio`` and `_loading`.
+    """
+
+    __slots__ = ()
+    unloading_ratio: float
+
+    @abc.abstractmethod
+    def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """q, the work ∫q and k_u at deepest depths."""
+
+    def _require_unloading(self) -> None:
+        if not 1.0 <= self.unloading_ratio < np.inf:
+            raise ParameterError(
+                "{kind}: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite",
+                code="out_of_range",
+                kind=type(self).__name__,
+                unloading_ratio=self.unloading_ratio,
+            )
+
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stress`."""
+        depth = np.asarray(depth, float)
+        reached = self.deepest_after(depth, deepest)
+        loaded, _, unloading = self._loading(reached)
+        return np.maximum(loaded - unloading * (reached - depth), 0.0)
+
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.residual_depth`."""
+        loaded, _, unloading = self._loading(deepest)
+        return np.asarray(deepest, float) - loaded / unloading
+
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
+        _, _, unloading = self._loading(self.deepest_after(depth, deepest))
+        return self.stress(depth, deepest) ** 2 / (2.0 * unloading)
+
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """See `PointLaw.lost_energy`: the work of loading minus the recovered work."""
+        loaded, work, unloading = self._loading(deepest)
+        return np.maximum(work - loaded**2 / (2.0 * unloading), 0.0)  # elastic: rounding could be below 0
+
+
 @dataclass(frozen=True, slots=True)
-class LayeredPoint(PointLaw):
+class LayeredPoint(DeepeningPoint):
     """p = H_V ε (1 + γ' ε) down to the depth d of the upper layer, below it grows by H_2 with the depth.
 
     * Virgin loading, ε ≥ ε_max: p = q(ε) = H_V ε (1 + γ' ε) to d, then q(d) + H_2 (ε - d); ε_max becomes ε.
@@ -71,12 +117,7 @@ class LayeredPoint(PointLaw):
             lower_hardness=self.lower_hardness,
         )
         require_not_below_zero(self, hardness_growth=self.hardness_growth)
-        if not 1.0 <= self.unloading_ratio < np.inf:
-            raise ParameterError(
-                "LayeredPoint: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite",
-                code="out_of_range",
-                unloading_ratio=self.unloading_ratio,
-            )
+        self._require_unloading()
 
     @property
     def bends(self) -> tuple[float, ...]:
@@ -95,24 +136,74 @@ class LayeredPoint(PointLaw):
         unloading: FloatArray = self.unloading_ratio * steepest
         return np.asarray(at_top + self.lower_hardness * below), np.asarray(work), unloading
 
-    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stress`."""
-        depth = np.asarray(depth, float)
-        reached = self.deepest_after(depth, deepest)
-        loaded, _, unloading = self._loading(reached)
-        return np.maximum(loaded - unloading * (reached - depth), 0.0)
 
-    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.residual_depth`."""
-        loaded, _, unloading = self._loading(deepest)
-        return np.asarray(deepest, float) - loaded / unloading
+@dataclass(frozen=True, slots=True)
+class ProfilePoint(DeepeningPoint):
+    """Snow in layers: from each top on, p of virgin snow grows by the layer's share of H_V with the depth.
 
-    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.stored_energy`: p²/(2 k_u)."""
-        _, _, unloading = self._loading(self.deepest_after(depth, deepest))
-        return self.stress(depth, deepest) ** 2 / (2.0 * unloading)
+    Attributes
+    ----------
+    snow_hardness
+        H_V (N/m³) of share 1.
+    unloading_ratio
+        k_u over the steepest growth of the pressure so far, ≥ 1 and finite.
+    tops
+        Depths (m) at which the layers begin, rising from 0.
+    shares
+        Hardness of each layer over H_V, > 0.
 
-    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
-        """See `PointLaw.lost_energy`: the work of loading minus the recovered work."""
-        loaded, work, unloading = self._loading(deepest)
-        return np.maximum(work - loaded**2 / (2.0 * unloading), 0.0)  # elastic: rounding could be below 0
+    See Also
+    --------
+    skisnow.forces.penetration.LayeredPoint
+
+    Notes
+    -----
+    Range: none is known. Equal shares give `HypoplasticPoint`, two layers `LayeredPoint`. A crust that breaks is not
+    described. Source: Mössner and others (2013) for H_V; that layers add up is ours (modelling assumption).
+
+    References
+    ----------
+    Mössner, Innerhofer, Schindelwig, Kaps, Schretter and Nachbauer (2013), "Measurement of mechanical properties of
+    snow for simulation of skiing", J. Glaciol.
+
+    Examples
+    --------
+    >>> snow = ProfilePoint(0.1e9, 10.0, (0.0, 0.005), (1.0, 10.0))
+    >>> [round(float(p)) for p in snow.stress([0.002, 0.005, 0.007], 0.0)]
+    [200000, 500000, 2500000]
+    """
+
+    snow_hardness: float
+    unloading_ratio: float
+    tops: tuple[float, ...]
+    shares: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        require_above_zero(self, snow_hardness=self.snow_hardness, shares=min(self.shares, default=0.0))
+        self._require_unloading()
+        if len(self.tops) != len(self.shares) or self.tops[0] != 0.0 or np.any(np.diff(self.tops) <= 0.0):
+            raise ParameterError(
+                "ProfilePoint: tops are {tops}; they must rise from 0, one for each of {count} shares",
+                code="out_of_order",
+                tops=self.tops,
+                count=len(self.shares),
+            )
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """See `PointLaw.bends`: the borders of the layers."""
+        return self.tops[1:]
+
+    def _loading(self, deepest: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """q, the work ∫q and k_u at deepest depths."""
+        deepest = np.maximum(np.asarray(deepest, float), 0.0)
+        tops, growth = np.array(self.tops), self.snow_hardness * np.array(self.shares)
+        thick = np.diff(tops)
+        at_top = np.concatenate([[0.0], np.cumsum(growth[:-1] * thick)])
+        work = np.concatenate([[0.0], np.cumsum((at_top[:-1] + 0.5 * growth[:-1] * thick) * thick)])
+        layer = np.maximum(np.searchsorted(tops, deepest, side="left") - 1, 0)
+        below = deepest - tops[layer]
+        steepest = np.maximum.accumulate(growth)[layer]
+        loaded: FloatArray = np.asarray(at_top[layer] + growth[layer] * below)
+        spent: FloatArray = np.asarray(work[layer] + (at_top[layer] + 0.5 * growth[layer] * below) * below)
+        return loaded, spent, np.asarray(self.unloading_ratio * steepest)
