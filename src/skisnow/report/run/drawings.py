@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from markupsafe import Markup
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
+from ..._support.messages import Message, template
 from ..._support.units import DEGREE, MM
 from ..._support.user_files.json_text import json_number
 from ...parameters import nearest
@@ -27,147 +27,40 @@ from .time_figures import (
 from .track_figure import CUTOUT, STEADY, run_track
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from matplotlib.figure import Figure
 
     from ...simulation.run import Run
 
 
+class RunFigure(NamedTuple):
+    """A figure of a run: function that draws it, template of its caption, description for screen readers.
+
+    ``fields`` of a run: values in both texts. ``further`` sentences of the caption.
+    """
+
+    draw: Callable[[Run], Figure]
+    caption: str
+    alt: str
+    fields: Callable[[Run], dict[str, Any]] = lambda _run: {}
+    further: Callable[[Run], Markup] = lambda _run: Markup("")
+
+
 def run_drawings(run: Run) -> Iterator[Drawing]:
     """All figures in order, drawn in the style in force when they are requested; none for a run without a step."""
     if len(run.time) < 2:
         return
-    yield _track(run)
-    if run.scenario.course is not None:
-        yield _course(run)
-    yield _motion(run)
-    if run.scenario.skier is None and run.boots_by is not None:
-        yield _boots(run)
-    if run.scenario.skier is not None:
-        yield _balance(run)
-    yield _along_ski(run)
-    yield _grip(run)
-    yield _energies(run)
-
-
-def _track(run: Run) -> Drawing:
-    return Drawing(
-        "track",
-        prose(
-            "(a) The run from above, the same scale along both axes. (b, c) The grooves of both skis over {length} m "
-            "at half time: along the track of the loaded edge in metres, across it in millimetres. Their edges are "
-            "medians over {lines} lines of snow.",
-            length=significant(CUTOUT, 2),
-            lines=STEADY,
-        ),
-        Message(
-            "Tracks of both skis from above, {run_length} m long, and their grooves.",
-            run_length=significant(run.run_length),
-        ),
-        run_track(run),
-        wide=True,
-    )
-
-
-def _course(run: Run) -> Drawing:
-    return Drawing(
-        "course",
-        prose(
-            "The line of the middle between the boots over the course, from above; colour: edge angle at the boots, "
-            "positive with the left edges down. A cross: the gate was not passed. Gates to which no outer pole is "
-            "known are drawn with a piece of their line."
-        ),
-        Message("Line over the gates of the course, coloured by edge angle."),
-        run_course(run),
-        wide=True,
-    )
-
-
-def _motion(run: Run) -> Drawing:
-    return Drawing(
-        "motion",
-        prose(
-            "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The "
-            "radius is not drawn where it is more than three times its median."
-        )
-        + _carved_radius(run),
-        Message("Speed, heading and turn radius over time."),
-        run_motion(run),
-        wide=True,
-    )
-
-
-def _boots(run: Run) -> Drawing:
-    return Drawing(
-        "boots",
-        prose(
-            "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: (b) "
-            "off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, positive where "
-            "it turns the left edge up. Each axis leaves one peak in a hundred out."
-        ),
-        Message("Edge angles of both boots, and forces and edging moment of the skis on them, over time."),
-        run_boots(run),
-        wide=True,
-    )
-
-
-def _balance(run: Run) -> Drawing:
-    return Drawing(
-        "balance",
-        prose(
-            "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean that "
-            "would be in balance with speed and path radius of the centre of mass. Force of the snow on each ski: (b) "
-            "total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
-        ),
-        Message("Lean, edge angle and forces of a skier over time."),
-        run_balance(run),
-        wide=True,
-    )
-
-
-def _along_ski(run: Run) -> Drawing:
-    return Drawing(
-        "along_ski",
-        prose(
-            "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
-            "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
-            "load the afterbody runs in the groove that the forebody cut."
-        ),
-        Message("Maps of edge depth and normal force per length over position along the ski and time, for both skis."),
-        run_along_ski(run),
-        wide=True,
-    )
-
-
-def _grip(run: Run) -> Drawing:
-    return Drawing(
-        "grip",
-        prose(
-            "Grip utilisation of each ski: the sum of its side force over the sum of the shear capacity S_f e. At 1 "
-            "the ski side-slips. Dotted: the sum of the sizes of the shear instead, which is more where parts of the "
-            "edge pull against each other. A place of snow slips by {slip} mm across while a ski passes; with a shear "
-            "displacement u_y of 0.5 to 1 mm such pulls end.",
-            slip=significant(json_number(slip_of_a_place(run) / MM), 2),
-        )
-        + _other_strength(run),
-        Message("Grip utilisation of each ski over time."),
-        run_grip(run),
-        wide=True,
-    )
-
-
-def _energies(run: Run) -> Drawing:
-    return Drawing(
-        "energies",
-        prose(
-            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) Only "
-            "the losses."
-        ),
-        Message("Stored energies and losses over time, stacked."),
-        run_energies(run),
-        wide=True,
-    )
+    absent = {
+        "course": run.scenario.course is None,
+        "boots": run.scenario.skier is not None or run.boots_by is None,
+        "balance": run.scenario.skier is None,
+    }
+    for name, (draw, caption, alt, fields, further) in _FIGURES.items():
+        if not absent.get(name, False):
+            values = fields(run)
+            words = prose(caption, **values) + further(run)
+            yield Drawing(name, words, Message(alt, **values), draw(run), wide=True)
 
 
 def _carved_radius(run: Run) -> Markup:
@@ -193,15 +86,83 @@ def _other_strength(run: Run) -> Markup:
 
 
 _FIGURES: Final = {
-    "track": run_track,
-    "course": run_course,
-    "motion": run_motion,
-    "boots": run_boots,
-    "balance": run_balance,
-    "along_ski": run_along_ski,
-    "grip": run_grip,
-    "energies": run_energies,
+    "track": RunFigure(
+        run_track,
+        template(
+            "(a) The run from above, the same scale along both axes. (b, c) The grooves of both skis over {length} m "
+            "at half time: along the track of the loaded edge in metres, across it in millimetres. Their edges are "
+            "medians over {lines} lines of snow."
+        ),
+        template("Tracks of both skis from above, {run_length} m long, and their grooves."),
+        lambda run: {"length": significant(CUTOUT, 2), "lines": STEADY, "run_length": significant(run.run_length)},
+    ),
+    "course": RunFigure(
+        run_course,
+        template(
+            "The line of the middle between the boots over the course, from above; colour: edge angle at the boots, "
+            "positive with the left edges down. A cross: the gate was not passed. Gates to which no outer pole is "
+            "known are drawn with a piece of their line."
+        ),
+        template("Line over the gates of the course, coloured by edge angle."),
+    ),
+    "motion": RunFigure(
+        run_motion,
+        template(
+            "(a) Speed, (b) heading of the skis and (c) radius of the path of the middle between the boots. The "
+            "radius is not drawn where it is more than three times its median."
+        ),
+        template("Speed, heading and turn radius over time."),
+        further=_carved_radius,
+    ),
+    "boots": RunFigure(
+        run_boots,
+        template(
+            "(a) Edge angle of each boot to the snow's surface. Force of each ski on its boot, in the boot's axes: (b) "
+            "off the base, (c) across it. (d) Moment of the ski on its boot about the boot's long axis, positive where "
+            "it turns the left edge up. Each axis leaves one peak in a hundred out."
+        ),
+        template("Edge angles of both boots, and forces and edging moment of the skis on them, over time."),
+    ),
+    "balance": RunFigure(
+        run_balance,
+        template(
+            "(a) Lean of the line from the middle of the boots to the centre of mass, edge angle, and the lean that "
+            "would be in balance with speed and path radius of the centre of mass. Force of the snow on each ski: (b) "
+            "total, (c) normal, (d) side force. The axes of (b, c, d) leave one peak in a hundred out."
+        ),
+        template("Lean, edge angle and forces of a skier over time."),
+    ),
+    "along_ski": RunFigure(
+        run_along_ski,
+        template(
+            "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
+            "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
+            "load the afterbody runs in the groove that the forebody cut."
+        ),
+        template("Maps of edge depth and normal force per length over position along the ski and time, for both skis."),
+    ),
+    "grip": RunFigure(
+        run_grip,
+        template(
+            "Grip utilisation of each ski: the sum of its side force over the sum of the shear capacity S_f e. At 1 "
+            "the ski side-slips. Dotted: the sum of the sizes of the shear instead, which is more where parts of the "
+            "edge pull against each other. A place of snow slips by {slip} mm across while a ski passes; with a shear "
+            "displacement u_y of 0.5 to 1 mm such pulls end."
+        ),
+        template("Grip utilisation of each ski over time."),
+        lambda run: {"slip": significant(json_number(slip_of_a_place(run) / MM), 2)},
+        _other_strength,
+    ),
+    "energies": RunFigure(
+        run_energies,
+        template(
+            "(a) Where the energy is and went. Everything on top of each other must stay at the dashed line. (b) Only "
+            "the losses."
+        ),
+        template("Stored energies and losses over time, stacked."),
+    ),
 }
+"""Figures by name, in the order of the report."""
 
 
 def run_figure(run: Run, what: str) -> Figure:
@@ -220,4 +181,4 @@ def run_figure(run: Run, what: str) -> Figure:
             outcome=run.outcome,
         )
     with journal_style():
-        return _FIGURES[what](run)
+        return _FIGURES[what].draw(run)
