@@ -11,7 +11,7 @@ import pytest
 from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.contact import ContactState, Laws, Runner
-from skisnow.contact.asked_laws import AskedFriction, AskedPressure, AskedStrength
+from skisnow.contact.laws import AskedFriction, AskedPressure, AskedStrength
 from tests.coded import Coded, coded, raises
 
 POSITION, HALF, BASE = np.array([0.5, 0.1, -0.4]), np.array([0.05, 0.03, 0.04]), np.array([0.02, 0.0, 0.01])

@@ -12,7 +12,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..compiled import core
-from ..contact.asked_laws import AskedPressure, AskedStrength
+from ..contact.laws import AskedPressure, AskedStrength
 from ..forces.penetration import PenetrationLaw, PointLaw
 from ..forces.shear import ShearLaw
 from ..ski.ski import Ski

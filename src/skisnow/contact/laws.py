@@ -1,10 +1,15 @@
-"""Laws of the snow that take the place of those of a scenario."""
+"""Laws of the snow that take the place of those of a scenario, and the form in which the compiled core calls them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from .._support.arrays import FloatArray
+from .._support.errors import ParameterError
+from .._support.messages import Message
 from .._support.units import Facts, Shown, name_with_values
 
 if TYPE_CHECKING:
@@ -40,3 +45,77 @@ class Laws(Shown):
 
     def _facts(self) -> Facts:
         return Facts(", ".join(f"{name} {law}" for name, law in self.described.items() if law) or "none")
+
+
+class AskedFriction:
+    """μ of a law, for arrays of speeds (m/s)."""
+
+    def __init__(self, law: FrictionLaw) -> None:
+        self.law = law
+
+    def __call__(self, speed: FloatArray, /) -> FloatArray:
+        """The coefficients."""
+        return np.ascontiguousarray(np.broadcast_to(self.law.coefficient(speed), speed.shape), float)
+
+
+class AskedStrength:
+    """Strength and thrust (N/m²) of a law, (2, n), for depths (m) and edge angles (rad); 0 where no snow is met.
+
+    Values that are not finite are recorded in ``refused``: a trial step may reach a pose that no ski reaches.
+    """
+
+    def __init__(self, law: ShearLaw) -> None:
+        self.law = law
+        self.refused: Message | None = None
+
+    def __call__(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        """Both values, or the first that is not finite."""
+        meets = depth > 0.0
+        found = np.zeros((2, len(depth)))
+        found[:, meets] = self.law.stress_and_thrust(depth[meets], edge_angle[meets])
+        bad = ~np.isfinite(found).all(axis=0)
+        self.refused = None
+        if bad.any():
+            worst = float(np.degrees(edge_angle[bad][0]))
+            self.refused = Message(
+                "{law!r} returns no finite strength at an edge angle of {edge_angle:.3g} degrees",
+                law=self.law,
+                edge_angle=worst,
+            )
+        return found
+
+
+class AskedPressure:
+    """Stress and largest stress of a penetration law, for arrays over places; answers must be finite."""
+
+    def __init__(self, law: PointLaw) -> None:
+        self.law = law
+
+    def residual(self, deepest: FloatArray, /) -> FloatArray:
+        """Depth (m) at which places that were at deepest depths (m) bear nothing any more."""
+        return self._sound(self.law.residual_depth(deepest), deepest.shape, deepest)
+
+    def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
+        """Stress (N/m²) and energy (J/m²), (2, n), at depths (m), of places once at deepest depths, at edge angles."""
+        return self._sound(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
+
+    def lost(self, deepest: FloatArray, /) -> FloatArray:
+        """Energy (J/m²) that stays in places that were at deepest depths (m)."""
+        return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
+
+    def refuse(self, reason: Message) -> None:
+        """Act on an answer that is not finite."""
+        raise ParameterError(reason, code="invalid_law")
+
+    def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
+        found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
+        bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
+        if bad.any():
+            self.refuse(
+                Message(
+                    "{law!r} returns no finite value at a depth of {depth:.4g} mm",
+                    law=self.law,
+                    depth=1e3 * depth[bad][0],
+                )
+            )
+        return found

@@ -13,8 +13,8 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import Facts, Shown, field_facts
 from ..compiled import core
-from .asked_laws import AskedFriction, AskedPressure, AskedStrength
 from .contact_state import ContactState
+from .laws import AskedFriction, AskedPressure, AskedStrength
 
 if TYPE_CHECKING:
     from .runner import Runner
