@@ -330,12 +330,9 @@ CarveEquations::CarveEquations(const CarvedSki& ski)
 void assemble(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
               CarveEquations& out) {
   Pass pass(ski, conditions, groove, at, out);
-  if (groove.along_path) {
-    groove.path.tangent = std::tan(conditions.edge_angle);
-    pass.from_tip_to_tail(groove.path);
-  } else {
-    pass.from_tip_to_tail(groove.edge);
-  }
+  if (!groove.along_path) return pass.from_tip_to_tail(groove.edge);
+  groove.path.tangent = std::tan(conditions.edge_angle);
+  pass.from_tip_to_tail(groove.path);
 }
 
 }  // namespace skisnow

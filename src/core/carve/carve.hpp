@@ -57,6 +57,11 @@ struct CarveConditions {
 struct CarveState {
   Column u;
   std::array<double, CARVE_BORDER> border{};
+
+  void add(const CarveState& step, double share) {
+    for (std::size_t j = 0; j < u.size(); j++) u[j] += share * step.u[j];
+    for (std::size_t a = 0; a < border.size(); a++) border[a] += share * step.border[a];
+  }
 };
 
 struct CarveSolution {

@@ -97,6 +97,7 @@ class CarveNewton {
   CarveState state;
   CarveEquations at;
   int iterations = 0;
+  double roughness = 0.0;  // correction at which the iteration may end, of the greatest depth
 
   // False where it finds none: the state is then somewhere on the way.
   bool solve(const CarveConditions& conditions, CarveGroove& groove);

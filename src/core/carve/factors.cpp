@@ -10,12 +10,6 @@ namespace skisnow {
 
 namespace {
 
-bool all_finite(const double* values, int count) {
-  for (int i = 0; i < count; i++)
-    if (!std::isfinite(values[i])) return false;
-  return true;
-}
-
 // With the transposed matrices of `solve_dense` and `solve_band`.
 void solve_dense_transposed(const double* factors, int n, int stride, const int* order, double* right) {
   for (int i = 0; i < n; i++) {
@@ -151,7 +145,8 @@ bool CarveFactors::correct(const CarvedSki& ski, const CarveEquations& system, C
       for (int c = 0; c < BAND_TILE; c++) part[c] = answer[c] * y[c];
       u[j] -= (part[0] + part[1]) + (part[2] + part[3]);
     }
-  return all_finite(border_.data(), used_) && all_finite(u, ski.size);
+  const auto finite = [](double each) { return std::isfinite(each); };
+  return std::all_of(border_.begin(), border_.begin() + used_, finite) && std::all_of(u, u + ski.size, finite);
 }
 
 // [transposed] With V = A⁻¹B, of the beam A, and S = D - C V: μ = S⁻ᵀ(h - Vᵀg), λ = A⁻ᵀ(g - Cᵀμ).

@@ -53,8 +53,8 @@ std::optional<double> CarveNewton::damped_step(const CarveConditions& conditions
                                                double& damping) {
   double following = std::numeric_limits<double>::infinity();
   while (damping > SMALLEST_DAMPING) {
-    for (std::size_t j = 0; j < state.u.size(); j++) trial_.u[j] = state.u[j] + damping * step_.u[j];
-    for (std::size_t a = 0; a < CARVE_BORDER; a++) trial_.border[a] = state.border[a] + damping * step_.border[a];
+    trial_ = state;
+    trial_.add(step_, damping);
     assemble(ski_, conditions, groove, trial_, spare_);
     if (factors_.correct(ski_, spare_, trial_step_)) following = length_of(conditions, trial_step_);
     const bool at_rounding = std::max(length, following) < 100.0 * TOLERANCE;
@@ -84,7 +84,11 @@ bool CarveNewton::solve(const CarveConditions& conditions, CarveGroove& groove) 
     // a fine mesh has its rounding floor above the tolerance: there the corrections no longer fall
     const double floor = STALL_TOLERANCE * at.deepest();
     const bool stalled = *following > 0.5 * length && std::max(length, *following) < floor;
-    if (damping == 1.0 && ((*following < TOLERANCE && balanced) || stalled)) return true;
+    if (damping == 1.0 && (*following < roughness * at.deepest() || stalled)) return true;
+    if (damping < 1.0 || *following >= TOLERANCE || !balanced) continue;
+    state.add(trial_step_, 1.0);  // the correction that follows is known already
+    assemble(ski_, conditions, groove, state, at);
+    return true;
   }
   return false;
 }

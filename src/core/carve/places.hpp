@@ -19,7 +19,7 @@ inline double straight_waterline(const CarvedSki& ski, const CarveConditions& at
   return std::sqrt(2.0 * at.load / (at.hardness * CONTACT_SHARE * ski.running_length * tangent));
 }
 
-// [places] ξ of the edge, of five shares of that distance, of the end of the base, of two places that divide the rest
+// ξ of the edge, of five shares of that distance, of the end of the base, of two places that divide the rest
 // evenly in their logarithm, and of the hinges of a ground edge (m), rising. The edge of a stiff ski, that hard snow
 // carries at its ends alone, is up to ten times as deep as a straight one. On snow so soft that the base drowns, the
 // distance is 0.4 of its reach; it is never below a thousandth of that. `reach`: greatest width times cos ϑ; `hinges`:

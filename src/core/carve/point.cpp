@@ -60,7 +60,7 @@ void add_ends(const double (&by)[3], double start, double length, Pair (&ends)[2
 
 }  // namespace
 
-// [passed] A pass from tip to tail, the same for all outputs.
+// A pass from tip to tail, the same for all outputs.
 struct CarvePoint::Passed {
   const CarvedSki& ski;
   const CarveConditions given;
@@ -345,8 +345,7 @@ void CarvePoint::refine() {
     last_correction_ = depth_change(ski_, conditions_, step);
     if (!(last_correction_ < 0.5 * before)) break;
     before = last_correction_;
-    for (std::size_t j = 0; j < state_.u.size(); j++) state_.u[j] += step.u[j];
-    for (std::size_t a = 0; a < CARVE_BORDER; a++) state_.border[a] += step.border[a];
+    state_.add(step, 1.0);
     if (last_correction_ < ROUNDING) break;
   }
   factor();  // a last correction of 1e-12 m can move a station into the groove

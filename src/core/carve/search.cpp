@@ -12,6 +12,7 @@ namespace skisnow {
 namespace {
 
 constexpr int MOST_STAGES = 40;
+constexpr double ROUGHNESS = 0.05;  // of the greatest depth: correction at which a stage on the way ends
 constexpr double SOFTENINGS[] = {1000.0, 30.0, 3.0};
 // A ski bent so that its edge is straight in the snow, as deep as a rigid one of that contact length would be.
 CarveState first_guess(const CarvedSki& ski, const CarveConditions& given) {
@@ -49,9 +50,7 @@ class Search {
   }
 
   // Elastic snow, then memory; a law from outside as if all places were virgin, then with their memory.
-  bool loaded(const CarveConditions& conditions) {
-    return has_law(conditions) ? presses(conditions) : remembers(conditions);
-  }
+  bool loaded(const CarveConditions& to) { return has_law(to) ? presses(to) : remembers(to); }
 
   // The same on softer snow, which is then hardened; the law from outside comes last.
   bool hardened(double softening) {
@@ -76,7 +75,7 @@ class Search {
   bool remembers(const CarveConditions& conditions) {
     CarveConditions elastic = conditions;
     elastic.excess = 0.0;
-    if (!reaches(elastic)) return false;
+    if (!reaches(elastic, conditions.excess > 0.0)) return false;
     if (conditions.excess == 0.0) return true;
     const double goal = std::log1p(conditions.excess / conditions.hardness);
     return follows([&](double share) {
@@ -86,9 +85,7 @@ class Search {
     });
   }
 
-  static bool has_law(const CarveConditions& conditions) {
-    return conditions.laws != nullptr && conditions.laws->pressure;
-  }
+  static bool has_law(const CarveConditions& under) { return under.laws != nullptr && under.laws->pressure; }
 
   // A law from outside: its share of the pressure grows on elastic snow, then its share of the groove.
   bool presses(const CarveConditions& conditions) {
@@ -119,8 +116,9 @@ class Search {
   }
 
   // To the equilibrium under these conditions; stays where it was if that fails.
-  bool reaches(const CarveConditions& conditions) {
+  bool reaches(const CarveConditions& conditions, bool passing = false) {
     const CarveState before = newton.state;
+    newton.roughness = passing ? ROUGHNESS : 0.0;
     const bool found = newton.solve(conditions, groove_);
     if (!found) newton.state = before;
     return found;
@@ -132,7 +130,7 @@ class Search {
     double reached = 0.0, stride = 1.0;
     for (int stage = 0; stage < MOST_STAGES; stage++) {
       const double target = std::min(reached + stride, 1.0);
-      if (reaches(path(target))) {
+      if (reaches(path(target), target < 1.0)) {
         if (target == 1.0) return true;
         reached = target;
         stride *= 2.0;

@@ -8,7 +8,9 @@ whether the snow can hold it is a result (`Equilibrium.holds`), not part of the 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
@@ -166,14 +168,8 @@ def carve(
     if laws is not None and not solution.converged:
         laws.require_finite()
     exact = laws is None and groove == "edge" and footprint_stiffness is None
-    equilibrium = equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None)
-    if equilibrium.turn_radius_boot is None:
-        return equilibrium
-    # the other spread's equilibrium is near: only the unknown that the side force is drawn by changes its meaning
-    drawn = float(model.stations.weight @ np.maximum(solution.edge_depth, 0.0)) if conditions.by_reaction else load
-    near = replace(solution, shear_stress=conditions.side_force / drawn)
-    other = find(model, conditions._replace(by_reaction=not conditions.by_reaction), near=near)
-    return replace(equilibrium, turn_radius_boot_other_spread=radius_at_boot(model, conditions, other))
+    other = partial(_other_radius, find, model, conditions, solution)
+    return equilibrium_of(model, conditions, snow, solution, note, elements=elements if exact else None, other=other)
 
 
 def differentiable_carve(
@@ -208,6 +204,19 @@ def differentiable_carve(
     if not solution.converged:
         return None
     return CarveDerivatives(CarveRequest(model, conditions, snow.failure_shear_stress, solution, elements))
+
+
+def _other_radius(
+    find: Callable[..., Solution], model: ClampedSki, conditions: Conditions, solution: Solution
+) -> float | None:
+    """Turn radius with the other spread of side force, whose equilibrium is near: one unknown changes its meaning."""
+    drawn = conditions.load
+    if conditions.by_reaction:
+        drawn = float(model.stations.weight @ np.maximum(solution.edge_depth, 0.0))
+    near = replace(solution, shear_stress=conditions.side_force / drawn)
+    return radius_at_boot(
+        model, conditions, find(model, conditions._replace(by_reaction=not conditions.by_reaction), near=near)
+    )
 
 
 def rest(

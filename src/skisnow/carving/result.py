@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
@@ -71,9 +71,8 @@ class Equilibrium(Shown):
     turn_radius_boot
         Radius of the circle through the edge line at the boot and 0.4 m before and behind it (m); None for a ski that
         is flat or at rest.
-    turn_radius_boot_other_spread
-        The same with the side force spread the other way along the edge, all else alike (m): how much hangs on that
-        choice; None also where that has no equilibrium.
+    other_radius
+        Computes `turn_radius_boot_other_spread`, or its value.
     turn_radius_chord
         Radius of the circle through the edge line at the boot and at both ends of the contact (m).
     contact_length
@@ -122,7 +121,7 @@ class Equilibrium(Shown):
     side_force: float | None
     side_force_limit: float | None
     turn_radius_boot: float | None
-    turn_radius_boot_other_spread: float | None
+    other_radius: Callable[[], float | None] | float | None
     turn_radius_chord: float | None
     contact_length: float | None
     bearing_length: float | None
@@ -187,6 +186,14 @@ class Equilibrium(Shown):
         return self.derivatives().sensitivity(output, parameters)
 
     @property
+    def turn_radius_boot_other_spread(self) -> float | None:
+        """`turn_radius_boot` with the side force spread the other way along the edge, all else alike (m).
+
+        Shows how much hangs on that choice. A second equilibrium, computed when it is asked; None where it has none.
+        """
+        return self.other_radius() if callable(self.other_radius) else self.other_radius
+
+    @property
     def total_force(self) -> float | None:
         """Magnitude of load and side force together (N)."""
         if self.side_force is None or self.forebody_load is None or self.afterbody_load is None:
@@ -235,10 +242,12 @@ def equilibrium_of(
     note: tuple[str, ...] = (),
     *,
     elements: int | None = None,
+    other: Callable[[], float | None] | None = None,
 ) -> Equilibrium:
     """Outcome and numbers of a solution; `note` precedes its own warnings.
 
-    `elements`: those of the request; None where the equilibrium has no derivatives.
+    `elements`: those of the request; None where the equilibrium has no derivatives. `other`: radius with the other
+    spread of side force, computed at once under laws from outside, which need not be picklable.
     """
     station = model.stations.station
     deepest = float(np.max(solution.edge_depth))
@@ -259,14 +268,17 @@ def equilibrium_of(
     of_shear = solution.shear_stress * float(weight @ (drawn_from * station))
     before = float(weight @ (force * np.heaviside(station, 0.5)))
     turns = conditions.side_force > 0.0
+    radius = line.radius_at_boot() if turns else None
+    if radius is None:
+        other = None
     return Equilibrium(
         outcome=outcome,
         remedy=REMEDIES[outcome],
         holds=holds,
         side_force=conditions.side_force,
         side_force_limit=limit,
-        turn_radius_boot=line.radius_at_boot() if turns else None,
-        turn_radius_boot_other_spread=None,
+        turn_radius_boot=radius,
+        other_radius=other() if other is not None and conditions.laws is not None else other,
         turn_radius_chord=line.radius_over(*ends) if turns else None,
         contact_length=ends[0] - ends[1],
         bearing_length=float(weight[force > 0.0].sum()),
