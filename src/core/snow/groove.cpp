@@ -209,12 +209,14 @@ void Ground::simplify(double area, int most) {
     int first = 1, last = count - 2;
     while (size[first] > alike) first++;
     while (size[last] > alike) last--;
-    if (last - first < 2) {
-      drop(size[last] < size[first] ? last : first, size);
-    } else {
+    if (last - first == 1) {  // one at their middle
+      place[first] = 0.5 * (place[first] + place[last]), depth[first] = 0.5 * (depth[first] + depth[last]);
       drop(last, size);
-      drop(first, size);
+      if (first > 1) size[first - 1] = triangle(*this, first - 2, first - 1, first);
+      continue;
     }
+    drop(last, size);
+    if (first < last) drop(first, size);
   }
 }
 
