@@ -430,7 +430,7 @@ def test_every_figure_and_table_is_there_in_both_forms(reference: Reported) -> N
     assert {
         f"figures/{name}{ending}" for name in FIGURES for ending in (".svg", ".png", ".pdf", ".eps", ".csv")
     } <= names
-    tables = {name.removesuffix(".csv") for name in names if name.endswith(".csv")}
+    tables = {name.removesuffix(".csv") for name in names if name.startswith("tables/") and name.endswith(".csv")}
     assert {"tables/models_synthetic", "tables/sites_synthetic", "tables/regressions_synthetic"} <= tables
     assert {f"{table}.tex" for table in tables} <= names
     assert (reference.folder / "figures/seating.png").read_bytes().startswith(b"\x89PNG")

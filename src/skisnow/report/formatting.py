@@ -208,7 +208,7 @@ def _time_element(iso_time: str, words: str) -> Markup:
     return Markup('<time datetime="{}">{}</time>').format(iso_time, words)
 
 
-SYMBOL: Final = re.compile(r"(?<![\w<>/])([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
+SYMBOL: Final = re.compile(r"(?:(?<![\w<>/])|(?<=_[A-Za-z0-9]/))([A-Za-zμ])_([A-Za-z0-9])(?![\w_])")
 _PERCENT: Final = re.compile(r"(?<=\d) %")
 _LATEX_SPECIAL: Final = {
     "\\": r"\textbackslash{}",

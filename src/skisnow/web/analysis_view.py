@@ -12,7 +12,7 @@ from nicegui import ui
 from .._support.messages import Message, template
 from ..report.formatting import counted
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
-from .elements import Words, add_items, folded, html_words, named
+from .elements import Words, add_items, choice, folded, html_words, named
 from .layout import error_sentence, heading, sentence
 from .words import language_of, said
 
@@ -58,6 +58,10 @@ class OpenAnalysis:
         self.closed = False
         self.settled = asyncio.Event()
         """Set while the result, or the reason of its absence, belongs to the choice."""
+
+
+DIFFERENCES: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)
+"""Differences that the user can choose from."""
 
 
 class AnalysisView:
@@ -178,6 +182,15 @@ class AnalysisView:
     def _show_choices(self, numbers: Numbers) -> None:
         with self._choices:
             heading(Message("Included data"))
+            options = {str(share): f"{100.0 * share:.0f} %" for share in DIFFERENCES}
+            made = choice(Message("Difference that tests are to show"), options, str(self._page.choice.difference))
+            made.on_value_change(
+                lambda event: self._choose(replace(self._page.choice, difference=float(str(event.value))))
+            )
+            sentence(
+                Message("Number of tests: two-sided t test at 5 %, power 80 %, with the pooled scatter of the groups."),
+                "quiet",
+            )
             _add_folded(Message("Exclude experiments with these quality flags"), lambda: self._list_marks(numbers))
             _add_folded(Message("Included experiments"), lambda: self._list_experiments(numbers))
 

@@ -22,6 +22,7 @@ from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.problems import ALWAYS_EXCLUDE, Problem, lines_of
 from ..campaign.store import Journals
 from ..estimation import analyse
+from ..estimation.group_comparisons import DIFFERENCE
 from ..report import write_report
 from ..report.campaign.data import ReportData
 from ..report.campaign.key_results import key_results
@@ -56,10 +57,13 @@ class Choice:
         Codes of the quality flags that exclude an experiment (default: those of the campaign).
     left_out
         Further excluded experiments by file and name.
+    difference
+        Relative difference of two groups that the number of needed tests is for.
     """
 
     excluding: frozenset[str] | None = None
     left_out: frozenset[tuple[str, str]] = frozenset()
+    difference: float = DIFFERENCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +114,8 @@ class Refusal:
 def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
     """Analyse a campaign in memory."""
     try:
-        analysis = analyse(_select_data(campaign_of_files(files.contents, others=files.others), choice))
+        campaign = _select_data(campaign_of_files(files.contents, others=files.others), choice)
+        analysis = analyse(campaign, difference=choice.difference)
     except FieldDataError as error:
         errors = (problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error")
         return Refusal(error.message, tuple(lines_of(errors)))

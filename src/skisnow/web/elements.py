@@ -37,7 +37,15 @@ def field(
 def choice(label: str, options: Sequence[str] | Mapping[str, str], value: str | list[str] | None) -> ui.select:
     """Menu with options as texts by value; several can be chosen if ``value`` is a list."""
     made = ui.select(option_texts(options), label=said(label), value=value, multiple=isinstance(value, list))
+    _show_symbols(made, label)
     return made.props("outlined stack-label").classes("field")
+
+
+def _show_symbols(made: ui.element, label: str) -> None:
+    """Show the symbols of a label, such as H_V, with subscripts; the name for screen readers stays."""
+    if SYMBOL.search(label):
+        with made.add_slot("label"):
+            Words(label).props("aria-hidden=true")
 
 
 def option_texts(options: Sequence[str] | Mapping[str, str]) -> dict[str, str]:
@@ -81,6 +89,7 @@ class TypedField(ui.input):
 
     def __init__(self, label: str = "", *, value: str = "") -> None:
         super().__init__(said(label) or None, value=value)
+        _show_symbols(self, label)
 
 
 class Outcome(Words):

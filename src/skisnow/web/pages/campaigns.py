@@ -24,7 +24,7 @@ from ..layout import framed, heading, sentence
 from ..page_requests import analysis, correcting, entering, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..transfer import IMPORT
-from ..words import TABLES, language_of, minute_words
+from ..words import TABLES, language_of, minute_words, said
 
 if TYPE_CHECKING:
     from ...campaign.store import StoredCampaign
@@ -100,7 +100,7 @@ def _list_drafts(lab: Lab) -> None:
                 counted(len(tests), "{count} test", "{count} tests"),
                 Message("last entry {minute_words}", minute_words=minute_words(head.last_at)),
             ]
-            sentence(" · ".join(filter(None, words)), "quiet")
+            sentence(" · ".join(said(text) for text in words if text), "quiet")
             with ui.element("div").classes("acts"):
                 link(Message("Enter tests"), entering(head.id), "main")
                 link(Message("Analysis"), analysis("entry", head.id))
