@@ -5,13 +5,12 @@ Heights are above the ground in cm, as in SnowEx; -9999 means unknown.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from .._support.errors import ParameterError
+from .._support.spreadsheet_text import csv_text
 from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
@@ -73,7 +72,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     written = []
     for name, (columns, rows) in tables.items():
         written.append(path.with_name(f"{path.stem}_{name}.csv"))
-        write_file(written[-1], _csv((*_header(pit), columns, *rows)))
+        write_file(written[-1], csv_text((*_header(pit), columns, *rows)))
     return tuple(written)
 
 
@@ -89,7 +88,7 @@ def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
     rows = ((f"{where:.6f}", f"{newtons:.6f}") for where, newtons in zip(depth, force, strict=True))
     head = [("# Name", profile.name), ("# Date", profile.recorded_on.isoformat() if profile.recorded_on else NO_DATA)]
     head += [("# Latitude", _known(profile.latitude_deg)), ("# Longitude", _known(profile.longitude_deg))]
-    write_file(path, _csv((*head, FORCE, *rows)))
+    write_file(path, csv_text((*head, FORCE, *rows)))
     return Path(path)
 
 
@@ -144,12 +143,6 @@ def _cm(length: float | None) -> str:
 
 def _known(value: float | None) -> str:
     return NO_DATA if value is None else f"{value:.10g}"
-
-
-def _csv(rows: Iterable[Sequence[str]]) -> str:
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    return stream.getvalue()
 
 
 BLOCK: Final = 1.0 * MM

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -14,7 +12,7 @@ from typing import Final
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.spreadsheet_text import csv_rows
+from .._support.spreadsheet_text import csv_rows, csv_text
 from .._support.staging import write_file
 from .._support.units import Facts, Shown, ShownFields, amount
 from ..scenario import Scenario, Skier
@@ -249,9 +247,7 @@ def write_line(line: RacingLine, path: Path) -> None:
     OutputError
         The place cannot be written.
     """
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([COLUMNS, *line_rows(line)])
-    write_file(path, text.getvalue())
+    write_file(path, csv_text([COLUMNS, *line_rows(line)]))
 
 
 def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingLine:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from importlib.metadata import version
 from pathlib import Path
@@ -16,7 +14,7 @@ from matplotlib.lines import Line2D
 from .._support.arrays import BoolArray
 from .._support.errors import require_language
 from .._support.messages import ENGLISH, Message, in_language, outcome_words, template
-from .._support.spreadsheet_text import guarded
+from .._support.spreadsheet_text import csv_text, guarded
 from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing
 from .figures.figure_files import picture_files, silent, write_pictures
@@ -90,17 +88,15 @@ def write_identify_report(
 
 def fits_csv(result: Identification) -> str:
     """fits.csv: every measured number next to the identified one, with all digits; empty cells for NaN."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[Sequence[str]] = [COLUMNS]
     for fit in result.fits:
         for i, along in enumerate(fit.along):
             for k, label in enumerate(fit.labels):
                 numbers = (fit.measured[i, k], fit.fitted[i, k], fit.sd[i, k])
                 if math.isfinite(numbers[0]):
                     cells = [repr(float(number)) if math.isfinite(number) else "" for number in numbers]
-                    writer.writerow([guarded(fit.name), fit.kind, repr(float(along)), label, *cells])
-    return stream.getvalue()
+                    rows.append([guarded(fit.name), fit.kind, repr(float(along)), label, *cells])
+    return csv_text(rows)
 
 
 def identify_page(result: Identification, pictures: list[Picture], *, language: str = ENGLISH) -> str:

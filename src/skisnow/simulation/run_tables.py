@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.spreadsheet_text import csv_text
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from ..scenario.boots import ANGLES, OF_SLOPE, SIDES
@@ -62,11 +62,8 @@ def track_table(run: Run) -> FloatArray:
 
 def track_csv(run: Run) -> str:
     """The table as text: numbers with all their digits, nothing where a number does not exist."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(track_columns(run))
-    writer.writerows([repr(cell) if math.isfinite(cell) else "" for cell in row] for row in track_table(run).tolist())
-    return stream.getvalue()
+    rows = ([repr(cell) if math.isfinite(cell) else "" for cell in row] for row in track_table(run).tolist())
+    return csv_text(chain([track_columns(run)], rows))
 
 
 def write_track(run: Run, path: str | Path) -> None:
@@ -149,16 +146,10 @@ def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
     """
     columns = boots_columns(run) if ending == ".csv" else opensim_columns(run)
     rows = np.column_stack(list(columns.values())).tolist()
-    stream = io.StringIO()
     if ending == ".csv":
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows([repr(cell) for cell in row] for row in rows)
-        return stream.getvalue()
-    stream.write(f"{name}\nversion=1\nnRows={len(rows)}\nnColumns={len(columns)}\ninDegrees=yes\nendheader\n")
-    stream.write("\t".join(columns) + "\n")
-    stream.writelines("\t".join(repr(cell) for cell in row) + "\n" for row in rows)
-    return stream.getvalue()
+        return csv_text(chain([columns], (map(repr, row) for row in rows)))
+    head = f"{name}\nversion=1\nnRows={len(rows)}\nnColumns={len(columns)}\ninDegrees=yes\nendheader\n"
+    return head + "".join("\t".join(cells) + "\n" for cells in (columns, *(map(repr, row) for row in rows)))
 
 
 def write_boots(run: Run, path: str | Path) -> None:

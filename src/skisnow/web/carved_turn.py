@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import csv
-import io
 import json
 import threading
 from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
@@ -13,6 +11,7 @@ from nicegui import background_tasks, run, ui
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message, joined, outcome_words
+from .._support.spreadsheet_text import csv_text
 from ..report.campaign.page import RESULTS
 from ..report.formatting import significant
 from ..report.pair_verdicts import ski_verdict
@@ -264,13 +263,11 @@ class CarvedTurn:
 
     def _download(self) -> None:
         """Hand the browser the curves of the answer that is shown, one row for each station of each ski."""
-        table = io.StringIO()
-        rows = csv.writer(table, lineterminator="\n")
-        rows.writerow(["ski", "station_m", *PANELS])
+        rows: list[Sequence[Any]] = [["ski", "station_m", *PANELS]]
         for answer in self._answers:
             columns = [answer[key] or [None] * len(answer["station_m"]) for key in PANELS]
-            rows.writerows([answer["ski"]["name"], *row] for row in zip(answer["station_m"], *columns, strict=True))
-        ui.download(table.getvalue().encode(), "carve.csv")
+            rows += ([answer["ski"]["name"], *row] for row in zip(answer["station_m"], *columns, strict=True))
+        ui.download(csv_text(rows).encode(), "carve.csv")
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
         self._answers = answers

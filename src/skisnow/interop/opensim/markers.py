@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Final, Literal
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError, require_choice
+from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import write_file
 from ..._support.units import DEGREE, Facts, Shown, amount
 from ..._support.user_files import plain_text
@@ -302,8 +302,4 @@ def boots_text(boots: Boots, *, edge_angles_only: bool = False) -> str:
             columns |= {f"{side}_{name}": boots.place[:, k, i].tolist() for i, name in enumerate(OF_SLOPE)}
         names = ANGLES[:1] if edge_angles_only else ANGLES
         columns |= {f"{side}_{name}": angles[:, k, i].tolist() for i, name in enumerate(names)}
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([repr(cell) for cell in row] for row in zip(*columns.values(), strict=True))
-    return stream.getvalue()
+    return csv_text(chain([columns], (map(repr, row) for row in zip(*columns.values(), strict=True))))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from markupsafe import Markup
 
 from ..._support.messages import ENGLISH, Message, local_number, outcome_words
+from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import write_file
 from ...racing import write_line
 from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv
@@ -254,17 +253,10 @@ def evaluations_csv(result: QuickestLine) -> str:
     """Contents of evaluations.csv: one row for each evaluation of the search."""
     head = ("evaluation", "gates", "passed", "value", "time_s", "outcome")
     rows = [
-        (
-            entry.number,
-            len(entry.row["turns"]),
-            entry.row["passed"],
-            entry.value,
-            entry.row["time"],
-            entry.row["words"],
-        )
+        (entry.number, len(entry.row["turns"]), entry.row["passed"], entry.value, entry.row["time"], entry.row["words"])
         for entry in result.history
     ]
-    return _csv([head, *rows])
+    return csv_text([head, *rows])
 
 
 def worth_csv(variants: Sequence[Worth]) -> str:
@@ -275,13 +267,7 @@ def worth_csv(variants: Sequence[Worth]) -> str:
         for variant in variants
         for i, (score, base) in enumerate(zip(variant.scores, variant.base, strict=True))
     ]
-    return _csv([head, *rows])
-
-
-def _csv(rows: Sequence[Sequence[object]]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue()
+    return csv_text([head, *rows])
 
 
 def _time_text(score: Score) -> str:

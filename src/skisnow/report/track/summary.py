@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from datetime import datetime, timedelta
+from itertools import chain
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, Final
 from xml.sax.saxutils import escape
@@ -13,7 +12,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ..._support.messages import Message
-from ..._support.spreadsheet_text import guarded
+from ..._support.spreadsheet_text import csv_text, guarded
 from ..._support.units import DEGREE
 from ...track.projection import earth_centred, east_north_up_axes, geodetic
 from ..formatting import aligned_rows, date_words, plain
@@ -348,11 +347,7 @@ def points_csv(summary: TrackSummary) -> str:
 
 
 def _csv(columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows([_point_cell(value) for value in row] for row in rows)
-    return stream.getvalue()
+    return csv_text(chain([columns], (map(_point_cell, row) for row in rows)))
 
 
 def _point_cell(value: object) -> str:
