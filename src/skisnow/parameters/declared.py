@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import sys
 import textwrap
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
 from functools import cache
 from types import NoneType, UnionType
@@ -334,7 +334,9 @@ def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], n
     return resolved
 
 
-def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str, Any]:
+def checked_table(
+    owner: type, table: Mapping[str, Any], place: str, *, further: Collection[str] = ()
+) -> dict[str, Any]:
     """The stated values of a table in their kinds and units.
 
     Parameters
@@ -345,6 +347,8 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
         As parsed.
     place
         Place of the table, for messages.
+    further
+        Other keys that it may have; the caller reads them.
 
     Raises
     ------
@@ -353,13 +357,13 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
     """
     keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:
-        if name not in keys:
+        if name not in keys and name not in further:
             raise ParameterError(
                 "{place}: unknown name {name!r}. {allowed}",
                 code="unknown_name",
                 place=place,
                 name=name,
-                allowed=nearest(name, keys),
+                allowed=nearest(name, (*keys, *further)),
             )
     for name, key in keys.items():
         if key.needed and name not in table:
@@ -367,6 +371,6 @@ def checked_table(owner: type, table: Mapping[str, Any], place: str) -> dict[str
                 "{place}: {name} is missing: {meaning}", code="missing", place=place, name=name, meaning=key.meaning
             )
     try:
-        return {name: keys[name].in_range(value) for name, value in table.items()}
+        return {name: keys[name].in_range(value) for name, value in table.items() if name in keys}
     except ParameterError as error:
         raise error.at(place) from error

@@ -163,14 +163,14 @@ def read_friction_file(path: str | Path) -> FrictionFile:
         The file cannot be read, or a key is unknown, missing or out of range; file, state, key and value are named.
     """
     values = read_toml(path)
-    tables = values.pop("state", [])
+    tables = values.get("state", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise ParameterError(
             "{path}: state is no list of tables. Write [[state]] above the keys of each state",
             code="wrong_kind",
             path=path,
         )
-    head = checked_table(FrictionFile, values, str(path))
+    head = checked_table(FrictionFile, values, str(path), further=("state",))
     try:
         states = tuple(
             made(SnowState, checked_table(SnowState, table, f"state {number}"))
