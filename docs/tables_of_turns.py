@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,21 @@ SKID_LAWS: dict[str, tuple[Callable[[float], ShearLaw], float]] = {
 }
 """Law of an S_f (N/m²), and the share of its strength that is left after slip."""
 SKID_SNOWS = ((0.21, 0.52), (0.16, 0.086), (0.2, 0.1), (1.0, 0.52), (1.0, 0.3), (5.0, 0.52))
+POSE = ("x_m", "y_m", "z_m", "edge_angle_deg", "pitch_deg", "heading_deg")
+HEIGHTS = {5.0: 2.9e-3, 20.0: 11.3e-3, 30.0: 16.4e-3}
+"""Height of the boot (m) by edge angle (degrees)."""
+MOVED: dict[str, object] = {
+    "ski.name": "slalom",
+    "slope.angle_deg": 0.0,
+    "snow.published": "race-piste",
+    "sledge.edge_angle_deg": 0.0,
+    "start.heading_deg": 0.0,
+    "start.speed_m_per_s": 8.0,
+    "run.duration_s": 0.5,
+    "friction.mu_0": 0.0,
+}
+SLIPS = (0.5, 1.0, 2.0, 3.0, 5.0, 20.0)
+"""Angles (degrees) between the heading of a ski and its course."""
 DISPLACEMENTS = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)
 
 
@@ -129,6 +145,41 @@ def degrees(angle: float) -> str:
     return f"{angle:.0f}°" if math.isfinite(angle) else "none"
 
 
+def pulled(edge: float, slip: float, height: float) -> tuple[float, float, float]:
+    """Load (N), side force over the formula of a straight edge, and yaw moment about the boot (N m) of a slalom ski.
+
+    It is moved at 8 m/s at a height (m) over the race piste, with angles in degrees; the other ski is in the air.
+    """
+    names = [f"{side}_{name}" for side in ("left", "right") for name in POSE]
+    rows = [(t, 8 * t, 0.25, height, edge, 0, slip, 8 * t, -0.25, 0.3, 0, 0, slip) for t in np.linspace(0.0, 0.5, 26)]
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "boots.csv"
+        lines = [",".join(("time_s", *names)), *(",".join(map(str, row)) for row in rows)]
+        path.write_text("\n".join(lines), encoding="utf-8")
+        run = turn("carved-46m", *MOVED.items(), ("boots.file", str(path)))
+    assert run.boots is not None
+    late = len(run.time) // 2
+    force, moment = (values[late:, 0].mean(axis=0) for values in (run.boots.force, run.boots.moment))
+    angle, snow = math.radians(slip), run.scenario.contact.snow
+    length = run.scenario.ski.running_length
+    wedge = math.sqrt(2.0 * length * force[2] * math.tan(math.radians(edge)) / snow.snow_hardness)
+    across = force[1] * math.cos(angle) - force[0] * math.sin(angle)
+    return float(force[2]), across / (wedge * (snow.failure_shear_stress or 0.0)), float(moment[2])
+
+
+def blade_and_slider() -> Iterator[str]:
+    """Load, side force and yaw moment over the slip, at heights that load the slider with about 400 N."""
+    yield "| slip | " + " | ".join(f"edge angle {edge:g}°" for edge in HEIGHTS) + " |"
+    yield "| ---: |" + " --- |" * len(HEIGHTS)
+    for slip in SLIPS:
+        cells = (pulled(edge, slip, height) for edge, height in HEIGHTS.items())
+        yield (
+            f"| {slip:g}° | "
+            + " | ".join(f"{load:.0f} N, {share:.2f}, {turn:.0f} N m" for load, share, turn in cells)
+            + " |"
+        )
+
+
 def friction_loads() -> Iterator[str]:
     """The built-in turns with friction on both loads."""
     heads = ("run", "friction (J): snow-normal, base-normal", "their ratio", "1/cos ϑ", "speed at the end (m/s)")
@@ -155,7 +206,12 @@ def displacements() -> Iterator[str]:
 
 
 PAGES = {
-    "methods/side-force": {"shear laws": shear_laws, "skid angles": skid_angles, "displacements": displacements},
+    "methods/side-force": {
+        "shear laws": shear_laws,
+        "skid angles": skid_angles,
+        "displacements": displacements,
+        "blade": blade_and_slider,
+    },
     "methods/snow-options": {"friction loads": friction_loads},
 }
 
