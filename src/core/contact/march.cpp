@@ -37,8 +37,10 @@ struct Pressing {
   double place[alone::BasePieces<double>::COUNT + 1], depth[alone::BasePieces<double>::COUNT + 1];
   int count = 0;
 
-  // Numbers across are from the edge: the base from a to b, the way from the edge to `w`; depths are `fall` and
-  // `way_fall` times them deeper than the edge. A nearly level base may be wet only next to its edge.
+  double edge = 0.0, deep = 0.0, sense = 1.0;  // place and depth from which numbers count, to the left or the right
+
+  // The base from a to b, the way from the edge to `w`; depths are `fall` and `way_fall` times them deeper than the
+  // edge. A nearly level base may be wet only next to its edge.
   void fill(double a, double b, double fall, double w, double way_fall) {
     if (a > 0.0 || b < 0.0) return add(a, fall * a), add(b, fall * b);
     const bool way_is_deeper = w > 0.0 && way_fall > fall;
@@ -54,26 +56,22 @@ struct Pressing {
   }
 
   // The wet part of a base as it is ground.
-  void fill_ground(const alone::Cut<double>& c) {
+  static Pressing ground(const alone::Cut<double>& c) {
     const alone::BasePieces<double> pieces(c);
+    Pressing out;
     for (int k = 0; k < pieces.COUNT; k++) {
       const double from = std::max(pieces.place[k], c.wet_from), to = std::min(pieces.place[k + 1], c.wet_to);
       if (!(from < to)) continue;
-      if (count == 0) add(c.place + from, pieces.depth(k, from));
-      add(c.place + to, pieces.depth(k, to));
+      if (out.count == 0) out.add(c.place + from, pieces.depth(k, from));
+      out.add(c.place + to, pieces.depth(k, to));
     }
-  }
-
-  // From numbers of the edge to those of the line; with `sense` -1 they counted to the right.
-  void put_at(double edge, double deep, double sense) {
-    for (int i = 0; i < count; i++) place[i] = edge + sense * place[i], depth[i] += deep;
-    if (sense < 0.0) std::reverse(place, place + count), std::reverse(depth, depth + count);
+    return out;
   }
 
  private:
   void add(double at, double deeper) {
-    place[count] = at;
-    depth[count++] = deeper;
+    place[count] = edge + sense * at;
+    depth[count++] = deep + deeper;
   }
 };
 
@@ -109,9 +107,8 @@ struct Touch {
   double edge_place(int k) const { return s[GRIP_PLACE][i] + s[of_edge(LEFT_X, k)][i]; }
   double edge_depth(int k) const { return s[of_edge(LEFT_DEPTH, k)][i]; }
   double& of_line(LineField left, int k) const { return lines.values[of_edge(left, k)][slot]; }
-  bool was_marked() const { return lines.values[MARKED][slot] > 0.5; }
   // Whether an edge was in the snow at the last accepted pose.
-  bool was_in_snow(int k) const { return was_marked() && of_line(LEFT_MARK_DEPTH, k) > 0.0; }
+  bool was_in_snow(int k) const { return lines.values[MARKED][slot] > 0.5 && of_line(LEFT_MARK_DEPTH, k) > 0.0; }
 
   void press_base() const;
 
@@ -124,15 +121,18 @@ struct Touch {
 Pressing Touch::base_and_way(int k) const {
   const double fall = s[DEPTH_FALL][i], x = s[of_edge(LEFT_X, k)][i];
   const double from = s[WET_FROM][i] - x, to = std::max(s[WET_TO][i], s[WET_FROM][i]) - x;
-  const double way = was_in_snow(k) ? of_line(LEFT_MARK, k) - edge_place(k) : 0.0, sense = way < 0.0 ? -1.0 : 1.0;
+  const double way = was_in_snow(k) ? of_line(LEFT_MARK, k) - edge_place(k) : 0.0;
   const double risen = was_in_snow(k) ? of_line(LEFT_MARK_DEPTH, k) - edge_depth(k) : 0.0;
   const double way_fall = std::fabs(way) > THIN ? risen / std::fabs(way) : 0.0;
   Pressing out;
-  if (sense > 0.0)
+  out.edge = edge_place(k), out.deep = edge_depth(k);
+  if (!(way < 0.0)) {
     out.fill(from, to, fall, way, way_fall);
-  else
-    out.fill(-to, -from, -fall, -way, way_fall);
-  out.put_at(edge_place(k), edge_depth(k), sense);
+    return out;
+  }
+  out.sense = -1.0;
+  out.fill(-to, -from, -fall, -way, way_fall);
+  std::reverse(out.place, out.place + out.count), std::reverse(out.depth, out.depth + out.count);
   return out;
 }
 
@@ -153,11 +153,9 @@ void Touch::press_base() const {
   const bool both = edge_depth(0) > 0.0 && edge_depth(1) > 0.0;
   const int first = edge_depth(0) > 0.0 ? 0 : 1;
   const bool is_plane = !s.edge_shape.acts();
-  Pressing base;
-  if (!is_plane)
-    base.fill_ground(alone::Cut<double>::stored(s, i));
-  else
-    base = both ? Pressing{{at + from, at + to}, {edge_depth(1), edge_depth(0)}, 2} : base_and_way(first);
+  const Pressing base = !is_plane ? Pressing::ground(alone::Cut<double>::stored(s, i))
+                        : both    ? Pressing{{at + from, at + to}, {edge_depth(1), edge_depth(0)}, 2}
+                                  : base_and_way(first);
   bool changed = base.count > 1 && press_undelayed(base, delayed, ground);
   for (int k = 0; k < 2; k++)
     if (was_in_snow(k) && (both || !is_plane || k != first))
