@@ -9,6 +9,7 @@ import math
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,6 +23,7 @@ from benchmarks.page_tables import write_tables
 from skisnow import Run, load_scenario, simulate
 from skisnow._support.errors import RangeWarning
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear, ShearLaw
+from skisnow.report.run.time_figures import grip_utilisation, gross_grip_utilisation, slip_of_a_place
 
 LAWS: dict[str, dict[str, object]] = {
     "S_f": {},
@@ -78,9 +80,9 @@ def on_snow(hardness: float, strength: float) -> tuple[tuple[str, object], ...]:
     return ("snow.H_V_N_per_mm3", hardness), ("snow.S_f_N_per_mm2", strength)
 
 
-def end(run: Run) -> str:
+def end(run: Run, digits: int = 2) -> str:
     """Of the run: x and y (m)."""
-    return f"{run.place[-1, 0]:.2f}, {run.place[-1, 1]:.2f}".replace("-", "−")
+    return f"{run.place[-1, 0]:.{digits}f}, {run.place[-1, 1]:.{digits}f}".replace("-", "−")
 
 
 def apart(one: Run, other: Run) -> float:
@@ -205,6 +207,68 @@ def displacements() -> Iterator[str]:
         yield f"| {value:g} | {' | '.join(map(end, runs))} |"
 
 
+def friction_directions() -> Iterator[str]:
+    """Motion of the end and change of its speed from friction along the ski to friction against the sliding."""
+    yield "| run | μ 0.01 | μ 0.05 | μ 0.1 |"
+    yield "| --- | ---: | ---: | ---: |"
+    snows = {
+        "`carved-46m`": (),
+        "skid, S_f 0.1 N/mm²": on_snow(0.2, 0.1),
+        "skid, H_V 1 N/mm³, S_f 0.25 N/mm²": on_snow(1.0, 0.25),
+    }
+    for name, changes in snows.items():
+        cells = []
+        for friction in (0.01, 0.05, 0.1):
+            along, vector = (
+                turn("carved-46m", *changes, ("friction.mu_0", friction), ("friction.direction", direction))
+                for direction in ("along-ski", "vector")
+            )
+            cells.append(
+                f"{apart(along, vector):.2f} m, {vector.speed[-1] - along.speed[-1]:+.2f} m/s".replace("-", "−")
+            )
+        yield f"| {name} | {' | '.join(cells)} |"
+
+
+GROUND: dict[str, dict[str, Any]] = {
+    "flat and sharp": {},
+    "β = 0.5°": {"base_bevel": math.radians(0.5)},
+    "β = 1°": {"base_bevel": math.radians(1.0)},
+    "r = 0.02 mm": {"edge_radius": 2e-5},
+    "r = 0.1 mm": {"edge_radius": 1e-4},
+    "r = 0.1 mm, σ = 87°": {"edge_radius": 1e-4, "side_edge": math.radians(87.0)},
+}
+
+
+def ground_edges() -> Iterator[str]:
+    """Ends (m) over grinding, on three snows."""
+    yield "| edges | the scenario's snow | H_V 5 N/mm³ | skid, S_f 0.1 N/mm² |"
+    yield "| --- | --- | --- | --- |"
+    snows: tuple[dict[str, float], ...] = ({}, {"snow.H_V_N_per_mm3": 5.0}, {"snow.S_f_N_per_mm2": 0.1})
+    for name, edges in GROUND.items():
+        scenarios = [load_scenario("carved-46m", changes=dict(changes)) for changes in snows]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            runs = [simulate(each.with_(ski=replace(each.ski, **edges))) for each in scenarios]
+        yield f"| {name} | {' | '.join(end(run, 3) for run in runs)} |"
+
+
+def shear_bearing() -> Iterator[str]:
+    """Both options of the bearing over u_y: end, energy of shear, and medians of the grip of both skis."""
+    heads = ("end (m)", "shear takes (J)", "net", "gross", "slip of a place (mm)")
+    yield f"| `shear.bearing` | u_y (mm) | {' | '.join(heads)} |"
+    yield "| --- | ---: | --- | ---: | --- | --- | ---: |"
+    for bearing in ("whole-edge", "loaded-height"):
+        for value in (0.02, 0.1, 0.5, 1.0):
+            run = turn("carved-46m", ("shear.bearing", bearing), ("snow.shear_displacement_mm", value))
+            late = run.time >= run.time[-1] / 2.0
+            net, gross = (
+                ", ".join(f"{share:.2f}" for share in np.nanmedian(shares(run)[late], axis=0))
+                for shares in (grip_utilisation, gross_grip_utilisation)
+            )
+            lost = f"{run.energies['shear'][-1]:.0f} | {net} | {gross} | {1e3 * slip_of_a_place(run):.2f}"
+            yield f"| `{bearing}` | {value:g} | {end(run, 3)} | {lost} |"
+
+
 PAGES = {
     "methods/side-force": {
         "shear laws": shear_laws,
@@ -212,7 +276,8 @@ PAGES = {
         "displacements": displacements,
         "blade": blade_and_slider,
     },
-    "methods/snow-options": {"friction loads": friction_loads},
+    "methods/snow-options": {"friction loads": friction_loads, "friction direction": friction_directions},
+    "methods/ski": {"ground": ground_edges, "shear bearing": shear_bearing},
 }
 
 
