@@ -237,38 +237,54 @@ ALWAYS_EXCLUDE: Final = frozenset({"cancelled", "zero_depth"})
 
 @dataclass(frozen=True, slots=True)
 class QualityFlag:
-    """A quality flag: its code, the sentence that explains it in a report, and whether it excludes by default."""
+    """A quality flag: code, name in lists, the sentence that explains it, and whether it excludes by default."""
 
     code: str
+    name: str
     sentence: str
     excludes_by_default: bool
 
 
 _ALL: Final = (
-    QualityFlag("cancelled", Message("The experiment was cancelled by an entry in the column status."), True),
+    QualityFlag(
+        "cancelled",
+        Message("cancelled"),
+        Message("The experiment was cancelled by an entry in the column status."),
+        True,
+    ),
     QualityFlag(
         "too_few_loads",
+        Message("too few loads"),
         Message("The series has fewer than {fewest_loads} load steps.", fewest_loads=FEWEST_LOADS),
         True,
     ),
-    QualityFlag("loads_not_rising", Message("A load of the series is not above the one before it."), True),
+    QualityFlag(
+        "loads_not_rising",
+        Message("loads not rising"),
+        Message("A load of the series is not above the one before it."),
+        True,
+    ),
     QualityFlag(
         "depth_shrinks",
+        Message("depth shrinks"),
         Message("A depth of the series is below the one before it, although the load was raised."),
         True,
     ),
     QualityFlag(
         "zero_depth",
+        Message("zero depth"),
         Message("The depth is zero (of a series: at its largest load), so that no parameter follows."),
         True,
     ),
     QualityFlag(
         "beyond_tool",
+        Message("beyond tool"),
         Message("The tool went deeper than the geometry that its area and volume are computed with."),
         False,
     ),
     QualityFlag(
         "below_resolution",
+        Message("below resolution"),
         Message(
             "The depth (of a series: at its largest load) is below {resolutions:g} steps of the gauge.",
             resolutions=RESOLUTIONS,
@@ -277,6 +293,7 @@ _ALL: Final = (
     ),
     QualityFlag(
         "layered",
+        Message("layered"),
         Message(
             "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre."
         ),
@@ -284,6 +301,7 @@ _ALL: Final = (
     ),
     QualityFlag(
         "creeps",
+        Message("creeps"),
         Message(
             "Under one load the depth grew by more than {creep_steps:g} steps of the gauge and {creep_share:.0%} of "
             "it.",
@@ -294,16 +312,19 @@ _ALL: Final = (
     ),
     QualityFlag(
         "unloading_not_falling",
+        Message("unloading not falling"),
         Message("A load of the unloading is not below the one before it, so that no unloading ratio follows."),
         False,
     ),
     QualityFlag(
         "unloading_sinks",
+        Message("unloading sinks"),
         Message("The tool went deeper while the discs were taken off: the snow was still giving way."),
         False,
     ),
     QualityFlag(
         "rebound_unresolved",
+        Message("rebound unresolved"),
         Message(
             "The tool came back by too little to measure how steep the unloading is: the ratio is only known from "
             "below."
@@ -312,6 +333,7 @@ _ALL: Final = (
     ),
     QualityFlag(
         "hardness_outlier",
+        Message("hardness outlier"),
         Message(
             "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's "
             "median."

@@ -119,6 +119,29 @@ class TrackFolders:
             shutil.rmtree(made, ignore_errors=True)
         return name, n_points
 
+    def file(self, name: str) -> tuple[Path, Placing]:
+        """File of a track, and its position.
+
+        Raises
+        ------
+        ParameterError
+            The lab has no such track, or its folder is damaged.
+        """
+        if name not in self.names():
+            raise ParameterError(
+                "there is no track {name!r} here. Choose one from the list", code="unknown_track", name=name
+            )
+        placing = read_record(self._folder / name / ABOUT, Placing)
+        _require_allowed(placing)
+        places = [path for path in (self._folder / name).iterdir() if path.name != ABOUT]
+        if len(places) != 1:
+            raise ParameterError(
+                "the folder of the track {name} is damaged. Remove it and upload the track again",
+                code="damaged",
+                name=name,
+            )
+        return places[0], placing
+
     def beside(self, name: str, replay: Replay, *, read: Read | None = None) -> ReplayTrack:
         """A track in the axes of a run.
 
@@ -136,21 +159,9 @@ class TrackFolders:
         ParameterError
             The lab has no such track, or it cannot be placed.
         """
-        if name not in self.names():
-            raise ParameterError(
-                "there is no track {name!r} here. Choose one from the list", code="unknown_track", name=name
-            )
-        placing = read_record(self._folder / name / ABOUT, Placing)
-        _require_allowed(placing)
-        places = [path for path in (self._folder / name).iterdir() if path.name != ABOUT]
-        if len(places) != 1:
-            raise ParameterError(
-                "the folder of the track {name} is damaged. Remove it and upload the track again",
-                code="damaged",
-                name=name,
-            )
+        place, placing = self.file(name)
         angle = replay.tilt if replay.profile is None else None
-        return (read or track_on_slope)(places[0], placing, angle)
+        return (read or track_on_slope)(place, placing, angle)
 
 
 def points_of_track(place: Path, placing: Placing) -> int:

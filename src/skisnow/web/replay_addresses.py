@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -12,7 +12,7 @@ from starlette.datastructures import FormData
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
-from .._support.errors import ParameterError
+from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import ENGLISH, Message, translations
 from .._support.user_files import GivenError, read_json, read_record
 from ..replay.binary import replay_bytes
@@ -20,6 +20,7 @@ from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ..replay.run_file import RUN_FILE, replay_of_file
 from ..report.track.comparison_page import page_of_folders
+from ..report.track.page import page_of_track
 from ..ski import read_ski
 from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
 from .layout import plain_page
@@ -29,6 +30,8 @@ from .subprocesses import BOUNDS, confined
 from .words import language_of_request
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fastapi import FastAPI
 
     from ..replay.replay import Replay
@@ -37,6 +40,7 @@ if TYPE_CHECKING:
 LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
 GATES: Final = f"{LIST}/gates"
+TURNS: Final = f"{LIST}/turns"
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"
@@ -147,25 +151,35 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         return _model_file(content, name)
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
-        try:
-            page = confined(
-                BOUNDS, page_of_folders, runs.folder_of(run), runs.folder_of(ghost), language_of_request(request)
-            )
-        except ParameterError as error:
-            sentence = error.text(language_of_request(request))
-            return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
-        return HTMLResponse(page)
+        language = language_of_request(request)
+        return _confined_page(request, page_of_folders, lambda: (runs.folder_of(run), runs.folder_of(ghost), language))
+
+    def turns(request: Request, track: str) -> Response:
+        def arguments() -> tuple[Path, str, str]:
+            path, placing = TrackFolders(runs.folder).file(track)
+            return path, placing.called, language_of_request(request)
+
+        return _confined_page(request, page_of_track, arguments)
 
     def first() -> Response:
         headers = {"content-encoding": "gzip", "cache-control": "no-cache"}
         return Response(FIRST_FILE.read_bytes(), media_type="application/octet-stream", headers=headers)
 
-    answers = ((SHOW, show), (GATES, gates), (FIRST, first), (f"{FILES}/{{name}}", program_file))
+    answers = ((SHOW, show), (GATES, gates), (TURNS, turns), (FIRST, first), (f"{FILES}/{{name}}", program_file))
     for address, answer in answers:
         app.add_api_route(address, answer, include_in_schema=False, response_model=None)
     models = ((f"{MODEL}/{{name}}.glb", model), (f"{MOVING_MODEL}/{{name}}.glb", moving_model))
     for address, of_run in ((f"{DATA}/{{name}}", data), *models):
         app.add_api_route(address, of_run, include_in_schema=False, response_model=None)
+
+
+def _confined_page(request: Request, work: Callable[..., str], arguments: Callable[[], tuple[Any, ...]]) -> Response:
+    """Page of a function in a separate process, or one with the sentence why it cannot be shown."""
+    try:
+        return HTMLResponse(confined(BOUNDS, work, *arguments()))
+    except (FieldDataError, ParameterError) as error:
+        sentence = error.text(language_of_request(request))
+        return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
 
 
 def _limit_exaggeration(exaggeration: float) -> float:

@@ -3,6 +3,7 @@
 import io
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -190,3 +191,25 @@ def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
     for name in ("..", "../tracks", "", "nothing"):
         with raises(SkisnowError, "unknown_track"):
             tracks.beside(name, replay)
+
+
+def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(tmp_path: Path) -> None:
+    """Half circles of 12 m at 6 m/s, left then right: two turns, whose radius and speed stand in the table."""
+    way = np.arange(0.0, 2.0 * math.pi * 12.0, 0.6)
+    heading = np.where(way < math.pi * 12.0, way / 12.0, 2.0 * math.pi - way / 12.0)
+    x, y = np.cumsum(0.6 * np.cos(heading)), np.cumsum(0.6 * np.sin(heading))
+    places = [(k * 0.1, a, b, 0.0) for k, (a, b) in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
+    name, _ = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
+    app = FastAPI()
+    add_addresses(app, RunFolders(tmp_path))
+    client, page = Client(app), f"/replay/turns?track={name}"
+    english, german = client.get(page), client.get(page, language="de")
+    assert english.status_code == german.status_code == 200
+    sides = [
+        [word for word in ("left", "right", "links", "rechts") if f">{word}<" in each.text]
+        for each in (english, german)
+    ]
+    assert sides == [["left", "right"], ["links", "rechts"]]
+    radii = [float(each) for each in re.findall(r'data-name="Minimum radius \(m\)">([\d.]+)', english.text)]
+    assert radii == pytest.approx([12.0, 12.0], rel=0.05)
+    assert client.get("/replay/turns?track=nothing").status_code == 404

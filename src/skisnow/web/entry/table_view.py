@@ -12,6 +12,7 @@ from nicegui import background_tasks, run, ui
 from ..._support.errors import FieldDataError, ParameterError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import natural_number
+from ...campaign import QUALITY_FLAGS
 from ...campaign.reading.table_forms import PENETRATION, SHEAR
 from ...campaign.store import NewEntry, OvertakenError
 from ...campaign.store.stored_tables import FORMS
@@ -242,7 +243,7 @@ class SeriesList:
         words = f"{test.name} · {number_said(angle)}°" if angle else test.name
         last = test.history[-1]
         about = " · ".join(
-            filter(None, (value, last.who, minute_words(last.at), *(flag.replace("_", " ") for flag in flags)))
+            filter(None, (value, last.who, minute_words(last.at), *(said(QUALITY_FLAGS[flag].name) for flag in flags)))
         )
         return Message("{words} (cancelled)", words=words) if test.cancelled else words, about
 

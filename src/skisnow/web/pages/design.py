@@ -15,7 +15,7 @@ from ..elements import Outcome, button, choice, field, option_texts
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
 from ..layout import error_sentence, framed
 from ..snow_choice import SnowChoice
-from ..words import typed_number
+from ..words import said, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -161,7 +161,8 @@ class _Design(CarvedTurn):
         name = str(self._ski.value)
         changes = {key: float(SHAPES[key][2] if key in without else self.sliders[key].value) for key in SHAPES}
         source = f"designed in the lab from the ski {name}"
-        return designed_keys(self._begun[name], changes) | {"name": f"{name}, designed", "source": source}
+        designed = said(Message("{name}, designed", name=name))
+        return designed_keys(self._begun[name], changes) | {"name": designed, "source": source}
 
     def asked(self) -> Asked:
         """The designed ski and its competitor in the same turn."""

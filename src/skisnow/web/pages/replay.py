@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
 
 from nicegui import app, ui
 
@@ -18,6 +19,7 @@ from ..replay_addresses import (
     LIST,
     SHOW,
     TRACK_UPLOAD,
+    TURNS,
     RunFolders,
     add_addresses,
     add_track_uploads,
@@ -61,6 +63,11 @@ def add_page(lab: Lab) -> None:
             if names:
                 _side_by_side_form({name: runs.title(name) for name in names}, tracks.names(), track)
             _track_form()
+            if tracks.names():
+                heading(Message("Measured tracks"), 2)
+            for name in tracks.names():
+                with ui.element("div").classes("acts"):
+                    link(Message("Turns of {name}", name=name), f"{TURNS}?track={quote(name, safe='')}")
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))
 
