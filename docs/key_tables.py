@@ -13,11 +13,14 @@ from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
 from skisnow.cli.shell import NAMES, json_schema
+from skisnow.forces import measured_ranges
 from skisnow.parameters import own_quantities
 from skisnow.parameters.json_schema import page_table, schema_text
 from skisnow.report.run.file import RUN_VARIABLES, SKIER_VARIABLES, RunVariable
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS
 from skisnow.ski.file_keys import COLUMNS, SKI_KEYS
+from skisnow.snow.from_results import published_names, published_snow
+from skisnow.snow.measured_range import MeasuredRange
 
 FOLDER = Path(__file__).resolve().parent / "_generated"
 _OF_CSV = ("column", "unit", "range", "meaning")
@@ -27,6 +30,23 @@ def variable_table(variables: Iterable[RunVariable]) -> str:
     """Markdown table of variables of run.nc."""
     rows = (f"| `{each.name}` | {', '.join(each.dimensions)} | {each.units} | {each.meaning} |" for each in variables)
     return "\n".join(("| variable | dimensions | unit | meaning |", "| --- | --- | --- | --- |", *rows, ""))
+
+
+def range_table() -> str:
+    """Markdown table of the measured ranges of the force laws."""
+    ranges = (each for each in vars(measured_ranges).values() if isinstance(each, MeasuredRange))
+    ends = ((each, each.lowest / each.unit_factor, each.highest / each.unit_factor) for each in ranges)
+    rows = (f"| {each.quantity} | {low:.4g} to {high:.4g} {each.unit} | {each.source} |" for each, low, high in ends)
+    return "\n".join(("| quantity | range | measured by |", "| --- | --- | --- |", *rows, ""))
+
+
+def snow_table() -> str:
+    """Markdown table of the published snows, in N/mm³ and N/mm²."""
+    snows = {name: published_snow(name) for name in published_names()}
+    numbers = {name: (s.snow_hardness / 1e9, (s.failure_shear_stress or 0.0) / 1e6) for name, s in snows.items()}
+    rows = (f"| `{name}` | {h:.2g} | {s:.2g} | {snows[name].source} |" for name, (h, s) in numbers.items())
+    head = ("| name | H_V (N/mm³) | S_f (N/mm²) | source |", "| --- | --- | --- | --- |")
+    return "\n".join((*head, *rows, ""))
 
 
 def command_sections(parser: argparse.ArgumentParser, words: tuple[str, ...] = ("skisnow",)) -> Iterator[str]:
@@ -75,6 +95,8 @@ TABLES = {
     ),
     "run_variables": variable_table(RUN_VARIABLES),
     "skier_variables": variable_table(SKIER_VARIABLES),
+    "measured_ranges": range_table(),
+    "published_snows": snow_table(),
     "command_line": "\n".join(command_sections(build_parser())),
     "stations": page_table(COLUMNS.values(), ("column", "meaning", "unit", "range", "usual", "instead of")),
 }
