@@ -72,15 +72,20 @@ def slider(browser: Any, lab: FilledLab) -> list[Times]:
             page.get_by_label("Compared with").click()
             page.get_by_role("option", name=other, exact=True).click()
             page.wait_for_function(f"{DRAWN} >= {2 * CHARTS}", timeout=PATIENCE_MS)
-        page.get_by_role("slider", name="Edge angle (°)").focus()
-        page.wait_for_timeout(1000)
-        numbers, charts = "document.querySelector('td').textContent !== before.cell", f"drawn >= {CHARTS}"
-        keys = ["ArrowRight"] * (STEPS // 2) + ["ArrowLeft"] * (STEPS // 2)
-        moves = [_reaction(page, "input", [numbers, charts], key) for key in keys]
+        moves = moved_slider(page, "Edge angle (°)", CHARTS)
         page.context.close()
         words = f"Carve, {skis} ski{'s' if skis > 1 else ''}: from the edge angle's slider to "
         found += _named([words + "the numbers", words + "the charts"], moves)
     return found
+
+
+def moved_slider(page: Any, name: str, charts: int) -> list[list[float]]:
+    """Milliseconds to the numbers and to all charts, for steps of a slider up and down."""
+    page.get_by_role("slider", name=name, exact=True).focus()
+    page.wait_for_timeout(1000)
+    shown = ["document.querySelector('td').textContent !== before.cell", f"drawn >= {charts}"]
+    keys = ["ArrowRight"] * (STEPS // 2) + ["ArrowLeft"] * (STEPS // 2)
+    return [_reaction(page, "input", shown, key) for key in keys]
 
 
 def _page(browser: Any) -> Any:

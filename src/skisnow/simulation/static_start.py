@@ -83,7 +83,7 @@ def no_start(setup: Setup) -> SolverError:
             )
     return SolverError(
         "the search for the sledge at rest, from which the run starts, did not come to an end, although its weight "
-        "falls between the skis. Take a smaller sledge.edge_angle_deg, softer snow, or a lower "
+        "falls between the skis. Take a smaller sledge.edge_angle_deg, a stiffer ski, softer snow, or a lower "
         "sledge.centre_of_mass_height_m, and please report the scenario",
         code="no_start",
     )
