@@ -220,7 +220,8 @@ class _Reading:
             if name not in _PLAUSIBLE or not valid.size:
                 continue
             low, high, allowed, fix = _PLAUSIBLE[name]
-            median = float(np.median(valid))
+            with np.errstate(over="ignore"):
+                median = float(np.median(valid))
             if not low <= median <= high:
                 line = self._header["fields"][0]
                 self._refuse(line, name, f"median {median:g}", f"a median {allowed}", f"State {fix}.")

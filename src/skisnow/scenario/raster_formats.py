@@ -47,7 +47,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             transform, crs = source.transform, source.crs
             system = None if crs is None else map_system(crs.to_wkt())
             unit = _height_unit(path, source.units[0], system)
-    except (rasterio.errors.RasterioError, UnicodeDecodeError, MemoryError) as error:  # the second from a damaged text
+    # errors of GDAL itself have no public base; a damaged text gives the third
+    except (rasterio.errors.RasterioError, rasterio._err.CPLE_BaseError, UnicodeDecodeError, MemoryError) as error:
         raise ParameterError(
             "{path} cannot be read as a GeoTIFF: {error}. Export it again.", code="cannot_read", path=path, error=error
         ) from error
