@@ -125,6 +125,8 @@ def test_nearly_straight_parts_have_no_radius() -> None:
     assert np.array_equal(np.isnan(radius), [False, False, False, True, True, False])
     assert radius[0] == -10.0
     assert np.isnan(drawn_radius(np.full(3, np.inf))).all()
+    ripples = np.array([499.0, -900.0, 700.0, 2000.0, -1500.0])  # all but the first within three medians
+    assert np.array_equal(np.isnan(drawn_radius(ripples)), [False, True, True, True, True])
 
 
 def test_energies_stack_to_a_level_rim(run: Run) -> None:

@@ -13,6 +13,7 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
 from ...simulation.run import LOST, STORED
+from ...track.turns import STRAIGHT
 from ..figures.course import edge_angles_of_skis
 from ..figures.style import (
     BLACK,
@@ -78,11 +79,11 @@ def _draw_radius(axes: Axes, run: Run) -> None:
 
 
 def drawn_radius(radius: FloatArray) -> FloatArray:
-    """Turn radii, NaN where the path is nearly straight: above three times the median."""
+    """Turn radii, NaN where the path is nearly straight: above `STRAIGHT` or three times the median."""
     size = np.abs(radius[np.isfinite(radius)])
     if not size.size:
         return np.full_like(radius, np.nan)
-    return np.where(np.abs(radius) <= _TIMES_MEDIAN * float(np.median(size)), radius, np.nan)
+    return np.where(np.abs(radius) <= min(_TIMES_MEDIAN * float(np.median(size)), STRAIGHT), radius, np.nan)
 
 
 _STYLES: Final = {
