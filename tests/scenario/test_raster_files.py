@@ -1,6 +1,7 @@
 """ESRI ASCII grids and GeoTIFF: places, heights in m, and each rule that rejects a grid."""
 
 import math
+import struct
 import sys
 from pathlib import Path
 from typing import Any
@@ -345,6 +346,23 @@ def test_a_picture_without_a_place_and_other_bytes_are_rejected(rasterio: Any, t
         file.write(np.ones((3, 3), "uint8"), 1)
     with raises(ParameterError, "missing"):
         read_terrain(path)
+
+
+def test_a_damaged_map_system_is_rejected(rasterio: Any, tmp_path: Path) -> None:
+    path, place = tmp_path / "heights.tif", rasterio.Affine(2.0, 0.0, 100.0, 0.0, -2.0, 54.0)
+    form: dict[str, Any] = {"width": 5, "height": 4, "count": 1, "dtype": "float32", "nodata": -9999.0}
+    with rasterio.open(
+        path, "w", driver="GTiff", crs="EPSG:32632", transform=place, compress="deflate", **form
+    ) as file:
+        file.write(np.zeros((4, 5), "float32"), 1)
+    data = bytearray(path.read_bytes())
+    size, key = data.index(struct.pack("<HHI", 33550, 12, 3)), data.index(struct.pack("<4H", 3072, 0, 1, 32632))
+    data[size + 5] = 4  # a cell of 1,027 sizes
+    data[key:key] = b"##"  # an unknown key of the map system: GDAL's own error, none of rasterio
+    path.write_bytes(data)
+    with raises(ParameterError, "cannot_read") as caught:
+        read_terrain(path)
+    assert not isinstance(caught.value.__cause__, rasterio.errors.RasterioError)
 
 
 @pytest.mark.parametrize(("name", "unit"), [("Meters", 1.0), ("US_survey-foot", US_FOOT), ("fathom", None)])

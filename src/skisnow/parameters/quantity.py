@@ -22,6 +22,17 @@ SMALLEST, LARGEST = 1e-100, 1e100
 InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 
+def beyond_reason(values: FloatArray) -> BoolArray:
+    """True where a value, not 0 or NaN, has no size from `SMALLEST` to `LARGEST`.
+
+    >>> import numpy as np
+    >>> beyond_reason(np.array([0.0, 1e-300, -2.0, 1e300, np.nan])).tolist()
+    [False, True, False, True, False]
+    """
+    size = abs(values)
+    return (size > LARGEST) | ((size > 0.0) & (size < SMALLEST))
+
+
 @dataclass(frozen=True, slots=True)
 class Search:
     """Search range of a quantity: size in its unit (of its logarithm if `logarithmic`), and usual bounds.
@@ -196,9 +207,9 @@ class Quantity:
         return f"{words}{f' ({self.unit})' if self.unit else ''}" if words else self.name
 
     def outside(self, values: FloatArray) -> BoolArray:
-        """True for the values of an array, in the unit of the name, outside the range; False for NaN."""
+        """True for the values of an array, in the unit of the name, outside the range or `beyond_reason`."""
         low = values <= self.lowest if self.above else values < self.lowest
-        return low | (values >= self.highest if self.below else values > self.highest)
+        return low | (values >= self.highest if self.below else values > self.highest) | beyond_reason(values)
 
     def of_kind(self, value: object) -> InputValue:
         """Give the value in its kind, a number as float; its range is not looked at.

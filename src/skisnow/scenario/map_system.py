@@ -173,6 +173,14 @@ def utm_zone(longitude_deg: float, latitude_deg: float) -> str:
     return f"EPSG:{(32600 if latitude_deg >= 0.0 else 32700) + zone}"
 
 
+def raster_errors() -> tuple[type[Exception], ...]:
+    """What rasterio raises for a damaged file or system: also GDAL's errors, whose base it keeps private."""
+    from rasterio._err import CPLE_BaseError
+    from rasterio.errors import RasterioError
+
+    return RasterioError, CPLE_BaseError, UnicodeDecodeError, MemoryError  # the third from a damaged text
+
+
 def _scale(system: MapSystem, x: float, y: float) -> tuple[tuple[float, float], str] | None:
     """Length on the map divided by length on the ground, along x and y, and the UTM zone.
 
@@ -187,7 +195,7 @@ def _scale(system: MapSystem, x: float, y: float) -> tuple[tuple[float, float], 
     at = np.array([[x, y], [x - step, y], [x + step, y], [x, y - step], [x, y + step]])
     try:
         turned: Any = transform(CRS.from_wkt(system.text), "EPSG:4326", *at.T.tolist())
-    except Exception:  # rasterio raises GDAL's private error classes, which have no common public base
+    except raster_errors():
         return None
     longitude, latitude = np.array(turned[0]), np.array(turned[1])
     if not np.isfinite([longitude, latitude]).all():

@@ -18,7 +18,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
 from .._support.user_files import is_file, plain_text
-from .map_system import LENGTHS, MapSystem, length_unit, map_system
+from .map_system import LENGTHS, MapSystem, length_unit, map_system, raster_errors
 from .raster import PlacedValues, Raster, number_within, placed_heights, require_places, require_size
 
 
@@ -47,8 +47,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             transform, crs = source.transform, source.crs
             system = None if crs is None else map_system(crs.to_wkt())
             unit = _height_unit(path, source.units[0], system)
-    # errors of GDAL itself have no public base; a damaged text gives the third
-    except (rasterio.errors.RasterioError, rasterio._err.CPLE_BaseError, UnicodeDecodeError, MemoryError) as error:
+    except raster_errors() as error:
         raise ParameterError(
             "{path} cannot be read as a GeoTIFF: {error}. Export it again.", code="cannot_read", path=path, error=error
         ) from error

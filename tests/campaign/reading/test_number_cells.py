@@ -227,6 +227,20 @@ def test_one_row_in_another_unit(reference: Path, tmp_path: Path, file: str, col
     assert (found.code, found.file, found.row, found.column) == ("unlikely_unit", file, 5, column)
 
 
+@pytest.mark.parametrize("factor", [1e300, 1e-300])
+@pytest.mark.parametrize(
+    ("file", "column"),
+    [("penetration.csv", "load_N"), ("shear.csv", "moment_Nm"), ("shear.csv", "lever_arm_mm"),
+     ("density.csv", SNOW_DENSITY), ("drop_cone.csv", DROP_CONE_DEPTH)],
+)  # fmt: skip
+def test_numbers_beyond_reason_are_refused(
+    reference: Path, tmp_path: Path, file: str, column: str, factor: float
+) -> None:
+    found = check_campaign(changed(reference, tmp_path / "c", file, times(column, factor)))
+    errors = [problem for problem in found if problem.severity == "error"]
+    assert {(problem.code, problem.file, problem.column) for problem in errors} == {("out_of_range", file, column)}
+
+
 def test_lengths_of_campaign_toml_in_metres(reference: Path, tmp_path: Path) -> None:
     folder = changed(reference, tmp_path / "c", "", times("", 1.0))
     text = (folder / "campaign.toml").read_text(encoding="utf-8")

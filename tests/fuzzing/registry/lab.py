@@ -185,6 +185,6 @@ READERS = (
     ),
     Reader(
         name="placing of a track", target="tracks/t-1/about.json", files=_track_files, read=_placed, mutations=JSON,
-        covers=("web.lab_tracks:TrackFolders.beside",),
+        covers=("web.lab_tracks:TrackFolders.file",),
     ),
 )  # fmt: skip

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import decimal_mark, is_number, number
+from ...parameters.quantity import LARGEST, SMALLEST, beyond_reason
 from ..problems import error, warning
 from .table_forms import UNLOADING, allowed_words
 
@@ -137,22 +138,26 @@ class NumberCollector:
         for index in np.flatnonzero(np.isnan(values)).tolist():
             cell = cells[index].strip()
             if cell or self._column.needed:
-                problems.append(self._refusal("not_a_number", index, cell, rows, self._how_to_write(cell)))
+                action, allowed = self._how_to_write(cell), allowed_words(self._column)
+                problems.append(self._refusal("not_a_number", index, cell, rows, action, allowed))
         if self._unit is not None:
             with np.errstate(over="ignore"):
                 values = self._unit.convert(values)
-        outside = self._column.outside(values) | np.isinf(values)
+        outside, beyond = self._column.outside(values), beyond_reason(values)
+        allowed = Message(
+            "{allowed}; if it is not 0, with a size from {smallest:g} to {largest:g}",
+            allowed=allowed_words(self._column), smallest=SMALLEST, largest=LARGEST,
+        )  # fmt: skip
         for index in np.flatnonzero(outside).tolist():
             action = Message("Correct the cell; its unit is in the column's name.")
             cell = cells[index].strip() + (f" {self._unit.name}" if self._unit is not None else "")
-            problems.append(self._refusal("out_of_range", index, cell, rows, action))
+            among = allowed if beyond[index] else allowed_words(self._column)
+            problems.append(self._refusal("out_of_range", index, cell, rows, action, among))
         values[outside] = np.nan
         self._parts.append(values)
 
-    def _refusal(self, code: str, index: int, cell: str, rows: Rows, action: str) -> Problem:
-        return rows.problem(
-            code, index, column=self._column.name, value=cell, allowed=allowed_words(self._column), action=action
-        )
+    def _refusal(self, code: str, index: int, cell: str, rows: Rows, action: str, allowed: Message) -> Problem:
+        return rows.problem(code, index, column=self._column.name, value=cell, allowed=allowed, action=action)
 
     def _how_to_write(self, cell: str) -> Message:
         if not cell:

@@ -86,8 +86,7 @@ def unlikely_median(table: Table, name: str) -> tuple[float, str] | None:
 def _median(table: Table, name: str) -> float | None:
     values = table.numbers.get(name, np.zeros(0))
     above_zero = values[values > 0]
-    with np.errstate(over="ignore"):  # the mean of two huge numbers: infinite, so it is unlikely
-        return float(np.median(above_zero)) if len(above_zero) else None
+    return float(np.median(above_zero)) if len(above_zero) else None
 
 
 def _warn_of_column(table: Table, name: str, likely: LikelyColumn, middle: float, unit: str) -> Problem:
@@ -202,8 +201,7 @@ def _lever_arms(table: Table, described: CampaignFile | None) -> Iterator[Proble
     rows = np.flatnonzero(np.isfinite(arm)).tolist()
     if not rows:
         return
-    with np.errstate(over="ignore"):
-        middle, longest = float(np.median(arm[rows])), float(arm[rows].max())
+    middle, longest = float(np.median(arm[rows])), float(arm[rows].max())
     if middle >= SHORTEST_LEVER_ARM and longest <= LONGEST_LEVER_ARM:
         return
     unit = "µm" if longest > LONGEST_LEVER_ARM else "m" if middle < _METRES else "cm"
