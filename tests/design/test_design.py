@@ -91,6 +91,16 @@ def test_what_is_out_of_reach_is_named() -> None:
     assert any(each.fields.get("bound") == -1.0 for each in found.remarks)
 
 
+def test_a_kept_limit_counts_more_than_any_target() -> None:
+    """A radius of 40 m is out of reach by more than a third."""
+    goals = [{"output": "turn_radius_boot_m", "target": 40.0}, {"output": "turn_radius_boot_m", "at_least": 12.0}]
+    search = Search(Evaluator(design_task(TWELVE | {"goals": goals})))
+    radii = {z: float(search.evaluator.goal_values(search.targets[0], np.array([z, 0.5]))[0]) for z in (0.0, 1.0)}
+    kept, broken = (np.array([z, 0.5]) for z in sorted(radii, key=lambda z: -radii[z]))
+    assert search.broken(kept) == 0.0 < search.broken(broken)
+    assert search.result(kept) < search.result(broken)
+
+
 def test_growth_of_goals_is_that_of_differences() -> None:
     variables = {"sidecut_mm": [-10, 10], "EI_factor": [0.6, 1.6], "EI_N_m2[2]": [200, 300], "camber_mm": [2, 9],
                  "waist_width_mm": [60, 75]}  # fmt: skip

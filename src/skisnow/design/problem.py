@@ -23,6 +23,7 @@ _NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
 _FTOL: Final = 5e-6  # of the objective: at a kink it does not fall smoothly
 _NEAREST_FTOL: Final = 1e-8  # of changes, and of relative deviations where all targets are reached
 _PERCENT: Final = 1e4  # squares of deviations count in %
+_BROKEN: Final = 1e9  # value of a design that breaks a limit: above that of each that keeps them
 _MOST_ITERATIONS: Final = 60
 
 
@@ -60,10 +61,10 @@ class Search:
         return np.asarray(side * self.evaluator.goal_growth(goal, z) / limit)
 
     def objective(self, x: FloatArray) -> float:
-        """Sum of squares of deviations and slacks, in %."""
+        """Sum over the targets of the mean square of their deviations, or of the square of their slack, in %²."""
         z, slack = x[: self.count], x[self.count :]
         try:
-            squares = [float(np.sum(self.deviations(goal, z) ** 2)) for goal in self.targets if goal.over == "mean"]
+            squares = [float(np.mean(self.deviations(goal, z) ** 2)) for goal in self.targets if goal.over == "mean"]
         except SolverError:
             return _NO_SKI
         return _PERCENT * (sum(squares) + float(slack @ slack))
@@ -73,7 +74,8 @@ class Search:
         z, out = x[: self.count], 2.0 * np.concatenate([np.zeros(self.count), x[self.count :]])
         for goal in self.targets:
             if goal.over == "mean":
-                out[: self.count] += 2.0 * self.deviations(goal, z) @ self.deviation_growth(goal, z)
+                deviations = self.deviations(goal, z)
+                out[: self.count] += 2.0 * deviations @ self.deviation_growth(goal, z) / len(deviations)
         return _PERCENT * out
 
     def constraints(self, *, exact: bool = False) -> list[dict[str, Any]]:
@@ -140,9 +142,9 @@ class Search:
         return max([0.0, *(-room for room in rooms), *(lowest - matrix @ z).tolist()])
 
     def result(self, z: FloatArray) -> float:
-        """Value of a design: mean squares, and squares of worst deviations, where the limits are kept."""
+        """Value of a design, in %²: mean squares and squares of worst deviations; huge where a limit is broken."""
         if self.broken(z) > REACHED:
-            return _NO_SKI * (1.0 + self.broken(z))
+            return _BROKEN * (1.0 + self.broken(z))
         slack = [float(np.max(np.abs(self.deviations(goal, z)))) for goal in self.worst]
         home = self.evaluator.start
         nearest = 1e-9 * float((z - home) @ (z - home))  # among designs that reach all targets

@@ -204,7 +204,7 @@ def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
 
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
-    """Times (n,) (s) at the last gate, of failures too; those that never came there count as slow."""
+    """Times (n,) (s) at the last gate, of failures too; slow ones and those that never came there get one limit."""
     times = np.array([_time(evaluation) for evaluation in evaluations])
     finite = np.isfinite(times)
     if not finite.any():

@@ -65,6 +65,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _rasterio(path: str | Path) -> Any:
+    """The module rasterio; without it the error names the file that needs it."""
     grid = Message("Or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid.")
     return needed("rasterio", extra="geotiff", what=Message("The GeoTIFF {path}", path=path), instead=grid)
 

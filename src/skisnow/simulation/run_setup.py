@@ -123,7 +123,7 @@ class Setup:
 
     @property
     def velocity(self) -> FloatArray:
-        """Vector of the middle between the boots, in space (m/s), (3,)."""
+        """Present velocity of the middle between the boots, in space (m/s), (3,)."""
         rotation, rates = self.dynamics.rotation, self.dynamics.velocity
         if self.drive is None:
             return rotation @ rates[:3]

@@ -65,7 +65,7 @@ class _Optimum:
 
 
 class _Search:
-    """The posterior density of the parameters of one stretch."""
+    """Log posterior density of the place noise, turn rate and drift of one stretch, and its maximum."""
 
     def __init__(self, model: PathModel, period: float) -> None:
         self.model, self.period = model, period

@@ -281,7 +281,7 @@ class Ignored:
 
 
 def table_of(section: Section, answers: Answers) -> TableForm | None:
-    """Table of a section: the answer, or the only one whose numbers are all among the stated columns."""
+    """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None."""
     answer = answers.table.get(section.key, "")
     if answer in KINDS:
         return KINDS[answer]

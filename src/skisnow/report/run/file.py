@@ -226,6 +226,7 @@ def _three(
 
 def _energies() -> list[RunVariable]:
     def of(name: str) -> Values:
+        """Function that takes this energy from a run."""
         return lambda run: run.energies[name]
 
     stored = {
@@ -374,6 +375,7 @@ RUN_VARIABLES: Final = (
 
 def _balance_variables() -> tuple[RunVariable, ...]:
     def of(name: str) -> Values:
+        """Function that takes this quantity of the balance from a run."""
         return lambda run: getattr(run.balance, name)
 
     leans = {

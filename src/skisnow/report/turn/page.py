@@ -342,6 +342,7 @@ def shares_table(chain: TurnChain) -> Table:
 
 
 def _inputs(chain: TurnChain, shares: BandShares | None) -> Iterator[tuple[Any, ...]]:
+    """Rows of the table of inputs: key, range, origin, shares of the variance across and along."""
     for band_input in band_inputs(chain):
         yield (
             band_input.key,

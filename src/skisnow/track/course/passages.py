@@ -176,6 +176,7 @@ def _lateral_position(line: GateLine, at: Crossing, part: MovingPoint) -> float:
 
 
 def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateOutcome, str]:
+    """Outcome and sentence, from the places (m) along the gate's line between which the skier crossed it."""
     if low > 0.0 and high < line.width:
         return "passed", f"gate {gate.name} was passed"
     for place, pole in ((0.0, "turning"), (line.width, "outer")):

@@ -274,6 +274,7 @@ def _number(message: Any, name: str) -> float:
 
 
 def _date(value: Any) -> date | None:
+    """The date that was parsed; None for another value."""
     return value if isinstance(value, date) else None
 
 

@@ -35,7 +35,7 @@ CARRIER_SOLUTIONS: Final[dict[int, Solution]] = {0: "code", 1: "float", 2: "fixe
 
 @dataclass(eq=False)
 class _Epoch:
-    """A NAV-PVT with its offset in the file, its time, and the other messages of the same time of week."""
+    """A NAV-PVT with its offset in the file and its time, and NAV-HPPOSLLH and NAV-COV of the same time of week."""
 
     offset: int
     moment: datetime
