@@ -11,7 +11,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import read_snow_map, read_terrain
-from skisnow.scenario.map_system import length_unit, map_system
+from skisnow.scenario.map_system import MapSystem, _scale, length_unit, map_system
 from skisnow.scenario.raster import Raster, placed_heights
 from tests.coded import Coded, coded, raises
 
@@ -363,6 +363,17 @@ def test_a_damaged_map_system_is_rejected(rasterio: Any, tmp_path: Path) -> None
     with raises(ParameterError, "cannot_read") as caught:
         read_terrain(path)
     assert not isinstance(caught.value.__cause__, rasterio.errors.RasterioError)
+
+
+def test_a_text_that_is_no_map_system_has_no_scale(rasterio: Any) -> None:  # noqa: ARG001 - it skips
+    assert (
+        _scale(
+            MapSystem(text='PROJCS["x", ', in_degrees=False, unit=1.0, height_unit=None, downwards=False),
+            500000.0,
+            5200000.0,
+        )
+        is None
+    )
 
 
 @pytest.mark.parametrize(("name", "unit"), [("Meters", 1.0), ("US_survey-foot", US_FOOT), ("fathom", None)])

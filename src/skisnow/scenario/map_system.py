@@ -176,9 +176,9 @@ def utm_zone(longitude_deg: float, latitude_deg: float) -> str:
 def raster_errors() -> tuple[type[Exception], ...]:
     """What rasterio raises for a damaged file or system: also GDAL's errors, whose base it keeps private."""
     from rasterio._err import CPLE_BaseError
-    from rasterio.errors import RasterioError
+    from rasterio.errors import CRSError, RasterioError
 
-    return RasterioError, CPLE_BaseError, UnicodeDecodeError, MemoryError  # the third from a damaged text
+    return RasterioError, CRSError, CPLE_BaseError, UnicodeDecodeError, MemoryError  # the fourth from a damaged text
 
 
 def _scale(system: MapSystem, x: float, y: float) -> tuple[tuple[float, float], str] | None:
