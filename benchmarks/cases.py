@@ -166,7 +166,7 @@ def energy(path: Path) -> Checked:
     share = math.inf if run.energy_balance_error is None else abs(run.energy_balance_error)
     fits = falls > -1e-6 and (share < OPEN_SHARE or run.outcome == "energy_open")
     text = f"{run.outcome}, {100.0 * share:.4f} % open, largest fall of a loss {max(0.0, -falls):.1e} J"
-    return fits, text + (f"; rejected as without effect and left out: {', '.join(dropped)}" if dropped else "")
+    return fits, text + (f"; keys without effect, removed: {', '.join(dropped)}" if dropped else "")
 
 
 def compared(path: Path) -> Checked:

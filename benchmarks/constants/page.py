@@ -124,9 +124,10 @@ def _parts() -> Iterator[str]:
     yield "| case | x of the end (m) | processor time at 0.8 · 10⁻⁴ to 1 · 10⁻⁴ |\n| --- | --- | ---: |"
     yield from (f"| {case} | {ends} | {time:g} |" for case, ends, time in PARTS_BY_BEND)
     yield ""
-    yield "The trials are not in use. With parts by the bend, down to 1 mm, the shear of a flat ski brakes by 1.56 N in"
-    yield "place of 1.52 N, which short steps and longer parts give, and three upright skis swing by 5.4 % of their"
-    yield "weight after 0.1 s, not below 5 %."
+    yield "With parts down to 1 mm the shear of a flat ski brakes by 1.56 N, not 1.52 N, and three upright skis"
+    yield "swing by 5.4 % of their weight after 0.1 s, not below 5 %. Parts of at least 2.5 mm cure both. The trials"
+    yield "are still not in use. Three checks do not yet hold their limits: long fixed steps on soft snow, laws given"
+    yield "in Python, and the change of load between skis."
     yield ""
 
 

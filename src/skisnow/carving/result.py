@@ -189,7 +189,7 @@ class Equilibrium(Shown):
     def turn_radius_boot_other_spread(self) -> float | None:
         """`turn_radius_boot` with the side force spread the other way along the edge, all else alike (m).
 
-        Shows how much hangs on that choice. A second equilibrium, computed when it is asked; None where it has none.
+        Shows how much depends on that choice. A second equilibrium, computed on demand; None if it is not found.
         """
         return self.other_radius() if callable(self.other_radius) else self.other_radius
 

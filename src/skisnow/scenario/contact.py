@@ -257,7 +257,7 @@ class Contact:
         APART,
         Word(
             "friction.law_file",
-            "TOML file of μ over speed, temperature and liquid water, in place of μ_0 and μ_1",
+            "TOML file of μ over speed, temperature and liquid water, instead of μ_0 and μ_1",
             word_of=_law_path,
             names_file=True,
             label=Message("file of the friction over the snow's state"),

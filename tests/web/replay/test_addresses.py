@@ -194,7 +194,7 @@ def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
 
 
 def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(tmp_path: Path) -> None:
-    """Half circles of 12 m at 6 m/s, left then right: two turns, whose radius and speed stand in the table."""
+    """Half circles of 12 m at 6 m/s, left then right: two turns, with radius and speed in the table."""
     way = np.arange(0.0, 2.0 * math.pi * 12.0, 0.6)
     heading = np.where(way < math.pi * 12.0, way / 12.0, 2.0 * math.pi - way / 12.0)
     x, y = np.cumsum(0.6 * np.cos(heading)), np.cumsum(0.6 * np.sin(heading))

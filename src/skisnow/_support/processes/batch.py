@@ -267,7 +267,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     Raises
     ------
     ParameterError
-        It is none of these, or Dask is not installed.
+        The executor is of another kind, or Dask is not installed.
     SkisnowError
         The scheduler does not answer.
     """

@@ -25,7 +25,7 @@ class SnowState:
     lubricated_friction, dry_friction, viscous_slope
         μ_∞, a and c (s/m) of `WaterFilmFriction`.
     temperature
-        Of the snow's surface (°C), at most 0; None: not known.
+        Temperature of the snow's surface (°C), at most 0; None if unknown.
     liquid_water
         Share of liquid water in the volume (%); above 0 at 0 °C only.
     """
