@@ -9,9 +9,9 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.contact import SnowContact, SnowField
-from skisnow.forces.friction.load import ActsOn
+from skisnow.forces.friction.law import ActsOn
 from skisnow.forces.shear import MachiningShear
-from skisnow.forces.shear.displacement import SHEAR_DISPLACEMENT
+from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT
 
 from .conftest import edged, straight
 

@@ -12,7 +12,7 @@ import pytest
 from skisnow.contact import SnowContact, SnowField
 from skisnow.contact.snow_field import STICK_DISPLACEMENT
 from skisnow.forces.friction import LinearFriction
-from skisnow.forces.friction.load import ActsOn
+from skisnow.forces.friction.law import ActsOn
 from skisnow.forces.shear import MachiningShear
 
 from .conftest import straight

@@ -13,12 +13,11 @@ from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3, Facts, Shown, amount
 from ..compiled import core
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
-from ..forces.friction.load import ActsOn, Direction
+from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
-from ..forces.shear.displacement import SHEAR_DISPLACEMENT
-from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
+from ..forces.shear.slip import RESIDUAL_RATIO, SHEAR_DISPLACEMENT, SLIP_WEAKENING, Bearing
 from ..geometry.surfaces import Grid, Plane
 
 STICK_DISPLACEMENT: Final = 0.02e-3

@@ -8,10 +8,10 @@ from typing import Annotated, Final, Literal, TypeAlias, get_args
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..forces.friction import FrictionFile, FrictionLaw, LinearFriction
-from ..forces.friction.load import ActsOn, Direction
+from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw, ProfilePoint
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
-from ..forces.shear.displacement import SHEAR_DISPLACEMENT
+from ..forces.shear.slip import SHEAR_DISPLACEMENT
 from ..parameters import APART, Condition, Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
 from ..snow.measured_range import without_range_warnings

@@ -9,7 +9,7 @@ import pytest
 
 from skisnow import ModelLimitWarning, Run
 from skisnow.contact import SnowContact, SnowField
-from skisnow.forces.friction.load import ActsOn
+from skisnow.forces.friction.law import ActsOn
 from skisnow.scenario import load_scenario
 from skisnow.simulation.run import LOST
 from skisnow.simulation.simulated_run import simulate

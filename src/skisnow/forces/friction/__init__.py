@@ -2,12 +2,9 @@
 
 from typing import Final
 
-from .constant import ConstantFriction
 from .law import FrictionLaw
 from .law_file import FrictionFile, SnowState, read_friction_file
-from .linear import LinearFriction
-from .quadratic import QuadraticFriction
-from .water_film import WaterFilmFriction
+from .speed_laws import ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction
 
 LAWS: Final[tuple[type[FrictionLaw], ...]] = (ConstantFriction, LinearFriction, QuadraticFriction, WaterFilmFriction)
 """Every law for glide friction: one set of tests runs over all of them."""

@@ -1,10 +1,10 @@
-"""The interface of every law for the glide friction of a ski."""
+"""Loads that glide friction may act on, and its direction."""
 
 from __future__ import annotations
 
 import abc
 from collections.abc import Mapping
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,13 @@ import numpy.typing as npt
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..measured_ranges import GLIDE_FRICTION
+
+ActsOn: TypeAlias = Literal["snow-normal", "base-normal"]
+"""The load along the snow's normal, or that square on the base, side force included: docs/methods/snow-options.md."""
+
+Direction: TypeAlias = Literal["vector", "along-ski"]
+"""Against the sliding velocity, or along the ski at any slip angle: docs/methods/snow-options.md."""
+
 
 COMPARISON_SPEED: Final = 10.0
 """Speed (m/s) at which a new law is compared with the measured range (modelling assumption: an ordinary

@@ -13,7 +13,7 @@ from ..._support.errors import ParameterError
 from ..._support.user_files import read_toml
 from ...parameters import Quantity, checked_table, made, require_declared
 from ...snow import MeasuredRange
-from .water_film import WaterFilmFriction
+from .speed_laws import WaterFilmFriction
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,20 +2,13 @@
 
 from typing import Final
 
-from .area import AreaLaw
-from .bilinear import BilinearLaw
-from .depth import DepthLaw
-from .elastic_point import ElasticPoint
-from .element_count import ElementCountLaw
+from .elastic_points import ElasticPoint, MeanPressurePoint, VolumeWithAnglePoint
+from .geometry_laws import AreaLaw, DepthLaw, ElementCountLaw, MeanPressureLaw
 from .hypoplastic_point import HypoplasticPoint
 from .law import PenetrationLaw
 from .layered_point import LayeredPoint, ProfilePoint
-from .mean_pressure import MeanPressureLaw
-from .mean_pressure_point import MeanPressurePoint
 from .point_law import PointLaw
-from .volume import VolumeLaw
-from .volume_with_angle import VolumeWithAngleLaw
-from .volume_with_angle_point import VolumeWithAnglePoint
+from .volume_laws import BilinearLaw, VolumeLaw, VolumeWithAngleLaw
 
 LAWS: Final[tuple[type[PenetrationLaw], ...]] = (
     VolumeLaw,

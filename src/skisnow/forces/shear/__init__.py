@@ -2,13 +2,9 @@
 
 from typing import Final
 
-from .by_angle import AngleShear
-from .by_density import DensityShear
-from .by_density_natural import NaturalDensityShear
-from .constant import ConstantShear
-from .ice_cutting import IceCuttingShear
 from .law import ShearLaw
-from .machining import MachiningShear
+from .machining import IceCuttingShear, MachiningShear
+from .stress_laws import AngleShear, ConstantShear, DensityShear, NaturalDensityShear
 
 LAWS: Final[tuple[type[ShearLaw], ...]] = (
     ConstantShear,
