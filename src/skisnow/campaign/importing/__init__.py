@@ -5,7 +5,7 @@ from .columns import ColumnChoice
 from .folder import RECORD, undo_import, write_import
 from .proposal import Proposal, propose
 from .rows import ImportedTable
-from .sheets import Section
+from .sections import Section
 
 __all__ = [
     "RECORD",

@@ -24,6 +24,8 @@ from ..reading.headings import (
     units_for,
 )
 from .answers import NONE, Question, ask
+from .sections import NO_UNIT
+from .sheets import column_letters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,9 +34,8 @@ if TYPE_CHECKING:
     from ..reading.headings import UnitConversion
     from ..reading.table_forms import TableForm
     from .answers import Answers
-    from .sheets import Section
+    from .sections import Section
 
-_NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
 FROM_NOTES: Final = ("site", "tool", "plate")
 """Columns that a note can replace."""
 
@@ -104,8 +105,11 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
     """Questions for required columns that no heading states, and for headings that state the same column."""
     table = form.file.removesuffix(".csv")
     times = Counter(column for column in stated if column and column != NONE)
-    for heading, column in zip(section.headings, stated, strict=True):
-        if times[column] > 1:
+    for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
+        if section.headings.index(heading) < section.columns.index(place) and column != NONE:
+            excluded = f"{section.sheet.name}!{column_letters(place)}"
+            yield ask("ignore", excluded, section.key, value=heading)
+        elif times[column] > 1:
             key = f"{table}.{heading}"
             yield ask("column", key, section.key, value=heading, choices=(column, NONE), proposed=column)
     missing = [name for name in form.required if name not in times and name not in FROM_NOTES]
@@ -127,7 +131,7 @@ def _statements(
     section: Section, heading: str, column: str, place: int, answers: Answers, table: str, notes: Sequence[Note]
 ) -> set[str]:
     """Units that answer, heading, row of units and notes state for a column."""
-    below = section.units[place - section.left] if section.units else ""
+    below = section.units[section.columns.index(place)] if section.units else ""
     named = own_unit(column) if heading == column else named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
     return {
@@ -149,8 +153,8 @@ def _unit(
     table = form.file.removesuffix(".csv")
     units = _statements(section, heading, column, place, answers, table, notes)
     sizes = {conversion(unit, column) for unit in units}
-    below = section.units[place - section.left] if section.units else ""
-    is_unknown = not known_unit(below) and below.casefold() not in _NO_UNIT and below != heading
+    below = section.units[section.columns.index(place)] if section.units else ""
+    is_unknown = not known_unit(below) and below.casefold() not in NO_UNIT and below != heading
     if len(sizes) == 1 and None not in sizes and (not is_unknown or answers.of_heading("unit", table, heading)):
         return sizes.pop()
     if sizes:

@@ -17,7 +17,8 @@ from .answers import NONE, Answers, Question, ask, is_asked
 from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
 from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
 from .rows import ImportedTable, stored_rows
-from .sheets import KINDS, Ignored, Section, Sheet, find_sections, likely_table, read_sheets, table_of
+from .sections import Section, find_sections, likely_table, table_of
+from .sheets import KINDS, Ignored, Sheet, read_sheets
 
 if TYPE_CHECKING:
     from ..reading.table_forms import TableForm
@@ -76,16 +77,17 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     if not kinds:
         open_.append(_no_table(name))
     tables = [_table(section, form, answers, ignored, notes, open_) for section, form in forms]
+    qualifying = {(section.sheet.name, section.header) for section, _ in forms if section.qualified()}
     open_.extend(
         ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
         for note in notes
-        if is_about_numbers(note)
+        if is_about_numbers(note) or (note.sheet, note.row) in qualifying
     )
     open_.extend(_repeated(tables))
     tools, plates = tools_of(tables, answers, notes, open_), plates_of(tables, answers, notes, open_)
     tables = _with_names(tables, answers, notes, (tools, plates), open_)
-    questions = tuple(item for item in open_ if isinstance(item, Question))
-    problems = tuple(item.problem if isinstance(item, Question) else item for item in open_)
+    questions = tuple(dict.fromkeys(item for item in open_ if isinstance(item, Question)))
+    problems = tuple(dict.fromkeys(item.problem if isinstance(item, Question) else item for item in open_))
     files: Mapping[str, bytes] = {}
     if not problems:
         described = _description(name, data, answers, tables, tools, plates, notes)
@@ -116,23 +118,16 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
     """Cells outside of tables by row, and rows in tables with a single cell."""
     notes = []
     for sheet in sheets:
-        inside = [section for section in sections if section.sheet is sheet]
+        inside = [section for section in sections if section.sheet.name == sheet.name]
         for row, cells in enumerate(sheet.rows):
             texts = [
                 cell.strip()
                 for column, cell in enumerate(cells)
-                if cell.strip() and not any(_has(section, row, column) for section in inside)
+                if cell.strip() and not any(section.has(row, column) for section in inside)
             ]
             if texts and not ignored.row(sheet.name, row):
                 notes.append(Note(sheet.name, row + 1, ": ".join(texts)))
     return tuple(notes)
-
-
-def _has(section: Section, row: int, column: int) -> bool:
-    if not section.header <= row < section.end or column not in section.columns:
-        return False
-    texts = sum(bool(section.sheet.cell(row, column)) for column in section.columns)
-    return row < section.start or texts > 1 or section.sheet.cell(row, section.columns[0]) == ""
 
 
 def _table(
@@ -216,7 +211,7 @@ def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: S
     """Notes between a table and the one above it if they state a site, otherwise all notes of the sheet."""
     section = table.section
     own = [note for note in notes if note.sheet == section.sheet.name]
-    ends = [other.section.end for other in tables if other.section.sheet is section.sheet]
+    ends = [other.section.end for other in tables if other.section.sheet.name == section.sheet.name]
     above = max((end for end in ends if end <= section.header), default=0)
     near = [note for note in own if above < note.row <= section.header]
     return near if stated_sites(section.sheet.name, near) else own

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from ..reading.table_forms import TableForm
     from .answers import Answers
     from .columns import ColumnChoice
-    from .sheets import Ignored, Section
+    from .sections import Section
+    from .sheets import Ignored
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",
@@ -70,7 +71,7 @@ class ImportedTable:
 def data_rows(section: Section, choices: Sequence[ColumnChoice], form: TableForm, ignored: Ignored) -> list[int]:
     """Rows with a cell below a heading of required numbers."""
     needed = {column.name for column in form.numbers if column.needed}
-    places = [choice.place for choice in choices if choice.column in needed]
+    places = [choice.place for choice in choices if choice.column in needed and choice.place in section.own]
     return [
         row
         for row in range(section.start, section.end)
@@ -241,8 +242,8 @@ def _strays(section: Section, rows: Sequence[int], ignored: Ignored) -> Iterator
     """Errors for numbers next to the rows of a table, below no heading: a separator may have split a number."""
     sheet = section.sheet
     for row in rows:
-        right = section.columns.stop
-        while text := sheet.cell(row, right):
+        right = section.own.stop
+        while section.is_last and (text := sheet.cell(row, right)):
             if not ignored.cell(sheet.name, row, right):
                 place = f"{sheet.name}!{column_letters(right)}"
                 yield error(

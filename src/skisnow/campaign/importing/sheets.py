@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Final
@@ -12,18 +11,15 @@ from ..._support.errors import ParameterError
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
 from ..._support.user_files import workbook_sheets
 from ..._support.user_files.workbook import merged_ranges
-from ..reading.headings import FORMS, columns_by_synonym, known_unit, stated_column, unit_of_column
+from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
 from ..reading.text import CsvText, UnreadableTextError, decode
 from ..reading.workbook_files import is_workbook
-from .answers import NONE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..._support.user_files.workbook import Rows
-    from ..reading.table_forms import TableForm
-    from .answers import Answers
 
 _LETTERS: Final = 26
 
@@ -139,119 +135,10 @@ def _records(text: CsvText) -> Rows:
     return rows
 
 
-_FEWEST_HEADINGS: Final = 2
 _HEADING_ROWS: Final = 1000
 """First rows of a CSV file, whose headings tell its separator."""
 KINDS: Final = {name: form for name, form in FORMS.items() if form in TABLES and form is not SNOW_MICRO_PEN}
 """Tables that can be imported."""
-
-
-@dataclass(frozen=True, slots=True)
-class Section:
-    """A table on a sheet; rows and columns count from 0.
-
-    Attributes
-    ----------
-    sheet
-        The sheet.
-    header, start, end
-        Row of the headings, first row below headings and units, and row behind the last one.
-    left
-        First column.
-    headings, units
-        Headings, and cells of the row of units, "" without one.
-    """
-
-    sheet: Sheet
-    header: int
-    start: int
-    end: int
-    left: int
-    headings: tuple[str, ...]
-    units: tuple[str, ...]
-
-    @property
-    def key(self) -> str:
-        """Sheet and row of the headings, as answers name the table."""
-        return f"{self.sheet.name}:{self.header + 1}"
-
-    @property
-    def columns(self) -> range:
-        """Columns of the sheet."""
-        return range(self.left, self.left + len(self.headings))
-
-
-def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> list[Section]:
-    """Tables of a sheet in their order, also side by side; `tables` are answers by heading row."""
-    heads: list[tuple[int, range]] = []
-    for row in range(len(sheet.rows)):
-        answer = tables.get(f"{sheet.name}:{row + 1}")
-        if answer == NONE or ignored.row(sheet.name, row):
-            continue
-        heads += [(row, group) for group in _groups(sheet, row, ignored) if answer or _is_header(sheet, row, group)]
-    sections = [_section(sheet, row, columns, heads) for row, columns in heads]
-    return [section for section in sections if any(_is_filled(section, row) for row in _body(section))]
-
-
-def _body(section: Section) -> range:
-    return range(section.start, section.end)
-
-
-def _is_filled(section: Section, row: int) -> bool:
-    return sum(bool(section.sheet.cell(row, column)) for column in section.columns) > 1
-
-
-def _groups(sheet: Sheet, row: int, ignored: Ignored) -> Iterator[range]:
-    """Neighbouring cells of a row that are not blank."""
-    width = len(sheet.filled[row])
-    filled = [bool(sheet.cell(row, column, filled=True)) for column in range(width)]
-    start = 0
-    for column in range(width + 1):
-        if column == width or not filled[column] or ignored.column(sheet.name, column):
-            if column - start >= _FEWEST_HEADINGS:
-                yield range(start, column)
-            start = column + 1
-
-
-def _is_header(sheet: Sheet, row: int, columns: range) -> bool:
-    """True for at least two headings of a table, one with a unit, and no number or unit."""
-    cells = [sheet.cell(row, column, filled=True) for column in columns]
-    if any(is_plain_number(cell) or known_unit(cell.strip("[]()")) for cell in cells):
-        return False
-    return any(
-        len(likely) >= _FEWEST_HEADINGS and any(map(unit_of_column, likely))
-        for form in KINDS.values()
-        if (likely := likely_columns(form, cells).values())
-    )
-
-
-def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
-    """Stated or likely columns by heading."""
-    stated = {heading: column for heading in headings if (column := stated_column(form, heading))}
-    return columns_by_synonym(form, headings) | stated
-
-
-def _section(sheet: Sheet, row: int, columns: range, heads: Sequence[tuple[int, range]]) -> Section:
-    later = [other for other, group in heads if other > row and set(group) & set(columns)]
-    headings = tuple(sheet.cell(row, column, filled=True) for column in columns)
-    below = [sheet.cell(row + 1, column) for column in columns]
-    units = tuple(cell.strip("[]()").strip() for cell in below) if _is_row_of_units(below) else ()
-    start, end = row + (2 if units else 1), min(later, default=len(sheet.rows))
-    while end > start and _is_title(sheet, end - 1, columns):
-        end -= 1
-    return Section(sheet, row, start, end, columns.start, headings, units)
-
-
-def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
-    """True for a row without numbers and with at most one text below the headings: blank, or a title or note."""
-    texts = [text for column in columns if (text := sheet.cell(row, column, filled=True))]
-    return not texts or (len(texts) == 1 and not is_plain_number(texts[0]))
-
-
-def _is_row_of_units(cells: Sequence[str]) -> bool:
-    texts = [cell.strip("[]()").strip() for cell in cells if cell]
-    numbers = any(map(is_plain_number, texts))
-    return not numbers and (any(map(known_unit, texts)) or len(texts) >= _FEWEST_HEADINGS)
 
 
 def is_plain_number(text: str) -> bool:
@@ -278,31 +165,3 @@ class Ignored:
         """True if a cell is excluded, directly or with its row or column."""
         name = f"{sheet}!{column_letters(column)}{row + 1}"
         return self.row(sheet, row) or self.column(sheet, column) or name in self.places
-
-
-def table_of(section: Section, answers: Answers) -> TableForm | None:
-    """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None."""
-    answer = answers.table.get(section.key, "")
-    if answer in KINDS:
-        return KINDS[answer]
-    counts: dict[str, int] = {}
-    for name, form in KINDS.items():
-        stated = {
-            answers.of_heading("column", name, heading) or stated_column(form, heading) for heading in section.headings
-        }
-        needed = [column.name for column in form.numbers if column.needed]
-        if all(column in stated for column in needed):
-            counts[name] = len(needed)
-    most = max(counts.values(), default=0)
-    best = [name for name, count in counts.items() if count == most]
-    return KINDS[best[0]] if len(best) == 1 else None
-
-
-def likely_table(section: Section) -> str:
-    """Name of the table with the largest share of likely columns."""
-
-    def share(form: TableForm) -> float:
-        needed = [column.name for column in form.numbers if column.needed]
-        return len(set(needed) & set(likely_columns(form, section.headings).values())) / len(needed)
-
-    return max(KINDS, key=lambda name: share(KINDS[name]))

@@ -1,0 +1,391 @@
+"""Tables on a sheet: headings on one or two rows, a row of units, and series in neighbouring columns."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final
+
+from ..reading.headings import (
+    columns_by_synonym,
+    heading_words,
+    known_unit,
+    named_unit,
+    stated_column,
+    unit_of_column,
+)
+from .answers import NONE
+from .sheets import KINDS, is_plain_number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..reading.table_forms import TableForm
+    from .answers import Answers
+    from .sheets import Ignored, Sheet
+
+_FEWEST_HEADINGS: Final = 2
+NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
+"""Cells of a row of units below headings of texts, in small letters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A table on a sheet; rows and columns count from 0.
+
+    Attributes
+    ----------
+    sheet
+        The sheet; a series of several has further columns at the right for the texts above it.
+    header, start, end
+        First row of the headings, first row below headings and units, and row behind the last one.
+    columns
+        Columns of the sheet.
+    headings, units
+        Headings, and cells of the row of units, "" without one, for each column.
+    own
+        Columns that no other series has.
+    titles
+        Rows above the headings with a text for each series.
+    is_last
+        True if no series follows in the next column.
+    """
+
+    sheet: Sheet
+    header: int
+    start: int
+    end: int
+    columns: tuple[int, ...]
+    headings: tuple[str, ...]
+    units: tuple[str, ...]
+    own: range
+    titles: range = range(0)
+    is_last: bool = True
+
+    @property
+    def key(self) -> str:
+        """Sheet and row of the headings, as answers name the table."""
+        return f"{self.sheet.name}:{self.header + 1}"
+
+    def qualified(self) -> bool:
+        """True if the row above has several words, not notes, and one of them is above a heading of numbers."""
+        above = [self.sheet.cell(self.header - 1, column) for column in self.columns] if self.header else []
+        words = [(text, heading) for text, heading in zip(above, self.headings, strict=False) if text]
+        return (
+            not self.titles
+            and len(words) > 1
+            and not any(re.search(r"[\d:]", text) for text, _ in words)
+            and any(unit_of_column(name) for _, heading in words for name in _stated(heading))
+        )
+
+    def has(self, row: int, column: int) -> bool:
+        """True for a cell of the table or of its titles; a single text in a row is a note."""
+        if row in self.titles and column < self.own.stop:
+            return True
+        if not self.header <= row < self.end or column not in self.columns:
+            return False
+        texts = sum(bool(self.sheet.cell(row, place)) for place in self.columns)
+        return row < self.start or texts > 1 or self.sheet.cell(row, self.columns[0]) == ""
+
+
+def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> list[Section]:
+    """Tables of a sheet in their order, also side by side; `tables` are answers by heading row."""
+    heads: list[tuple[int, range, int]] = []
+    below: set[int] = set()
+    for row in range(len(sheet.rows)):
+        answer = tables.get(f"{sheet.name}:{row + 1}")
+        if answer == NONE or ignored.row(sheet.name, row):
+            continue
+        taken, below = below, set()
+        groups = [group for group in _groups(sheet, (row,), ignored) if not taken & set(group)]
+        single = [group for group in groups if answer or _is_header(_texts(sheet, row, group))]
+        pairs = [] if answer else [pair for pair in _pairs(sheet, row, groups, ignored) if not taken & set(pair)]
+        heads += [(row, group, 1) for group in single if not any(set(group) & set(pair) for pair in pairs)]
+        heads += [(row, group, 2) for group in pairs]
+        below.update(column for group in pairs for column in group)
+    sections: list[Section] = []
+    for row in dict.fromkeys(row for row, _, _ in heads):
+        on_row = [_section(sheet, row, group, count, heads) for at, group, count in heads if at == row]
+        filled = [section for section in on_row if any(_is_filled(section, at) for at in _body(section))]
+        sections += _split_series(filled, ignored)
+    return sections
+
+
+def _pairs(sheet: Sheet, row: int, groups: Sequence[range], ignored: Ignored) -> Iterator[range]:
+    """Columns with headings on this row and the next: parts that a hyphen joins, or no headings without each other."""
+    if row + 1 >= len(sheet.rows) or ignored.row(sheet.name, row + 1):
+        return
+    lower = list(_groups(sheet, (row + 1,), ignored))
+    alone = {
+        column
+        for at, on_row in ((row, groups), (row + 1, lower))
+        for group in on_row
+        if _is_header(_texts(sheet, at, group))
+        for column in group
+    }
+    for group in _groups(sheet, (row, row + 1), ignored):
+        top, below = _texts(sheet, row, group), [sheet.cell(row + 1, column) for column in group]
+        hyphens = any(text.endswith("-") and _is_part(part) for text, part in zip(top, below, strict=True))
+        both = any(top) and any(map(_is_part, below)) and not alone & set(group)
+        if (hyphens or both) and not any(map(is_plain_number, (*top, *below))):
+            headings = [_joined(text, part) or text for text, part in zip(top, below, strict=True)]
+            if _is_header(headings):
+                yield group
+
+
+def _is_part(text: str) -> bool:
+    """True for a text that may be the second part of a heading: neither blank nor a unit, and without a value."""
+    plain = re.sub(r"[\[(/].*", "", text)
+    return not _is_unit(text) and not re.search(r"\d", plain)
+
+
+def _is_unit(text: str) -> bool:
+    plain = text.strip("[]()").strip()
+    return plain.casefold() in NO_UNIT or bool(known_unit(plain))
+
+
+def _joined(top: str, below: str) -> str:
+    """Heading of two cells, one below the other, if both are needed for it; otherwise ""."""
+    if not _is_part(below):
+        return ""
+    if not top or top.endswith("-"):
+        return top.removesuffix("-") + below
+    both = f"{top} {below}"
+    names = _stated(both)
+    return both if names and (not _stated(top) or (names == _stated(top) and named_unit(both))) else ""
+
+
+def _stated(heading: str) -> set[str]:
+    return {column for form in KINDS.values() if (column := stated_column(form, heading))}
+
+
+def _body(section: Section) -> range:
+    return range(section.start, section.end)
+
+
+def _is_filled(section: Section, row: int) -> bool:
+    return sum(bool(section.sheet.cell(row, column)) for column in section.columns) > 1
+
+
+def _groups(sheet: Sheet, rows: Sequence[int], ignored: Ignored) -> Iterator[range]:
+    """Neighbouring columns with a cell that is not blank in one of the rows."""
+    width = max(len(sheet.filled[row]) for row in rows)
+    filled = [any(sheet.cell(row, column, filled=True) for row in rows) for column in range(width)]
+    start = 0
+    for column in range(width + 1):
+        if column == width or not filled[column] or ignored.column(sheet.name, column):
+            if column - start >= _FEWEST_HEADINGS:
+                yield range(start, column)
+            start = column + 1
+
+
+def _texts(sheet: Sheet, row: int, columns: range) -> list[str]:
+    return [sheet.cell(row, column, filled=True) for column in columns]
+
+
+def _is_header(cells: Sequence[str]) -> bool:
+    """True for at least two headings of a table, one with a unit, and no number or unit."""
+    if any(is_plain_number(cell) or known_unit(cell.strip("[]()")) for cell in cells):
+        return False
+    return any(
+        len(likely) >= _FEWEST_HEADINGS and any(map(unit_of_column, likely))
+        for form in KINDS.values()
+        if (likely := likely_columns(form, cells).values())
+    )
+
+
+def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
+    """Stated or likely columns by heading."""
+    stated = {heading: column for heading in headings if (column := stated_column(form, heading))}
+    return columns_by_synonym(form, headings) | stated
+
+
+def _section(
+    sheet: Sheet, row: int, columns: range, rows_of_headings: int, heads: Sequence[tuple[int, range, int]]
+) -> Section:
+    later = [other for other, group, _ in heads if other > row and set(group) & set(columns)]
+    top = _texts(sheet, row, columns)
+    below = [sheet.cell(row + 1, column) for column in columns]
+    headings, start = tuple(top), row + 1
+    units: tuple[str, ...] = ()
+    joined = [_joined(text, part) for text, part in zip(top, below, strict=True)]
+    parts = not any(map(is_plain_number, below)) and any(joined)
+    if parts or rows_of_headings > 1:
+        headings = tuple(new or text for new, text in zip(joined, top, strict=True))
+        below = ["" if new else part for new, part in zip(joined, below, strict=True)]
+        third = [sheet.cell(row + 2, column) for column in columns]
+        if all(map(_is_unit, third)) and any(known_unit(cell.strip("[]()")) for cell in third):
+            below = [cell or part for cell, part in zip(third, below, strict=True)]
+            start = row + 2
+    if parts or rows_of_headings > 1 or _is_row_of_units(below):
+        units, start = tuple(cell.strip("[]()").strip() for cell in below), start + 1
+    end = min(later, default=len(sheet.rows))
+    while end > start and _is_title(sheet, end - 1, columns):
+        end -= 1
+    return Section(sheet, row, start, end, tuple(columns), headings, units, columns)
+
+
+def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
+    """True for a row without numbers and with at most one text below the headings: blank, or a title or note."""
+    texts = [text for column in columns if (text := sheet.cell(row, column, filled=True))]
+    return not texts or (len(texts) == 1 and not is_plain_number(texts[0]))
+
+
+def _is_row_of_units(cells: Sequence[str]) -> bool:
+    texts = [cell.strip("[]()").strip() for cell in cells if cell]
+    numbers = any(map(is_plain_number, texts))
+    return not numbers and (any(map(known_unit, texts)) or len(texts) >= _FEWEST_HEADINGS)
+
+
+def _split_series(sections: Sequence[Section], ignored: Ignored) -> list[Section]:
+    """One section for each series of the tables on a row, whose columns repeat: load, depth, load, depth.
+
+    Series share the columns on their left that do not repeat. If no column names the tests, each row above the
+    headings with one text for each series becomes a column with this text in all rows of the series.
+    """
+    series = [part for section in sections for part in _repeated_parts(section)]
+    own = [[heading_words(part.headings[part.columns.index(place)]) for place in part.own] for part in series]
+    if len(series) > 1 and all(words == own[0] for words in own) and not _names_tests(series[0].headings):
+        return _with_titles(series, ignored)
+    return series
+
+
+def _names_tests(headings: Sequence[str]) -> bool:
+    return any(stated_column(form, heading) == form.key for form in KINDS.values() for heading in headings)
+
+
+def _repeated_parts(section: Section) -> list[Section]:
+    """Parts of a table whose headings repeat without a rest, the shared columns in each; else the table."""
+    words = [heading_words(heading) for heading in section.headings]
+    times = Counter(words)
+    starts = [place for place, word in enumerate(words) if word == next((w for w in words if w and times[w] > 1), None)]
+    blocks = [range(*ends) for ends in pairwise((*starts, len(words)))]
+    shared = section.headings[: starts[0]] if starts else ()
+    if (
+        not starts
+        or any(words[block.start : block.stop] != words[starts[0] : blocks[0].stop] for block in blocks)
+        or _names_tests(shared)
+        or not any(unit_of_column(name) for place in blocks[0] for name in _stated(section.headings[place]))
+    ):
+        return [section]
+    parts = []
+    for block in blocks:
+        places = (*range(starts[0]), *block)
+        columns, headings = (tuple(values[place] for place in places) for values in (section.columns, section.headings))
+        units = tuple(section.units[place] for place in places) if section.units else ()
+        own = range(columns[len(shared)], columns[-1] + 1)
+        parts.append(replace(section, columns=columns, headings=headings, units=units, own=own, is_last=False))
+    parts[-1] = replace(parts[-1], is_last=True)
+    return parts
+
+
+def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
+    """Series with a column for each text above them, at the right of the sheet."""
+    first = series[0]
+    sheet, row = first.sheet, first.header
+    while (
+        row and not ignored.row(sheet.name, row - 1) and all(len(_filled(sheet, row - 1, p.own)) == 1 for p in series)
+    ):
+        row -= 1
+    titles = [title for at in range(row, first.header) for title in _titles(series, at)]
+    left = max(map(len, sheet.filled)) + 1
+    rows, filled = (
+        [[*cells, *[""] * (left - len(cells) + len(titles) * len(series))] for cells in kind]
+        for kind in (sheet.rows, sheet.filled)
+    )
+    fractions = set(sheet.fractions)
+    named = []
+    for part in series:
+        places = tuple(range(left, left + len(titles)))
+        left += len(titles)
+        for at in (at for at in range(part.start, part.end) if _filled(sheet, at, part.own)):
+            for place, title in zip(places, titles, strict=True):
+                value, source = title.values[part.own]
+                rows[at][place] = filled[at][place] = value
+                fractions |= {(at, place)} if source in sheet.fractions else set()
+        units = (*(part.units or [""] * len(part.columns)), *(title.unit for title in titles))
+        headings = (*part.headings, *(title.heading for title in titles))
+        titled = range(row, first.header)
+        named.append(replace(part, columns=part.columns + places, headings=headings, units=units, titles=titled))
+    after = replace(sheet, rows=rows, filled=filled, fractions=frozenset(fractions))
+    return [replace(part, sheet=after) for part in named]
+
+
+def _filled(sheet: Sheet, row: int, columns: range) -> list[int]:
+    return [column for column in columns if sheet.cell(row, column)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Title:
+    """Texts above series, as a column: its heading and unit, and each series' value with its row and column."""
+
+    heading: str
+    unit: str
+    values: Mapping[range, tuple[str, tuple[int, int]]]
+
+
+def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
+    """Columns of a row above series: a label at its left names them, or words before the values do."""
+    sheet = series[0].sheet
+    places = [_filled(sheet, row, part.own)[0] for part in series]
+    label = next((text for column in range(series[0].own.start)[::-1] if (text := sheet.cell(row, column))), "")
+    texts = [sheet.cell(row, place) for place in places]
+    parts = [[text] if label else re.split(r"[,;|]\s+", text) for text in texts]
+    if len({len(of_series) for of_series in parts}) > 1:
+        parts = [[text] for text in texts]
+    for number, values in enumerate(zip(*parts, strict=True), start=1):
+        pairs = [_named_value(value) for value in values]
+        same = not label and len({heading_words(words) for words, _ in pairs}) == 1
+        heading = pairs[0][0] if same else label
+        plain = [value for _, value in pairs] if same else values
+        matches = [re.fullmatch(r"([+-]?\d+(?:[.,]\d+)?)\s*(\D+)", value) for value in plain]
+        units = {known_unit(match[2]) if match else "" for match in matches}
+        unit = units.pop() if len(units) == 1 else ""
+        stored = [match[1] if match and unit else value for match, value in zip(matches, plain, strict=True)]
+        yield _Title(
+            heading or f"{sheet.name}:{row + 1}" + (f".{number}" if len(parts[0]) > 1 else ""),
+            unit,
+            {
+                part.own: (value, (row, place) if value == sheet.cell(row, place) else (-1, -1))
+                for part, value, place in zip(series, stored, places, strict=True)
+            },
+        )
+
+
+def _named_value(text: str) -> tuple[str, str]:
+    """Heading and value of a text such as "Versuch 1" or "Kantwinkel: 30°"; no heading if no column has the name."""
+    ends = [match for match in re.finditer(r"[\s:=]+(?=\S)", text) if not re.search(r"\d", text[: match.start()])]
+    return next(
+        ((text[: end.start()], text[end.end() :]) for end in ends[::-1] if _stated(text[: end.start()])), ("", text)
+    )
+
+
+def table_of(section: Section, answers: Answers) -> TableForm | None:
+    """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None."""
+    answer = answers.table.get(section.key, "")
+    if answer in KINDS:
+        return KINDS[answer]
+    counts: dict[str, int] = {}
+    for name, form in KINDS.items():
+        stated = {
+            answers.of_heading("column", name, heading) or stated_column(form, heading) for heading in section.headings
+        }
+        needed = [column.name for column in form.numbers if column.needed]
+        if all(column in stated for column in needed):
+            counts[name] = len(needed)
+    most = max(counts.values(), default=0)
+    best = [name for name, count in counts.items() if count == most]
+    return KINDS[best[0]] if len(best) == 1 else None
+
+
+def likely_table(section: Section) -> str:
+    """Name of the table with the largest share of likely columns."""
+
+    def share(form: TableForm) -> float:
+        needed = [column.name for column in form.numbers if column.needed]
+        return len(set(needed) & set(likely_columns(form, section.headings).values())) / len(needed)
+
+    return max(KINDS, key=lambda name: share(KINDS[name]))
