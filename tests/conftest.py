@@ -3,13 +3,15 @@
 import gc
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from itertools import count
+from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 import pytest
+from _pytest.doctest import DoctestModule
 
 # read when NumPy is loaded: small matrices in several threads wait for each other longer than they compute, and two
 # processes test at once
@@ -29,6 +31,20 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # translations that were edited since the package was built
 compile_changed()
+
+
+class FilesWithExamples:
+    """Search modules for examples only if their text contains one: the search through all takes 3 s per process."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_collect_file(self, file_path: Path) -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+        collectors = yield
+        return [each for each in collectors if not isinstance(each, DoctestModule) or b">>> " in file_path.read_bytes()]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register what applies to src and docs, too."""
+    config.pluginmanager.register(FilesWithExamples())
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
