@@ -127,6 +127,15 @@ def test_way_over_a_gap_is_straight() -> None:
     assert motion.arc_length[-1] == pytest.approx(159.0)  # not 10 m/s over 100 s
 
 
+def test_points_without_a_fix_in_a_gap_count_once() -> None:
+    """1 s of 100 points at 10 m/s has no fix: its way is straight, and no recorded speed is added to it."""
+    made = track(np.stack([np.arange(100.0), np.zeros(100)], axis=1), speed=np.full(100, 10.0))
+    made.place[45:56] = np.nan
+    found = track_motion(made)
+    assert found.speed_source == "recorded"
+    assert found.arc_length[[44, 56, 99]] == pytest.approx([44.0, 56.0, 99.0], abs=1e-9)
+
+
 def test_at_rest_there_is_no_heading() -> None:
     motion = track_motion(track(np.zeros((50, 2)), noise=NOISE))
     assert np.isnan(motion.heading).all()

@@ -82,6 +82,17 @@ def test_recorded_velocities_make_the_acceleration_surer_and_right() -> None:
     assert share > 0.95
 
 
+@pytest.mark.parametrize("every", [1, 2, 5, 10])
+@pytest.mark.parametrize("noise", [0.0, NOISE])
+def test_few_exact_velocities_do_not_hide_the_places(every: int, noise: float) -> None:
+    place = circle(15.0, 8.0)
+    made = track(place, noise=noise)
+    velocity = np.full((len(made), 3), np.nan)
+    velocity[::every, :2] = np.gradient(place, 0.1, axis=0)[::every]
+    found = smooth_track(replace(made, velocity=velocity))
+    assert found.place == pytest.approx(place, abs=0.02 + 4.0 * noise)
+
+
 def test_windows_end_at_gaps() -> None:
     straight = np.stack([np.arange(60.0), np.zeros(60)], axis=1)
     made = track(straight)

@@ -11,7 +11,7 @@ from scipy.stats import norm
 from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import CONFIDENCE, ShownFields
 from .path_estimate import PathEstimate, estimate_path
-from .smoothing import SmoothedTrack, fill_rows, smooth_track
+from .smoothing import SmoothedTrack, smooth_track
 from .track import Track
 
 SpeedSource: TypeAlias = Literal["recorded", "fitted"]
@@ -175,16 +175,16 @@ def odometer_arc_length(track: Track) -> FloatArray:
 
 def integrated_arc_length(track: Track, smoothed: SmoothedTrack, speed: FloatArray) -> FloatArray:
     """Integral (n,) (m) of the speed by the trapezoidal rule; straight over gaps, nothing between segments."""
-    rising = np.maximum.accumulate(track.time)
-    has_speed = np.isfinite(speed) & track.usable
+    rising, chosen = np.maximum.accumulate(track.time), track.usable
+    has_speed = np.isfinite(speed) & chosen
     if not has_speed.any():
         return np.zeros_like(rising)
-    whole = np.interp(rising, rising[has_speed], speed[has_speed])
-    steps = np.diff(rising) * (whole[1:] + whole[:-1]) / 2.0
-    gap = np.diff(smoothed.part) > 0
-    steps[gap] = np.linalg.norm(np.diff(fill_rows(track.place[:, :2], track.usable), axis=0)[gap], axis=1)
-    steps[np.diff(segments(track)) > 0] = 0.0
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    whole = np.interp(rising[chosen], rising[has_speed], speed[has_speed])
+    steps = np.diff(rising[chosen]) * (whole[1:] + whole[:-1]) / 2.0
+    gap = np.diff(smoothed.part[chosen]) > 0
+    steps[gap] = np.linalg.norm(np.diff(track.place[chosen, :2], axis=0)[gap], axis=1)
+    steps[np.diff(segments(track)[chosen]) > 0] = 0.0
+    return np.interp(rising, rising[chosen], np.concatenate([[0.0], np.cumsum(steps)]))
 
 
 def places_arc_length(track: Track, smoothed: SmoothedTrack) -> FloatArray:

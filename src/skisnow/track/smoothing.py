@@ -26,6 +26,9 @@ _SURPRISING: Final = 0.999
 """Probability of the scatter of a window, given the noise, above which its own scatter is used instead."""
 _LOWEST_PLACE_NOISE: Final = 1e-9
 """Smallest noise (m), so that rounding errors of a track without noise are not a signal."""
+_LOWEST_RATE_NOISE: Final = 1e-4
+"""Smallest noise of velocities times half a window, in shares of that of places: with less, few velocities would hide
+the places from the normal equations."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -218,13 +221,19 @@ def _noises(
     place: WeightedValues,
     rate: WeightedValues | None,
 ) -> tuple[float, float | None]:
-    """Standard deviation (m) of places about cubics through the places, and (m/s) of velocities likewise."""
+    """Standard deviation (m) of places about cubics through the places, and (m/s) of velocities likewise.
+
+    That of velocities is None if no window contains enough of them.
+    """
     fits = local_cubic(time, windows, half, place, None)
     place_noise = max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE)
     if rate is None:
         return place_noise, None
     fits = local_cubic(time, windows, half, rate, None)
-    return place_noise, max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE / half)
+    if (fits.place_count < FEWEST_POINTS).all():
+        return place_noise, None
+    lowest = max(_LOWEST_PLACE_NOISE, _LOWEST_RATE_NOISE * place_noise) / half
+    return place_noise, max(_noise(fits.place_misfit, fits.place_count - TERMS), lowest)
 
 
 def _noise(misfit: FloatArray, freedom: IntArray) -> float:
