@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
-from skisnow import check_campaign, read_track, track_summary
+from skisnow import check_campaign, read_ski, read_track, track_summary
 from skisnow._support.errors import OutputError
 from skisnow.campaign import read_density_layers, read_snow_micro_pen
 from skisnow.campaign.caaml import read_caaml
@@ -71,6 +71,16 @@ def test_snow_is_read(samples: Path) -> None:
     force = read_snow_micro_pen(samples / "snow_micro_pen.PNT").force
     assert float(force[:7000].max()) < 0.05
     assert float(force[8000:].min()) > 1.0
+
+
+def test_a_ski_is_measured(samples: Path, tmp_path: Path) -> None:
+    tables = [word for name in ("widths.csv", "flex.csv") for word in ("--table", str(samples / name))]
+    stations = ("--stations-from", "tail", "--boot-mm", "780")
+    assert main(["new", "ski", str(tmp_path / "mine.toml"), *tables, *stations]) == 0
+    ski = read_ski(tmp_path / "mine.toml")
+    assert ski.length == pytest.approx(1.593)
+    middle = ski.bending_stiffness[np.argmin(np.abs(ski.station + 0.06))]
+    assert middle == pytest.approx(196.2 * 0.4**3 / (48 * 0.98e-3), rel=0.15)  # F L³/(48 w) of a uniform ski
 
 
 def test_identification_files_are_read(samples: Path) -> None:
