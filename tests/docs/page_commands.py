@@ -10,14 +10,17 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = (
     "README.md",
+    "CONTRIBUTING.md",
     *sorted(
-        path.relative_to(ROOT).as_posix() for part in ("start", "how-to") for path in ROOT.glob(f"docs/{part}/*.md")
+        path.relative_to(ROOT).as_posix()
+        for path in ROOT.glob("docs/**/*.md")
+        if not {"_build", "_generated"} & set(path.parts)
     ),
 )
 FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "dask ", "cc ", "#!/bin/bash")
 BLOCK = re.compile(r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>\w*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
 MARK = re.compile(r"<!-- (?P<kind>not run|needs): (?P<reason>[\w ]+) -->")
-REASONS = {"server", "scheduler", "package index", "other checks"}
+REASONS = {"server", "scheduler", "package index", "other checks", "data of others"}
 PACKAGES = {"fmpy", "mujoco", "exudyn"}
 """Reasons of a mark, and packages without which a block cannot be run."""
 
@@ -43,12 +46,15 @@ class Block:
 
 
 def blocks(page: str) -> list[Block]:
-    """All blocks of a page that a reader would run; output is not among them."""
-    text = (ROOT / page).read_text(encoding="utf-8")
+    """All blocks of a page that a reader would run, without output and without the cells of a notebook."""
+    path = ROOT / page
+    text = path.read_text(encoding="utf-8")
+    is_notebook = path.with_suffix(".ipynb").exists()  # run as a whole by `test_notebooks`
     result = []
     for match in BLOCK.finditer(text):
         language, content = match["language"], match["text"]
-        if language == "python" or (language in ("", "sh", "bash") and content.startswith(FIRST_WORDS)):
+        is_command = language in ("", "sh", "bash") and content.startswith(FIRST_WORDS)
+        if is_command or (language == "python" and not is_notebook):
             mark = MARK.match(match["mark"] or "")
             line = text.count("\n", 0, match.start("text")) + 1
             result.append(Block(line, language, content, mark["reason"] if mark else None))
