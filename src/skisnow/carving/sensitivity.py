@@ -18,8 +18,8 @@ from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, varied_ski
-from .outputs import AT_BOOT, OUTPUTS, At, OutputGrowth, output_growth
-from .shape import Shape, beam_gradient, beam_moved, bent_by, curvature_and_turn, shape_growth
+from .outputs import OUTPUTS, At, OutputGrowth, output_growth
+from .shape import Shape, beam_gradient, beam_moved, bent_by, curvature_and_turn, sections_growth, shape_growth
 from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class _Direction:
     @property
     def moves(self) -> bool:
         """Whether nodes of the beam move."""
-        return self.shape is not None and bool(self.shape.node.any())
+        return self.shape is not None and self.shape.moves
 
     def columns(self, model: ClampedSki) -> FloatArray:
         """Growth of the stations' place, weight, width, base height, and of their element's length over itself."""
@@ -115,8 +115,7 @@ class _Direction:
             [
                 self.shape.place,
                 np.repeat(self.shape.length / 2.0, 2),
-                self.shape.width,
-                self.shape.base_height,
+                *self.shape.sections,
                 np.repeat(stretch, 2),
             ]
         )
@@ -133,7 +132,7 @@ class _Gradient:
     columns: FloatArray
     numbers: FloatArray
     adjoint: FloatArray
-    stiffness: tuple[FloatArray, FloatArray]
+    stiffness: FloatArray
 
 
 @dataclass(slots=True, eq=False)
@@ -328,15 +327,15 @@ class CarveDerivatives:
         total += float(growth.edge_angle * direction.numbers[_ANGLE] + growth.load * direction.numbers[_LOAD])
         if shape is None:
             return total
-        total += float(gradient.columns[2] @ shape.width + gradient.columns[3] @ shape.base_height)
-        if direction.moves:
+        if shape.widens:
+            total += float(np.vdot(gradient.columns[2:4], shape.sections))
+            if growth.edge_by[:2].any():
+                sections = sections_growth(self.request.model.ski, name, growth.edge)
+                total += float(np.vdot(growth.edge_by[:2], sections))
+        if shape.moves:
             total += self._moving(gradient, direction)
-        else:
-            total += sum(float(np.vdot(by, each)) for by, each in zip(gradient.stiffness, shape.stiffness, strict=True))
-        if growth.edge_by[:2].any():
-            at_boot = np.array_equal(growth.edge, AT_BOOT)
-            sections = shape.edge if at_boot else self._shape_growth(name, growth.edge).edge
-            total += float(np.sum(growth.edge_by[:2] * sections[1:]))
+        elif shape.stiffens:
+            total += float(np.vdot(gradient.stiffness, shape.stiffness))
         return total
 
     def _moving(self, gradient: _Gradient, direction: _Direction) -> float:
@@ -369,15 +368,12 @@ class CarveDerivatives:
             if name in CONDITIONS:
                 self._directions[name] = self._of_conditions(name)
             else:
-                shape = self._shape_growth(name, AT_BOOT)
+                request = self.request
+                shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
                 numbers = np.zeros(12)
                 numbers[[_RUNNING_LENGTH, _GREATEST_WIDTH, _BEVEL, _BEVEL_WIDTH]] = shape.numbers
                 self._directions[name] = _Direction(numbers, 0.0, shape)
         return self._directions[name]
-
-    def _shape_growth(self, name: str, edge: FloatArray) -> Shape:
-        model = self.request.model
-        return shape_growth(model.ski, name, model.clamp_length, self.request.elements, tuple(edge.tolist()))
 
     def _of_conditions(self, name: str) -> _Direction:
         conditions, numbers, strength = self.request.conditions, np.zeros(12), 0.0

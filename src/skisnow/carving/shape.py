@@ -1,14 +1,14 @@
-"""Shape and stiffness of a clamped ski as the equations of a carve need them, and their derivatives."""
+"""Growth of shape and stiffness of a clamped ski with its parameters, as the equations of a carve need it."""
 
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, IntArray
 from ..ski.beam import (
     GAUSS_POINTS,
     GAUSS_WEIGHTS,
@@ -18,124 +18,125 @@ from ..ski.beam import (
     model_nodes,
     twist_shape,
 )
-from ..ski.editing import LINEAR, is_linear, require_own_tables, shape_value, stiffness_growth, varied_ski
+from ..ski.editing import table_growth
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
 
 
-_GAUSS_PLACES: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / np.sqrt(3.0)) / 2.0])
-_FREE: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # keys without effect on linear growths
-_MOST_KEPT: Final = 256
-_LINEAR_GROWTHS: Final[dict[tuple[object, ...], Shape]] = {}
-_STEP: Final = 1e-3  # step of a parameter; lengths in mm
+_STATIONS: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / np.sqrt(3.0)) / 2.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shape:
-    """Numbers of a ski in the equations, SI; as a growth: per unit of a parameter.
+    """Growth of a ski's numbers in the equations with a parameter, SI per its unit.
 
     Attributes
     ----------
     node, length
         Nodes of the beam, and the lengths of its n elements.
-    place, width, base_height
-        At two stations of each element.
-    bending, torsion
-        EI and GJ at the Gauss points of each element, shape (n, 4).
-    edge
-        Place, width and base height at the places of the edge line that an output names, shape (3, k).
+    place, sections
+        At two stations of each element: place; width and height of the base, shape (2, 2 n).
+    stiffness
+        EI and GJ at the Gauss points of each element, shape (2, n, 4).
     numbers
         Running length, greatest width at the stations, base bevel, edge width.
+    moves, widens, stiffens
+        Whether nodes, sections and stiffnesses grow at all.
     """
 
     node: FloatArray
     length: FloatArray
     place: FloatArray
-    width: FloatArray
-    base_height: FloatArray
-    bending: FloatArray
-    torsion: FloatArray
-    edge: FloatArray
+    sections: FloatArray
+    stiffness: FloatArray
     numbers: FloatArray
-
-    @property
-    def stiffness(self) -> tuple[FloatArray, FloatArray]:
-        """EI and GJ."""
-        return self.bending, self.torsion
-
-    def combined(self, other: Shape, own: float, others: float) -> Shape:
-        """The sum of both, each times a factor."""
-        return Shape(*(own * getattr(self, f.name) + others * getattr(other, f.name) for f in fields(Shape)))
+    moves: bool
+    widens: bool
+    stiffens: bool
 
 
-def shape_of(ski: Ski, clamp_length: float, elements: int, edge: FloatArray) -> Shape:
-    """Shape of a ski; `edge`: places (m from the boot) of the edge line."""
-    node = model_nodes(ski, clamp_length, elements)
-    length = node[:-1] - node[1:]
-    place = (node[:-1, None] - length[:, None] * _GAUSS_PLACES).ravel()
-    here, stiff = ski.at(place), ski.at(node[:-1, None] - length[:, None] * GAUSS_POINTS)
-    on_edge = ski.at(edge)
+class _Lines(NamedTuple):
+    """Places on the straight lines between two rows of a ski's tables."""
+
+    row: IntArray
+    share: FloatArray
+    spacing: FloatArray
+
+    def along(self, table: FloatArray) -> FloatArray:
+        """Values of tables (…, rows) at the places."""
+        return np.asarray(table[..., self.row] + self.share * (table[..., self.row + 1] - table[..., self.row]))
+
+    def growth(self, table: FloatArray, of_table: FloatArray, station: FloatArray, place: FloatArray) -> FloatArray:
+        """Growth of these, with those of the tables, their stations and the places; the rows stay the same."""
+        out = self.along(of_table)
+        if not (station.any() or place.any()):
+            return out
+        share = (self.along(station) - place) / self.spacing
+        return np.asarray(out + share * (table[..., self.row + 1] - table[..., self.row]))
+
+
+class _Mesh(NamedTuple):
+    node: FloatArray
+    stations: _Lines
+    gauss: _Lines
+
+
+@functools.lru_cache(maxsize=16)
+def _mesh(station: bytes, clamp_length: float, elements: int) -> _Mesh:
+    """Mesh on a ski with these stations, the same for all skis of its lengths."""
+    rows = np.frombuffer(station)
+    node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
+    return _Mesh(node, _lines(station, _within(node, _STATIONS).ravel()), _lines(station, _within(node, GAUSS_POINTS)))
+
+
+def _lines(station: bytes, place: FloatArray) -> _Lines:
+    rows = np.frombuffer(station)
+    row = np.clip(np.searchsorted(-rows, -place, side="right") - 1, 0, len(rows) - 2)
+    spacing = rows[row] - rows[row + 1]
+    return _Lines(row, (rows[row] - place) / spacing, spacing)
+
+
+@functools.lru_cache(maxsize=16)
+def _lines_at(station: bytes, place: tuple[float, ...]) -> _Lines:
+    return _lines(station, np.array(place))
+
+
+def _within(node: FloatArray, local: FloatArray) -> FloatArray:
+    """Places at local coordinates of each element (n, k); with growths of nodes those of the places."""
+    return np.asarray(node[:-1, None] - (node[:-1] - node[1:])[:, None] * local)
+
+
+@functools.lru_cache(maxsize=512)
+def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
+    """Growth of the shape with a parameter of the ski; elements and rows of the tables keep their numbers."""
+    tables, (running_length, bevel, edge_width) = table_growth(ski, name)
+    mesh, station = _mesh(ski.station.tobytes(), clamp_length, elements), tables[0]
+    half = clamp_length / 2.0
+    parts = np.array([float(ski.station[-1]), -half, half, float(ski.station[0])])
+    node = np.interp(mesh.node, parts, [station[-1], 0.0, 0.0, station[0]])
+    place, outline = _within(node, _STATIONS).ravel(), np.array([ski.width, ski.base_height])
+    sections = mesh.stations.growth(outline, tables[1:3], station, place)
+    stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
+    widest = int(np.argmax(mesh.stations.along(ski.width)))
     return Shape(
         node,
-        length,
+        node[:-1] - node[1:],
         place,
-        here.width,
-        here.base_height,
-        stiff.bending_stiffness,
-        stiff.torsional_stiffness,
-        np.array([edge, on_edge.width, on_edge.base_height]),
-        np.array([ski.running_length, here.width.max(), ski.base_bevel, ski.edge_width]),
+        sections,
+        stiff := mesh.gauss.growth(stiffness, tables[3:], station, _within(node, GAUSS_POINTS)),
+        np.array([running_length, sections[0, widest], bevel, edge_width]),
+        moves=bool(station.any()),
+        widens=bool(sections.any()),
+        stiffens=bool(stiff.any()),
     )
 
 
-def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int, edge: tuple[float, ...]) -> Shape:
-    """Growth of the shape with a parameter of the ski, per its unit; meshes and tables keep their numbers of rows.
-
-    Central differences of the ski, without an equilibrium: exact where it is linear in the parameter, otherwise
-    extrapolated (Richardson).
-    """
-    key = name.removeprefix("ski.")
-    if not name.startswith("ski.") or not ski.keys or not is_linear(ski.keys, key):
-        return _growth_of(ski, name, clamp_length, elements, edge)
-    shape_value(ski, name)  # the name is checked
-    require_own_tables(ski)
-    # the derivative by a linear parameter is the same for all skis of these lengths
-    same = tuple((k, str(v)) for k, v in ski.keys.items() if k not in _FREE)
-    widest = int(np.argmax(ski.width))
-    if (same, widest, key, clamp_length, elements, edge) not in _LINEAR_GROWTHS:
-        if len(_LINEAR_GROWTHS) >= _MOST_KEPT:
-            _LINEAR_GROWTHS.clear()
-        growth = _growth_of(ski, name, clamp_length, elements, edge)
-        _LINEAR_GROWTHS[same, widest, key, clamp_length, elements, edge] = growth
-    return _LINEAR_GROWTHS[same, widest, key, clamp_length, elements, edge]
-
-
-@functools.lru_cache(maxsize=256)
-def _growth_of(ski: Ski, name: str, clamp_length: float, elements: int, edge: tuple[float, ...]) -> Shape:
-    value, places = shape_value(ski, name), np.array(edge)
-    stiffness = stiffness_growth(ski, name)
-    if stiffness is not None:
-        return _stiffer(ski, model_nodes(ski, clamp_length, elements), places, *stiffness)
-    # a length moves stations over rows of the tables, between which they are linear: a small step
-    step = _STEP * abs(value) if value and not name.endswith("_mm") else _STEP
-
-    def central(h: float) -> Shape:
-        ends = [shape_of(varied_ski(ski, name, side * h), clamp_length, elements, places) for side in (1.0, -1.0)]
-        return ends[0].combined(ends[1], 0.5 / h, -0.5 / h)
-
-    if name.startswith("edit.") or is_linear(ski.keys or {}, name.removeprefix("ski.")):
-        return central(1e-2 * abs(value) or _STEP)
-    return central(step / 2.0).combined(central(step), 4.0 / 3.0, -1.0 / 3.0)
-
-
-def _stiffer(ski: Ski, node: FloatArray, edge: FloatArray, attribute: str, growth: FloatArray) -> Shape:
-    """Growth of a shape by that of one stiffness at the ski's stations."""
-    length = node[:-1] - node[1:]
-    table = np.interp(node[:-1, None] - length[:, None] * GAUSS_POINTS, ski.station[::-1], growth[::-1])
-    tables = (table, 0.0 * table) if attribute == "bending_stiffness" else (0.0 * table, table)
-    stations, at_edge = np.zeros(2 * len(length)), np.zeros((3, len(edge)))
-    return Shape(0.0 * node, 0.0 * length, stations, stations, stations, *tables, at_edge, np.zeros(4))
+def sections_growth(ski: Ski, name: str, place: FloatArray) -> FloatArray:
+    """Growth of width and height of the base with a parameter of the ski at fixed places (2, k)."""
+    tables, _ = table_growth(ski, name)
+    lines = _lines_at(ski.station.tobytes(), tuple(place.tolist()))
+    return lines.growth(np.array([ski.width, ski.base_height]), tables[1:3], tables[0], 0.0 * place)
 
 
 @functools.lru_cache(maxsize=32)
@@ -147,16 +148,16 @@ def _curvature(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
 
 def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
     """Growth of the beam's elastic forces at the same unknowns (size,)."""
-    out, lengthens = np.zeros(model.size), growth.length.any()
-    if not (lengthens or growth.bending.any() or growth.torsion.any()):
+    out, lengthens = np.zeros(model.size), growth.moves
+    if not (lengthens or growth.stiffens):
         return out
+    bending, torsion = growth.stiffness
     value = _values(model, u)
     length, curvature = _curvature(model)
     kappa = np.einsum("ngi,ni->ng", curvature, value)
     weight = GAUSS_WEIGHTS * length[:, None]
     turn = (value[:, 5] - value[:, 2]) / length
-    force = np.einsum("ng,ngi->ni", weight * growth.bending * kappa, curvature)
-    torsion = growth.torsion
+    force = np.einsum("ng,ngi->ni", weight * bending * kappa, curvature)
     if lengthens:
         stiff = model.ski.at(model.node[:-1, None] - length[:, None] * GAUSS_POINTS)
         stretch = (growth.length / length)[:, None, None]
@@ -196,7 +197,7 @@ def beam_gradient(
 
 def beam_moved(model: ClampedSki, u: FloatArray, place: FloatArray, growth: Shape) -> tuple[FloatArray, FloatArray]:
     """Growth of deflection and twist at fixed places for the same unknowns, where nodes move."""
-    if not growth.node.any():
+    if not growth.moves:
         return np.zeros(len(place)), np.zeros(len(place))
     element = np.clip(np.searchsorted(-model.node, -place, side="right") - 1, 0, len(model.dof) - 1)
     value = _values(model, u)[element]

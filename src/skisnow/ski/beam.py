@@ -281,9 +281,9 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     )
 
 
-def model_nodes(ski: Ski, clamp_length: float, elements: int) -> FloatArray:
-    """Nodes (m) of the model that `clamped` makes of a ski whose clamp is rigid."""
-    return _nodes(float(ski.station[0]), float(ski.station[-1]), clamp_length, elements, bedded=False)
+def model_nodes(front: float, rear: float, clamp_length: float, elements: int) -> FloatArray:
+    """Nodes (m) of the model that `clamped` makes of a ski between these stations, whose clamp is rigid."""
+    return _nodes(front, rear, clamp_length, elements, bedded=False)
 
 
 def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:

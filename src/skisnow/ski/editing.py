@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
@@ -194,6 +194,8 @@ FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS)
 LINEAR: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm", "camber_mm", "base_bevel_deg", "edge_width_mm")
 """Keys in which the ski's tables are linear."""
 _WITHOUT: Final = ("mass_kg", "side_edge_deg", "edge_radius_mm")  # no part in a carve, or no derivative
+_TABLES: Final = ("station", "width", "base_height", "bending_stiffness", "torsional_stiffness")
+_NUMBERS: Final = ("running_length", "base_bevel", "edge_width")
 _STEP: Final = 1e-5  # relative change of one row of a list: both errors of the difference are about 1e-10
 _ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
 
@@ -260,6 +262,56 @@ def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[s
 def is_linear(keys: Mapping[str, Any], key: str) -> bool:
     """True if the tables of a ski are linear in a key; false for widths with a separate key for the tip's end."""
     return key in LINEAR and not (key.endswith("width_mm") and "tip_end_width_mm" in keys)
+
+
+class TableGrowth(NamedTuple):
+    """Growth of a ski with a parameter, SI per its unit, on rows that move with it.
+
+    With tables of station, width, base height, EI and GJ, shape (5, rows); running length, base bevel, edge width.
+    """
+
+    tables: FloatArray
+    numbers: FloatArray
+
+
+_LINEAR_GROWTHS: Final[dict[tuple[object, ...], TableGrowth]] = {}
+_MOST_KEPT: Final = 256
+_WITHOUT_EFFECT: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # on growths with `LINEAR`
+_LENGTH_STEP: Final = 1e-2  # mm; of other parameters a thousandth
+
+
+@functools.lru_cache(maxsize=256)
+def table_growth(ski: Ski, name: str) -> TableGrowth:
+    """Growth of a ski with a parameter of `shape_parameters`, by central differences of its tables.
+
+    Exact where these are linear in the parameter, otherwise extrapolated (Richardson).
+    """
+    value, key = shape_value(ski, name), name.removeprefix("ski.")
+    stiffness = stiffness_growth(ski, name)
+    if stiffness is not None:
+        tables = np.zeros((len(_TABLES), len(ski.station)))
+        tables[_TABLES.index(stiffness[0])] = stiffness[1]
+        return TableGrowth(tables, np.zeros(len(_NUMBERS)))
+
+    def central(h: float) -> TableGrowth:
+        skis = [varied_ski(ski, name, side * h) for side in (1.0, -1.0)]
+        ends = [[np.array([getattr(each, field) for field in names]) for names in (_TABLES, _NUMBERS)] for each in skis]
+        return TableGrowth(*((upper - lower) / (2.0 * h) for upper, lower in zip(*ends, strict=True)))
+
+    if not name.startswith("ski."):
+        return central(1e-2 * value)
+    if is_linear(ski.keys or {}, key):
+        require_own_tables(ski)
+        # the growth is the same for all skis of these lengths
+        same = (key, *((k, str(v)) for k, v in (ski.keys or {}).items() if k not in _WITHOUT_EFFECT))
+        if same not in _LINEAR_GROWTHS:
+            if len(_LINEAR_GROWTHS) >= _MOST_KEPT:
+                _LINEAR_GROWTHS.clear()
+            _LINEAR_GROWTHS[same] = central(1e-2 * abs(value) or _LENGTH_STEP)
+        return _LINEAR_GROWTHS[same]
+    step = _LENGTH_STEP if name.endswith("_mm") else 1e-3 * abs(value) or _LENGTH_STEP
+    once, half = central(step), central(step / 2.0)
+    return TableGrowth(*((4.0 * fine - coarse) / 3.0 for fine, coarse in zip(half, once, strict=True)))
 
 
 def stiffness_growth(ski: Ski, name: str) -> tuple[str, FloatArray] | None:
