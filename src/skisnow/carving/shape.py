@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,19 +12,18 @@ from .._support.arrays import FloatArray, IntArray
 from ..ski.beam import (
     GAUSS_POINTS,
     GAUSS_WEIGHTS,
+    STATION_POINTS,
     ClampedSki,
     curvature_shape,
     deflection_shape,
     model_nodes,
+    places_within,
     twist_shape,
 )
 from ..ski.editing import table_growth
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
-
-
-_STATIONS: Final = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, (1.0 + 1.0 / np.sqrt(3.0)) / 2.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +86,11 @@ def _mesh(station: bytes, clamp_length: float, elements: int) -> _Mesh:
     """Mesh on a ski with these stations, the same for all skis of its lengths."""
     rows = np.frombuffer(station)
     node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
-    return _Mesh(node, _lines(station, _within(node, _STATIONS).ravel()), _lines(station, _within(node, GAUSS_POINTS)))
+    return _Mesh(
+        node,
+        _lines(station, places_within(node, STATION_POINTS).ravel()),
+        _lines(station, places_within(node, GAUSS_POINTS)),
+    )
 
 
 def _lines(station: bytes, place: FloatArray) -> _Lines:
@@ -102,11 +105,6 @@ def _lines_at(station: bytes, place: tuple[float, ...]) -> _Lines:
     return _lines(station, np.array(place))
 
 
-def _within(node: FloatArray, local: FloatArray) -> FloatArray:
-    """Places at local coordinates of each element (n, k); with growths of nodes those of the places."""
-    return np.asarray(node[:-1, None] - (node[:-1] - node[1:])[:, None] * local)
-
-
 @functools.lru_cache(maxsize=512)
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
     """Growth of the shape with a parameter of the ski; elements and rows of the tables keep their numbers."""
@@ -115,7 +113,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
     half = clamp_length / 2.0
     parts = np.array([float(ski.station[-1]), -half, half, float(ski.station[0])])
     node = np.interp(mesh.node, parts, [station[-1], 0.0, 0.0, station[0]])
-    place, outline = _within(node, _STATIONS).ravel(), np.array([ski.width, ski.base_height])
+    place, outline = places_within(node, STATION_POINTS).ravel(), np.array([ski.width, ski.base_height])
     sections = mesh.stations.growth(outline, tables[1:3], station, place)
     stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
     widest = int(np.argmax(mesh.stations.along(ski.width)))
@@ -124,7 +122,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
         node[:-1] - node[1:],
         place,
         sections,
-        stiff := mesh.gauss.growth(stiffness, tables[3:], station, _within(node, GAUSS_POINTS)),
+        stiff := mesh.gauss.growth(stiffness, tables[3:], station, places_within(node, GAUSS_POINTS)),
         np.array([running_length, sections[0, widest], bevel, edge_width]),
         moves=bool(station.any()),
         widens=bool(sections.any()),
@@ -183,16 +181,14 @@ def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, Fl
     return bend + slopes, (value[:, 5:] - value[:, 2:3]) / length
 
 
-def beam_gradient(
-    model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoint: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (n, 4) each.
+def beam_gradient(model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoint: FloatArray) -> FloatArray:
+    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (2, n, 4).
 
     `bent`: curvature and rate of twist of u.
     """
     kappa, turn = curvature_and_turn(model, adjoint)
     weight = GAUSS_WEIGHTS * _lengths(model)[:, None]
-    return weight * bent[0] * kappa, weight * (bent[1] * turn)
+    return np.array([weight * bent[0] * kappa, weight * (bent[1] * turn)])
 
 
 def beam_moved(model: ClampedSki, u: FloatArray, place: FloatArray, growth: Shape) -> tuple[FloatArray, FloatArray]:

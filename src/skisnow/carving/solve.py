@@ -158,19 +158,18 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
     free = dof[:, 0] >= 0
     front, rear = (_CONFORMING_SHARE * end for end in _ends(ski))
     inside = np.clip(node, rear, front)
-    before, behind, here, boot = (ski.at(place) for place in (inside + _NEAR, inside - _NEAR, inside, np.zeros(1)))
+    places = np.concatenate([inside + _NEAR, inside - _NEAR, inside, [0.0]])
+    at = ski.at(places)
 
-    def bent(before: FloatArray, behind: FloatArray, here: FloatArray, boot: FloatArray) -> FloatArray:
+    def bent(table: FloatArray) -> FloatArray:
+        before, behind, here, boot = np.split(table, np.arange(1, 4) * len(inside))
         slope = (before - behind) / (2.0 * _NEAR)
         u = np.zeros(model.size)
         u[dof[free, 0]] = (here - boot + slope * (node - inside))[free]
         u[dof[free, 1]] = -slope[free]  # the elements run from tip to tail
         return u
 
-    return (
-        bent(before.width / 2.0, behind.width / 2.0, here.width / 2.0, boot.width / 2.0),
-        bent(before.base_height, behind.base_height, here.base_height, boot.base_height),
-    )
+    return bent(at.width / 2.0), bent(at.base_height)
 
 
 def _ends(ski: Ski) -> tuple[float, float]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +30,7 @@ class SkiParts:
 
     Attributes
     ----------
-    name, source, layout, base_bevel, edge_width, side_edge, edge_radius
+    name, source, layout, base_bevel, edge_width, side_edge, edge_radius, keys
         As in `Ski` and `Layout`.
     width, bending_stiffness, torsional_stiffness
         As in `Ski`.
@@ -57,6 +58,7 @@ class SkiParts:
     side_edge: float = math.pi / 2.0
     edge_radius: float = 0.0
     stations: FloatArray | None = None
+    keys: Mapping[str, Any] | None = None
 
     def assembled(self, *, like: Ski | None = None) -> Ski:
         """Tabulate the parts densely.
@@ -95,6 +97,7 @@ class SkiParts:
             edge_radius=self.edge_radius,
             sidecut_middle=self.layout.middle,
             base=shape,
+            keys=self.keys,
         )
 
     def _moved_grid(self, like: Ski) -> FloatArray:

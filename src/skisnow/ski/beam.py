@@ -8,13 +8,13 @@ and torsion do not couple. Sources: any text on finite elements, Bathe (1996) *F
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, fields, replace
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray, IntArray
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.errors import ParameterError
 from .ski import Ski
 
@@ -81,12 +81,15 @@ def stiffness_matrices(
     bending_stiffness, torsional_stiffness
         (n, 4) EI and GJ (N m²) at the `GAUSS_POINTS` of each element.
     """
-    curvature = curvature_shape(GAUSS_POINTS[None, :], length[:, None])
-    rate = np.zeros((len(length), 6))
-    rate[:, 2], rate[:, 5] = -1.0 / length, 1.0 / length
-    bending = np.einsum("g,n,ng,ngi,ngj->nij", GAUSS_WEIGHTS, length, bending_stiffness, curvature, curvature)
-    torsion = np.einsum("g,n,ng,ni,nj->nij", GAUSS_WEIGHTS, length, torsional_stiffness, rate, rate)
-    return np.asarray(bending + torsion)
+    curvature, weight = curvature_shape(GAUSS_POINTS[None, :], length[:, None]), GAUSS_WEIGHTS * length[:, None]
+    moment = (weight * bending_stiffness)[:, :, None] * curvature
+    products = [moment[:, g, :, None] * curvature[:, g, None, :] for g in range(len(GAUSS_POINTS))]
+    out: FloatArray = np.add.reduce(products)
+    rate = 1.0 / length
+    torsion = sum((weight * torsional_stiffness * rate[:, None] * rate[:, None]).T)
+    for row, column, sign in ((2, 2, 1.0), (5, 5, 1.0), (2, 5, -1.0), (5, 2, -1.0)):
+        out[:, row, column] += sign * torsion
+    return np.asarray(out)
 
 
 def mass_matrices(
@@ -115,12 +118,18 @@ _MOST_ITERATIONS: Final = 200
 
 def assembled(element_matrices: FloatArray, dof: IntArray, size: int) -> FloatArray:
     """Banded matrix (size, 11) of element matrices (n, 6, 6); `dof` (n, 6) numbers the unknowns, -1 where held."""
-    matrix = np.zeros((size, 2 * HALF_BANDWIDTH + 1))
-    rows = np.broadcast_to(dof[:, :, None], element_matrices.shape)
-    columns = np.broadcast_to(dof[:, None, :], element_matrices.shape)
+    free, place = _places_in_band(dof.tobytes())
+    width = 2 * HALF_BANDWIDTH + 1
+    return np.asarray(np.bincount(place, element_matrices[free], size * width), float).reshape(size, width)
+
+
+@functools.lru_cache(maxsize=16)
+def _places_in_band(dof: bytes) -> tuple[BoolArray, IntArray]:
+    """Free entries of the element matrices, and their places in the banded matrix."""
+    numbers = np.frombuffer(dof, np.int64).reshape(-1, 2 * DOFS_PER_NODE)
+    rows, columns = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
     free = (rows >= 0) & (columns >= 0)
-    np.add.at(matrix, (rows[free], columns[free] - rows[free] + HALF_BANDWIDTH), element_matrices[free])
-    return matrix
+    return free, (2 * HALF_BANDWIDTH * rows + columns + HALF_BANDWIDTH)[free]
 
 
 def dense(matrix: FloatArray) -> FloatArray:
@@ -175,7 +184,8 @@ with 0."""
 MOST_ELEMENTS: Final = 4000
 """Elements of 0.4 mm: finer ones would only cost time (modelling assumption)."""
 
-_STATION_POINT, _STATION_WEIGHT = (1.0 - 1.0 / np.sqrt(3.0)) / 2.0, 0.5
+STATION_POINTS: Final[FloatArray] = np.array([(1.0 - 1.0 / np.sqrt(3.0)) / 2.0, 1.0 - (1.0 - 1.0 / np.sqrt(3.0)) / 2.0])
+"""Local coordinates of an element's two stations, its Gauss points of weight 1/2."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,7 +205,7 @@ class Stations:
     twist: FloatArray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ClampedSki:
     """Finite-element model of a ski whose clamped length is rigid, or on an elastic bed, and moves with the boot.
 
@@ -209,8 +219,8 @@ class ClampedSki:
         (elements, 6) numbers of the unknowns, -1 where held.
     size
         Number of unknowns.
-    stiffness, mass
-        Banded matrices (size, 11), relative to the boot.
+    stiffness
+        Banded matrix (size, 11), relative to the boot.
     stations
         See `Stations`.
     """
@@ -221,8 +231,15 @@ class ClampedSki:
     dof: IntArray
     size: int
     stiffness: FloatArray
-    mass: FloatArray
     stations: Stations
+
+    @functools.cached_property
+    def mass(self) -> FloatArray:
+        """Banded matrix (size, 11), relative to the boot."""
+        at = self.ski.at(places_within(self.node, GAUSS_POINTS))
+        inertia = at.mass_per_length * at.width**2 / 12.0
+        matrices = mass_matrices(self.node[:-1] - self.node[1:], at.mass_per_length, inertia)
+        return assembled(matrices, self.dof, self.size)
 
 
 @functools.lru_cache(maxsize=32)
@@ -259,26 +276,56 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
             code="out_of_range",
             footprint_stiffness=footprint_stiffness,
         )
-    bedded = footprint_stiffness is not None
-    node = _nodes(front, rear, clamp_length, elements, bedded=bedded)
-    dof, size = _numbering(node, 0.0 if bedded else clamp_length)
+    mesh = _mesh(front, rear, clamp_length, elements, bedded=footprint_stiffness is not None)
+    node, dof, size = mesh.node, mesh.dof, mesh.size
     length = node[:-1] - node[1:]
-    at = ski.at(node[:-1, None] - length[:, None] * GAUSS_POINTS)
+    at = ski.at(places_within(node, GAUSS_POINTS))
     stiffness = stiffness_matrices(length, at.bending_stiffness, at.torsional_stiffness)
     if footprint_stiffness is not None:  # as a mass, which resists in the same shapes
         under = np.where(np.abs(node[:-1] + node[1:]) < clamp_length, footprint_stiffness, 0.0)[:, None]
         stiffness = stiffness + mass_matrices(length, under + 0.0 * at.width, under * at.width**2 / 12.0)
-    mass = mass_matrices(length, at.mass_per_length, at.mass_per_length * at.width**2 / 12.0)
-    return ClampedSki(
-        ski,
-        clamp_length,
-        node,
-        dof,
-        size,
-        assembled(stiffness, dof, size),
-        assembled(mass, dof, size),
-        _stations(ski, node, dof),
+    here = ski.at(places_within(node, STATION_POINTS))
+    stations = replace(mesh.stations, width=here.width.ravel(), base_height=here.base_height.ravel())
+    return ClampedSki(ski, clamp_length, node, dof, size, assembled(stiffness, dof, size), stations)
+
+
+class _Mesh(NamedTuple):
+    """Mesh of all skis of the same lengths; its stations have no width and no base height yet."""
+
+    node: FloatArray
+    dof: IntArray
+    size: int
+    stations: Stations
+
+
+@functools.lru_cache(maxsize=16)
+def _mesh(front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool) -> _Mesh:
+    node = _nodes(front, rear, clamp_length, elements, bedded=bedded)
+    dof, size = _numbering(node, 0.0 if bedded else clamp_length)
+    length = node[:-1] - node[1:]
+
+    def flat(values: FloatArray) -> FloatArray:
+        return np.ascontiguousarray(values.reshape(-1, *values.shape[2:]))
+
+    # the elements run from tip to tail, against the station: the slope along the station has the other sign
+    stations = Stations(
+        station=flat(places_within(node, STATION_POINTS)),
+        weight=np.repeat(length / 2.0, 2),
+        width=np.zeros(0),
+        base_height=np.zeros(0),
+        dof=np.repeat(dof, 2, axis=0),
+        deflection=flat(deflection_shape(STATION_POINTS, length[:, None])),
+        slope=-flat(slope_shape(STATION_POINTS, length[:, None])),
+        twist=np.tile(twist_shape(STATION_POINTS), (len(length), 1)),
     )
+    for array in (node, dof, *(getattr(stations, field.name) for field in fields(Stations))):
+        array.flags.writeable = False
+    return _Mesh(node, dof, size, stations)
+
+
+def places_within(node: FloatArray, local: FloatArray) -> FloatArray:
+    """Places at local coordinates of each element (n, k); of growths of nodes, those of the places."""
+    return np.asarray(node[:-1, None] - (node[:-1] - node[1:])[:, None] * local)
 
 
 def model_nodes(front: float, rear: float, clamp_length: float, elements: int) -> FloatArray:
@@ -333,25 +380,3 @@ def _numbering(node: FloatArray, clamp_length: float) -> tuple[IntArray, int]:
     dof = number[:, None] + np.arange(DOFS_PER_NODE)
     dof[~free] = -1
     return np.hstack([dof[:-1], dof[1:]]).astype(np.int64), int(DOFS_PER_NODE * free.sum())
-
-
-def _stations(ski: Ski, node: FloatArray, dof: IntArray) -> Stations:
-    length = node[:-1] - node[1:]
-    local = np.array([_STATION_POINT, 1.0 - _STATION_POINT])
-    station = node[:-1, None] - length[:, None] * local
-    at = ski.at(station)
-
-    def flat(values: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(values.reshape(-1, *values.shape[2:]))
-
-    # the elements run from tip to tail, against the station: the slope along the station has the other sign
-    return Stations(
-        station=flat(station),
-        weight=np.repeat(length * _STATION_WEIGHT, 2),
-        width=flat(at.width),
-        base_height=flat(at.base_height),
-        dof=np.repeat(dof, 2, axis=0),
-        deflection=flat(deflection_shape(local[None, :], length[:, None])),
-        slope=-flat(slope_shape(local[None, :], length[:, None])),
-        twist=np.tile(twist_shape(local), (len(length), 1)),
-    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -76,9 +76,8 @@ class FileParts:
             side_edge=said.side_edge,
             edge_radius=said.edge_radius,
             stations=self.table["station_m"].station if self.table else None,
+            keys=None if self.table or "shape" in values else dict(values.values),
         ).assembled(like=like)
-        if not self.table and "shape" not in values:
-            ski = replace(ski, keys=dict(values.values))
         self._require_mass(ski)
         self._warn_of_lengths(ski)
         return ski
