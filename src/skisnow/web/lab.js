@@ -416,6 +416,7 @@
   new MutationObserver(speak).observe(document.documentElement, { attributeFilter: ["lang"] });
   document.documentElement.style.setProperty("--not-stored", JSON.stringify(SAID.refused));
   document.documentElement.classList.add("not-connected");
+  document.documentElement.classList.toggle("is-insecure", !isSecureContext);
   tellHolding();
   window.lab = {
     ask, answered, connected, drawAnew, drawn, enter, goTo, grown, leave, leaving, onward, photo, position, reading, refusedLast, resent, told,

@@ -17,6 +17,7 @@ from skisnow.campaign.store import (
     Store,
     attachments_of,
     entered_files,
+    export_corrected,
     export_entered,
     photo_entry,
     position_entry,
@@ -70,6 +71,23 @@ def test_attachments_reach_another_laptop_and_can_be_cancelled(tmp_path: Path) -
         assert [each.name for each in attachments_of(campaign, "penetration.csv", "1")] == [position.name]
         export_entered(here, id_, tmp_path / "out")
     assert not list((tmp_path / "out").glob("photos/*"))
+
+
+def test_attachments_of_an_imported_campaign_join_those_of_its_files(tmp_path: Path) -> None:
+    with Store.open(tmp_path / "store.sqlite3") as store:
+        export_entered(store, begun(store), tmp_path / "first")
+        id_ = store.add(tmp_path / "first").id
+        entry = photo_entry("penetration.csv", "1", base64.b64encode(PHOTO + b"2").decode())
+        written = Journals(store).correct(id_, entry, seen=0, standing={})
+        assert export_corrected(store, id_, tmp_path / "second").n_corrections == 0
+        cancel = NewEntry(action="cancel", file=entry.file, test=entry.test, why="a face")
+        Journals(store).correct(id_, cancel, seen=written.sequence, standing={})
+        export_corrected(store, id_, tmp_path / "third")
+    rows = (tmp_path / "second/attachments.csv").read_text().splitlines()
+    assert rows[:3] == (tmp_path / "first/attachments.csv").read_text().splitlines()
+    assert (tmp_path / "second" / rows[3].rpartition(",")[2]).read_bytes() == PHOTO + b"2"
+    for name in ("attachments.csv", "penetration.csv"):
+        assert (tmp_path / "third" / name).read_bytes() == (tmp_path / "first" / name).read_bytes()
 
 
 @pytest.mark.parametrize("photo", ["no base64", base64.b64encode(b"GIF89a").decode(),

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 from uuid import uuid4
 
-from ..._support.errors import ParameterError
+from ..._support.errors import ParameterError, StoreError
 from ..reading.campaign import ATTACHMENTS
+from ..reading.text import UnreadableTextError, inspect_csv
 from .journal_entry import NewEntry
 from .replayed import ReplayedTest, campaign_files, guarded_csv
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from .replayed import ReplayedCampaign
@@ -109,8 +110,9 @@ def attachments_of(campaign: ReplayedCampaign, file: str, test: str) -> list[Rep
     ]
 
 
-def _attachment_files(campaign: ReplayedCampaign) -> Iterator[tuple[str, bytes]]:
-    rows = []
+def attachment_files(campaign: ReplayedCampaign, before: bytes = b"") -> Iterator[tuple[str, bytes]]:
+    """Photos, and attachments.csv with their rows and those of positions after the rows of `before`."""
+    rows: list[dict[str, str]] = []
     for number, each in enumerate(campaign.of_file(ATTACHMENTS), start=1):
         entered, cells = each.rows[0].entered, dict(each.rows[0].cells)
         if each.cancelled:
@@ -120,15 +122,53 @@ def _attachment_files(campaign: ReplayedCampaign) -> Iterator[tuple[str, bytes]]
             yield path, photo
             cells["photo"] = path
         cells |= {"time": entered.at, "who": entered.who}
-        rows.append([cells.get(column, "") for column in COLUMNS])
+        rows.append(cells)
     if rows:
-        yield ATTACHMENTS, guarded_csv([COLUMNS, *rows]).encode("utf-8")
+        yield ATTACHMENTS, with_rows(before, ATTACHMENTS, COLUMNS, rows).encode("utf-8")
+
+
+def rows_of_file(data: bytes, file: str, test: str) -> list[dict[str, str]]:
+    """Rows of an attachments.csv about a test; [] if the file cannot be read."""
+    try:
+        header, *rows = _records(data, ATTACHMENTS)
+    except (StoreError, ValueError):
+        return []
+    cells = [dict(zip(map(str.strip, header), row, strict=False)) for row in rows]
+    return [row for row in cells if (row.get("table"), row.get("test")) == (file, test)]
+
+
+def with_rows(before: bytes, file: str, columns: Sequence[str], rows: Iterable[Mapping[str, str]]) -> str:
+    """Text of a table: the rows of a file as they are with all their columns, then further ones.
+
+    Raises
+    ------
+    StoreError
+        The file cannot be read.
+    """
+    records = _records(before, file) if before.strip() else []
+    header = [cell.strip() for cell in records.pop(0)] if records else []
+    header += [column for column in columns if column not in header]
+    came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
+    return guarded_csv([header, *came, *([cells.get(column, "") for column in header] for cells in rows)])
+
+
+def _records(data: bytes, file: str) -> list[list[str]]:
+    try:
+        return [cells for _, some in inspect_csv(data).records() for cells in some]
+    except UnreadableTextError as error:
+        raise StoreError(
+            "The file {file} of the campaign cannot be read, so that no rows can be appended: {allowed} is required. "
+            "`skisnow store export --as-added` exports the files without later corrections.",
+            code="unreadable_corrections",
+            file=file,
+            allowed=error.allowed,
+        ) from error
 
 
 def exported_files(campaign: ReplayedCampaign) -> dict[str, bytes]:
     """All files of a campaign in entry by path: tables, corrections, photos and positions."""
     return {name: text.encode("utf-8") for name, text in campaign_files(campaign).items()} | dict(
-        _attachment_files(campaign)
+        attachment_files(campaign)
     )
 
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING, TypeAlias
 
-from ..._support.errors import StoreError
 from ..._support.staging import write_file
+from ..reading.campaign import ATTACHMENTS
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
-from ..reading.text import UnreadableTextError, inspect_csv
-from .attachments import exported_files, write_campaign
+from .attachments import attachment_files, exported_files, with_rows, write_campaign
 from .engine import database_errors, file_errors, reading
 from .folder import StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
@@ -19,7 +18,6 @@ from .replayed import (
     COLUMNS,
     correction_cells,
     correction_of_cell,
-    guarded_csv,
     replay_journal,
 )
 from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
@@ -56,10 +54,21 @@ def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress
     """
     entries = Journals(store).corrections(store.show(id_).id)
     written: list[int] = []
-    stored = store.export(
-        id_, folder, progress=progress, complete=lambda filled: written.append(add_corrections(filled, entries))
-    )
+
+    def complete(filled: Path) -> None:
+        written.append(add_corrections(filled, entries))
+        _add_attachments(filled, entries)
+
+    stored = store.export(id_, folder, progress=progress, complete=complete)
     return ExportedCampaign(stored, sum(written))
+
+
+def _add_attachments(folder: Path, entries: Iterable[JournalEntry]) -> None:
+    place = folder / ATTACHMENTS
+    before = place.read_bytes() if place.is_file() else b""
+    for name, data in attachment_files(replay_journal(entries), before):
+        (folder / name).parent.mkdir(exist_ok=True)
+        write_file(folder / name, data)
 
 
 def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
@@ -108,32 +117,14 @@ def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry])
 
 def _combine_corrections(before: bytes, rows: list[AppliedCorrection]) -> str:
     """Text of corrections.csv: the original rows with all their columns, then the new ones."""
-    records = _records(before) if before.strip() else []
-    header = [cell.strip() for cell in records.pop(0)] if records else []
-    header += [column for column in COLUMNS if column not in header]
-    came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
-    cells_of_rows = (dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in rows)
-    ours = ([cells.get(column, "") for column in header] for cells in cells_of_rows)
-    return guarded_csv([header, *came, *ours])
-
-
-def _records(data: bytes) -> list[list[str]]:
-    try:
-        return [cells for _, some in inspect_csv(data).records() for cells in some]
-    except UnreadableTextError as error:
-        raise StoreError(
-            "The file {file} of the campaign cannot be read, so that no rows can be appended: {allowed} is required. "
-            "`skisnow store export --as-added` exports the files without later corrections.",
-            code="unreadable_corrections",
-            file=CORRECTIONS.file,
-            allowed=error.allowed,
-        ) from error
+    cells = (dict(zip(COLUMNS, correction_cells(row), strict=True)) for row in rows)
+    return with_rows(before, CORRECTIONS.file, COLUMNS, cells)
 
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:
     """Corrections, test by test, in the order of the first correction of each test."""
     for test in sorted(replay_journal(entries).tests.values(), key=_first_manual_entry):
-        if test.rows:
+        if test.rows and test.file != ATTACHMENTS:
             yield from _corrections_of_test(test)
 
 

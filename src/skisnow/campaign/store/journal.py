@@ -158,7 +158,7 @@ class Journals:
             return write_entry(connection, id, entry)
 
     def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
-        """Write a correction, cancellation or undo of a campaign that is stored byte for byte.
+        """Write a correction, cancellation or undo of a campaign that is stored byte for byte, or add an attachment.
 
         Parameters
         ----------
@@ -185,9 +185,9 @@ class Journals:
             _require_current(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=now()))
-            base = _entry_of_file(connection, id, entry, standing)
-            if entry.action == "correct":
-                entry = replace(entry, about=base)
+            if entry.action != "add":  # of a photo or position, which no file has
+                base = _entry_of_file(connection, id, entry, standing)
+                entry = replace(entry, about=base) if entry.action == "correct" else entry
             _require_subject(connection, id, entry)
             return write_entry(connection, id, entry)
 

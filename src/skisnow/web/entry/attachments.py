@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 ON_PHOTO: Final = "(event) => lab.photo(event, emit)"
 ON_POSITION: Final = "(event) => lab.position(event, emit)"
+NEEDS: Final = Message(
+    "Both need the connection to the lab. Without it, use the camera of the device and add the photo later."
+)
 REFUSED: Final = {
     "photo": Message("The browser cannot read this picture. Choose a JPEG or PNG file."),
     "denied": Message("The browser gives no position: you or its settings did not allow it."),
@@ -39,12 +42,14 @@ class Attachments:
         with ui.element("details").classes("attachments").on("toggle", self.show):
             with ui.element("summary"):
                 Words(Message("Photo and position (optional)"))
+            Words(NEEDS).classes("quiet")
+            Words(REFUSED["insecure"]).classes("quiet insecure")
             with ui.element("div").classes("acts"):
                 with ui.element("label").classes("act"):
                     Words(Message("Add a photo"))
                     made = ui.element("input").props("type=file accept=image/* hidden")
                 made.on("change", self._take_photo, js_handler=ON_PHOTO)
-                placed = button(Message("Store my position with this test"), None)
+                placed = button(Message("Store my position with this test"), None, "secure")
                 placed.on("click", self._take_position, js_handler=ON_POSITION)
             self._list = ui.element("div")
         self.show()
@@ -89,8 +94,12 @@ class Attachments:
         self._list.clear()
         with self._list:
             found = attachments_of(self._view.session.campaign, self._view.file, test)
-            if found:
+            in_files = self._view.session.attached_in_files(self._view.file, test)
+            if found or in_files:
                 heading(Message("Test {name}", name=test), 4)
+            for row in in_files:
+                place = ", ".join(filter(None, (row.get("latitude_deg"), row.get("longitude_deg"))))
+                Words(Message("In the files: {attachment}", attachment=row.get("photo") or place)).classes("quiet")
             for attachment in found:
                 with ui.element("div").classes("acts"):
                     Words(_words(attachment))

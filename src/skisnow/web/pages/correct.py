@@ -11,6 +11,7 @@ from ..._support.messages import Message
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import choice, field, folded, link
+from ..entry.attachments import Attachments
 from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import table_links, table_view
@@ -61,6 +62,7 @@ def _show_test(session: CorrectionSession, file: str, name: str) -> None:
         ui.element("div").classes("acts"),
     ):
         link(Message("Another test"), correcting(session.id, table=file))
+        Attachments(view, lambda: name)
     ImportedTestForm(session, view, live_results, places).show(name)
 
 
