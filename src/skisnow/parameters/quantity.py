@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
@@ -260,7 +259,7 @@ class Quantity:
     def each_of(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
         """The numbers of a list, each with the quantity that it is by its place."""
         for place, value in enumerate(values, start=1):
-            yield _of_place(self, place), value
+            yield replace(self, kind="number", name=f"{self.name}[{place}]"), value
 
     def in_range(self, value: object) -> InputValue:
         """Give the value in its kind.
@@ -377,11 +376,6 @@ def _allowed_texts(choices: Sequence[str], blank: bool) -> Message:
     if choices:
         return Message("{choice}", choice=choices[0])
     return Message("a text") if blank else Message("a text that is not blank")
-
-
-@functools.lru_cache(maxsize=512)
-def _of_place(quantity: Quantity, place: int) -> Quantity:
-    return replace(quantity, kind="number", name=f"{quantity.name}[{place}]")
 
 
 def _plain(value: object, factor: float) -> object:
