@@ -23,7 +23,7 @@ from skisnow.racing.point import LinePoint, turns_in
 from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
 from skisnow.racing.windows import How, Search, Windows
-from skisnow.skier.plan import half_waves
+from skisnow.skier.plan import HalfWaves
 
 SLALOM = load_scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
@@ -42,7 +42,7 @@ CURVED = other(
 
 def test_the_followers_line_is_half_waves_from_apex_to_apex() -> None:
     for x in (0.5, 7.3, 14.2, 55.0):
-        assert FOLLOWED.at(x) == pytest.approx(half_waves(FOLLOWED.apexes, x), rel=1e-9)
+        assert FOLLOWED.at(x) == pytest.approx(HalfWaves(FOLLOWED.apexes).at(x), rel=1e-9)
 
 
 def test_it_goes_through_its_apexes_along_the_fall_line() -> None:

@@ -21,7 +21,7 @@ from skisnow.simulation.run_summary import summary_dict
 from skisnow.skier import body_of, segments
 from skisnow.skier.carve import CarvesOverTime, Pursuit, Underway
 from skisnow.skier.edges import Edges
-from skisnow.skier.plan import TurnsOverTime, half_waves
+from skisnow.skier.plan import HalfWaves, TurnsOverTime
 from tests.coded import Coded, coded, raises
 
 STEEP = 9.81
@@ -38,15 +38,8 @@ def test_plan() -> None:
 APEXES = [(0.0, 0.0), (10.0, 3.0), (20.0, -3.0), (30.0, 3.0)]
 
 
-class Waves:
-    """A line from apex to apex."""
-
-    def at(self, x: float) -> tuple[float, float, float]:
-        return half_waves(APEXES, x)
-
-
 def test_half_waves_go_from_apex_to_apex() -> None:
-    found = Waves()
+    found = HalfWaves(APEXES)
     assert [found.at(x)[0] for x in (0.0, 10.0, 20.0, 30.0, 50.0)] == pytest.approx([0.0, 3.0, -3.0, 3.0, 3.0])
     step = 1e-4
     for x in (4.0, 13.0, 27.0):  # slope and second derivative are those of the line
@@ -56,7 +49,7 @@ def test_half_waves_go_from_apex_to_apex() -> None:
 
 
 def test_who_is_on_the_line_turns_as_it_does_and_who_is_beside_it_goes_back() -> None:
-    found = Pursuit(Waves(), rate=2.0, sight=0.2)
+    found = Pursuit(HalfWaves(APEXES), rate=2.0, sight=0.2)
     aside, slope, bend = found.line.at(10.0)  # at the apex, where it looks to
     on = Underway(0.0, 10.0 - 0.2 * 6.0, aside, math.atan(slope), 6.0, 0.0)
     assert found.acceleration(on, 1.0) == pytest.approx(36.0 * bend, abs=0.2)

@@ -14,7 +14,7 @@ from skisnow import Profile, load_scenario
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.force_map import ForceMap
-from skisnow.skier.plan import AHEAD, STEP, Gravity, Planned, RecedingLine, half_waves, with_run_out
+from skisnow.skier.plan import AHEAD, STEP, Gravity, HalfWaves, Planned, RecedingLine, with_run_out
 from skisnow.skier.posture import AHEAD as FORE
 from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, RIGHT_TOE, RISE, STANCE
 from skisnow.skier.seen import seen_at
@@ -184,11 +184,6 @@ def test_force_and_edge_of_the_map_are_inverse() -> None:
 APEXES = [(-6.5, -1.9), (6.5, 1.9), (19.5, -1.9), (32.5, 1.9)]
 
 
-class Waves:
-    def at(self, x: float) -> tuple[float, float, float]:
-        return half_waves(APEXES, x)
-
-
 def followed(line: RecedingLine, place: tuple[float, float], course: float, speed: float = 7.0) -> Any:
     """Path (n, 2) of a point that turns as planned, over 3 s."""
     gravity, path, dt = Gravity(9.5, 2.5), [place], 0.005
@@ -204,7 +199,7 @@ def followed(line: RecedingLine, place: tuple[float, float], course: float, spee
 def test_who_follows_the_plan_passes_the_apexes_from_beside_the_line_too() -> None:
     """The second one; at the first there is too little way left for more than half of it."""
     for beside in (0.0, 0.3, -0.3):
-        path = followed(RecedingLine(Waves(), APEXES), (0.0, beside), math.atan(1.9 * math.pi / 13.0))
+        path = followed(RecedingLine(HalfWaves(APEXES), APEXES), (0.0, beside), math.atan(1.9 * math.pi / 13.0))
         first, second = (float(np.interp(x, path[:, 0], path[:, 1]) - y) for x, y in APEXES[1:3])
         assert abs(first) < max(0.08, 0.6 * abs(beside))
         assert second == pytest.approx(0.0, abs=0.08)

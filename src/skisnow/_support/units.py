@@ -236,7 +236,8 @@ def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
 
 def field_facts(thing: Any, units: dict[str, str], *, title: str = "") -> Facts:
     """One row for each field of a dataclass: an array by its size and ends, in the unit given, all else in short."""
-    rows = [(field.name, _short(getattr(thing, field.name), units.get(field.name, ""))) for field in fields(thing)]
+    shown = [field.name for field in fields(thing) if field.repr]
+    rows = [(name, _short(getattr(thing, name), units.get(name, ""))) for name in shown]
     return Facts(title, tuple(rows))
 
 

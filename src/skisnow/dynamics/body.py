@@ -24,7 +24,7 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
             shape=str(array.shape),
             needed=str(shape),
         )
-    if not np.all(np.isfinite(array)):
+    if not np.isfinite(array).all():
         raise ParameterError("{name} contains a number that is not finite", code="not_a_number", name=name)
     return array
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, cross
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, Facts, Shown, ShownFields, amount
 from ..geometry.boot_axes import angles_of, axes_of
@@ -46,8 +46,8 @@ class BootPose(Shown):
     def __post_init__(self) -> None:
         for name, shape in (("place", (3,)), ("axes", (3, 3)), ("velocity", (3,)), ("turning", (3,))):
             object.__setattr__(self, name, shaped(f"BootPose: {name}", getattr(self, name), shape))
-        off = np.abs(self.axes @ self.axes.T - np.eye(3)).max()
-        if off > 1e-9 or np.linalg.det(self.axes) < 0.0:
+        off = _off_rotation(self.axes.tolist())
+        if off > 1e-9:
             raise ParameterError(
                 "BootPose: axes are off by {off:.1e} from right-handed orthonormal ones", code="not_a_rotation", off=off
             )
@@ -90,6 +90,7 @@ class BootMotion(ShownFields):
     end: float
     first: BootPose
     last: BootPose
+    _turn: FloatArray = field(init=False, repr=False)  # rotation vector from the first axes to the last, in the first
 
     def __post_init__(self) -> None:
         if not self.start < self.end:
@@ -99,7 +100,8 @@ class BootMotion(ShownFields):
                 start=self.start,
                 end=self.end,
             )
-        turn = float(np.linalg.norm(self._turn))
+        object.__setattr__(self, "_turn", rotation_vector(self.first.axes @ self.last.axes.T))
+        turn = math.hypot(*self._turn.tolist())
         if turn > FARTHEST_TURN:
             raise ParameterError(
                 "BootMotion: the boot turns by {degrees:.3g} degrees between {start:g} s and {end:g} s; at most "
@@ -112,37 +114,39 @@ class BootMotion(ShownFields):
             )
 
     @property
-    def _turn(self) -> FloatArray:
-        """Rotation vector from the first axes to the last, in the first."""
-        return rotation_vector(self.first.axes @ self.last.axes.T)
-
-    @property
     def numbers(self) -> FloatArray:
         """Row of 31 numbers for the core: start, place (4, 3), rotation vector (3, 3), axes (3, 3)."""
         span, first, last = self.end - self.start, self.first, self.last
         turn = self._turn
-        rate_last = np.asarray(np.linalg.solve(_jacobian(turn), last.axes @ last.turning), float)
+        rate_last = _rate_of_vector(turn, last.axes @ last.turning)
         place = _cubic(span, first.place, last.place, first.velocity, last.velocity)
         angle = _cubic(span, np.zeros(3), turn, first.axes @ first.turning, rate_last)
         return np.concatenate([[self.start], place.ravel(), angle[1:].ravel(), first.axes.ravel()])
 
 
+def _off_rotation(axes: list[list[float]]) -> float:
+    """Largest deviation from a right-handed orthonormal frame: the third axis is the product of the first two."""
+    (a, b, c), (d, e, f), third = axes
+    lengths = (a * a + b * b + c * c - 1.0, d * d + e * e + f * f - 1.0, a * d + b * e + c * f)
+    product = (b * f - c * e, c * d - a * f, a * e - b * d)
+    return max(abs(each) for each in (*lengths, *(x - y for x, y in zip(product, third, strict=True))))
+
+
 def rotation_vector(rotation: FloatArray) -> FloatArray:
     """Rotation vector (3,) of a rotation matrix (3, 3) by less than π."""
-    twist = 0.5 * np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0],
-                            rotation[1, 0] - rotation[0, 1]])  # fmt: skip
-    sine = float(np.linalg.norm(twist))
-    angle = math.atan2(sine, 0.5 * (float(np.trace(rotation)) - 1.0))
-    return np.asarray(twist * (angle / sine if sine > 1e-12 else 1.0))
+    (a, b, c), (d, e, f), (g, h, i) = rotation.tolist()
+    twist = (0.5 * (h - f), 0.5 * (c - g), 0.5 * (d - b))
+    sine = math.hypot(*twist)
+    scale = math.atan2(sine, 0.5 * (a + e + i - 1.0)) / sine if sine > 1e-12 else 1.0
+    return np.array([scale * each for each in twist])
 
 
-def _jacobian(turn: FloatArray) -> FloatArray:
-    """From the rate of a rotation vector to the angular velocity in the turned axes: the right Jacobian, (3, 3)."""
-    angle = float(np.linalg.norm(turn))
-    cross: Any = np.array([[0.0, -turn[2], turn[1]], [turn[2], 0.0, -turn[0]], [-turn[1], turn[0], 0.0]])
-    once = (1.0 - math.cos(angle)) / angle**2 if angle > 1e-4 else 0.5
-    twice = (angle - math.sin(angle)) / angle**3 if angle > 1e-4 else 1.0 / 6.0
-    return np.asarray(np.eye(3) - once * cross + twice * cross @ cross)
+def _rate_of_vector(turn: FloatArray, spin: FloatArray) -> FloatArray:
+    """Rate of a rotation vector (rad/s) from the angular velocity in the turned axes: inverse of the right Jacobian."""
+    angle = math.hypot(*turn.tolist())
+    twice = 1.0 / angle**2 - 0.5 / (angle * math.tan(0.5 * angle)) if angle > 1e-3 else 1.0 / 12.0
+    once = cross(turn, spin)
+    return spin + 0.5 * once + twice * cross(turn, once)
 
 
 def _cubic(span: float, start: FloatArray, end: FloatArray, rate: FloatArray, rate_end: FloatArray) -> FloatArray:

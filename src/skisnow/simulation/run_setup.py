@@ -119,7 +119,8 @@ class Setup:
         """Vector of the middle between the boots, in space (m), (3,)."""
         if self.drive is None:
             return self.dynamics.position
-        return self.dynamics.position + self.dynamics.rotation @ self.dynamics.boots[:, 0].mean(axis=0)
+        left, right = self.dynamics.boots[:, 0]
+        return self.dynamics.position + self.dynamics.rotation @ (0.5 * (left + right))
 
     @property
     def velocity(self) -> FloatArray:

@@ -20,7 +20,7 @@ from .carve import CarveControl, CarvesOverTime, Pursuit, Steering
 from .control import Balance, Controller, SkidControl
 from .edges import Edges
 from .force_map import ForceMap
-from .plan import Gravity, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of, half_waves
+from .plan import Gravity, HalfWaves, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of
 from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture
 from .seen import Moment, Seen, seen_at
 from .wedge import WedgeControl
@@ -199,14 +199,3 @@ class BalancedSkier:
         balance = None if built_in is None else built_in.balance
         self.posture.step(command, seen, dt)
         self.records.append(BalanceRecord(seen, balance, self.posture.numbers.copy()))
-
-
-@dataclass(frozen=True, slots=True)
-class HalfWaves:
-    """A line of half waves from apex to apex."""
-
-    apexes: Sequence[tuple[float, float]]
-
-    def at(self, x: float) -> tuple[float, float, float]:
-        """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""
-        return half_waves(self.apexes, x)

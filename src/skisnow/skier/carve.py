@@ -95,9 +95,10 @@ class Pursuit:
         y = at.y + self.sight * speed * math.sin(at.heading + turned)
         aside, slope, bend = self.line.at(x)
         along = math.atan(slope)
-        off, turn = (y - aside) * math.cos(along), at.heading + 2.0 * turned - along
+        level = math.cos(along)
+        off, turn = (y - aside) * level, at.heading + 2.0 * turned - along
         back = -(self.rate**2) * off - 2.0 * self.rate * speed * math.sin(turn)
-        return speed**2 * bend * math.cos(along) ** 3 + back
+        return speed**2 * bend * level**3 + back
 
 
 @dataclass(slots=True)
@@ -176,21 +177,24 @@ class CarveControl:
         lag, fading = self._lag(seen.feet_speed), self.skier.leg_gain * omega
         most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
         at = Underway(now, *seen.feet, seen.feet_course, seen.feet_speed, acceleration)
-        limit, weight_of_body, total, weights, first = self._limit(seen.feet_speed), self._weight, 0.0, 0.0, 0.0
+        limit, load, total, weights, first = self._limit(seen.feet_speed), self._weight, 0.0, 0.0, 0.0
+        planned, held, asked, way = self._planned, self.edges.held, self._asked, step * at.speed
+        down, normal, height = self.gravity.down, self.gravity.normal, self.body.height
         for i in range(round(FORESIGHT / step)):
             later = (i + 0.5) * step
             at.time = now + later
-            rate += step * (EDGE_CHANGE**2 * (self._planned(at, most, limit) - turn) - 2.0 * EDGE_CHANGE * rate)
+            rate += step * (EDGE_CHANGE**2 * (planned(at, most, limit) - turn) - 2.0 * EDGE_CHANGE * rate)
             turn += step * rate
-            wished = most * turn + self._asked * math.exp(-fading * later)
-            slope = self.gravity.down * math.sin(at.heading)
-            acceleration += (self.edges.held(wished, slope, weight_of_body) - acceleration) * step / (lag + step)
-            balanced = self.body.height * (acceleration + slope) / self.gravity.normal
+            wished = most * turn + asked * math.exp(-fading * later)
+            sine = math.sin(at.heading)
+            slope = down * sine
+            acceleration += (held(wished, slope, load) - acceleration) * step / (lag + step)
+            balanced = height * (acceleration + slope) / normal
             first = balanced if i == 0 else first
             weight = math.exp(-omega * later)
             total, weights = total + weight * balanced, weights + weight
-            at.x += step * at.speed * math.cos(at.heading)
-            at.y += step * at.speed * math.sin(at.heading)
+            at.x += way * math.cos(at.heading)
+            at.y += way * sine
             at.acceleration = acceleration
             at.heading += acceleration / speed * step
         return total / weights, first

@@ -6,6 +6,7 @@ import bisect
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final, Protocol
 
 import numpy as np
@@ -113,14 +114,27 @@ class TurnsOverTime:
         return Planned(speed * (rate - BACK * back) + gravity.down * np.sin(course), course)
 
 
-def half_waves(apexes: Sequence[tuple[float, float]], x: float) -> tuple[float, float, float]:
-    """Place aside, slope and second derivative of half waves from apex to apex, at a place down the slope (m)."""
-    i = min(max(bisect.bisect_left(apexes, (x, -math.inf)) - 1, 0), len(apexes) - 2)
-    (x0, y0), (x1, y1) = apexes[i], apexes[i + 1]
-    rate, half = math.pi / (x1 - x0), 0.5 * (y1 - y0)
-    phase = min(math.pi, max(0.0, rate * (x - x0)))
-    bend = half * rate**2 * math.cos(phase) if x0 <= x <= x1 else 0.0
-    return y0 + half * (1.0 - math.cos(phase)), half * rate * math.sin(phase), bend
+class HalfWaves:
+    """A line of half waves from apex to apex.
+
+    Parameters
+    ----------
+    apexes
+        x, y (m), x rising, at least two.
+    """
+
+    def __init__(self, apexes: Sequence[tuple[float, float]]) -> None:
+        self.apexes = apexes
+        self._starts = [x for x, _ in apexes[:-1]]
+        self._waves = [(x0, x1, y0, math.pi / (x1 - x0), 0.5 * (y1 - y0)) for (x0, y0), (x1, y1) in pairwise(apexes)]
+
+    def at(self, x: float) -> tuple[float, float, float]:
+        """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""
+        start, end, aside, rate, half = self._waves[max(bisect.bisect_left(self._starts, x) - 1, 0)]
+        phase = min(math.pi, max(0.0, rate * (x - start)))
+        cosine = math.cos(phase)
+        bend = half * rate**2 * cosine if start <= x <= end else 0.0
+        return aside + half * (1.0 - cosine), half * rate * math.sin(phase), bend
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,8 +177,8 @@ class RecedingLine:
         last = self.apexes[-1][0]
         self._first, self._quintic = apexes[0][0], (0.0, 1.0, np.zeros(6))
         x = np.arange(apexes[0][0], last + 15.0, TABLE_STEP)
-        beyond = self.apexes[len(apexes) - 1 :]
-        rows = np.array([line.at(float(each)) if each < end else half_waves(beyond, float(each)) for each in x])
+        beyond = HalfWaves(self.apexes[len(apexes) - 1 :])
+        rows = np.array([line.at(float(each)) if each < end else beyond.at(float(each)) for each in x])
         self._course = np.arctan(rows[:, 1])
         self._bend = rows[:, 2]
         self._curvature = rows[:, 2] * np.cos(self._course) ** 3

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from .._support.arrays import FloatArray
+from .._support.arrays import FloatArray, cross
 from ..dynamics import BootPose
 from ..geometry.boot_axes import axes_of
 from ..scenario.skier import Skier
@@ -18,8 +18,7 @@ AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE, RISE = ra
 """Places in the numbers of a posture."""
 BLUNT: Final = math.sin(math.radians(3.0))
 """Sine of the edge angle below which a ski counts as flat for its lift (modelling assumption)."""
-DIFFERENCE: Final = 1e-4
-"""Time (s) before and after a moment over which the rates of poses are differences."""
+UP: Final = np.array([0.0, 0.0, 1.0])
 MOMENT_TIME: Final = 0.01
 """Time (s) over which the snow's moment on the boots is smoothed (modelling assumption)."""
 GREATEST_TURN: Final = 120.0
@@ -134,16 +133,28 @@ class Posture:
 
     def poses(self) -> list[BootPose]:
         """Poses of the left and the right boot, with their rates."""
-        before, now, later = (
-            pose_of(self.numbers + shift * self.rates, self.centre, self.half_width)
-            for shift in (-DIFFERENCE, 0.0, DIFFERENCE)
-        )
-        found = []
-        for (last, from_), (place, axes), (next_, to) in zip(before, now, later, strict=True):
-            turn = 0.5 * axes.T @ (to - from_) / DIFFERENCE
-            spin = 0.5 * np.array([turn[1, 2] - turn[2, 1], turn[2, 0] - turn[0, 2], turn[0, 1] - turn[1, 0]])
-            found.append(BootPose(place, axes, 0.5 * (next_ - last) / DIFFERENCE, spin))
-        return found
+        ahead, aside, yaw, *edges_and_toes, stance, rise = self.numbers.tolist()
+        ahead_rate, aside_rate, yaw_rate, *turns, stance_rate, rise_rate = self.rates.tolist()
+        height = self.centre[1] + rise
+        lean, lean_rate = math.atan2(aside, height), (aside_rate * height - aside * rise_rate) / (height**2 + aside**2)
+        (sl, cl), (sy, cy) = ((math.sin(angle), math.cos(angle)) for angle in (lean, yaw))
+        body = np.array([[cy, -sy, 0.0], [cl * sy, cl * cy, sl], [-sl * sy, -sl * cy, cl]])
+        origin = np.array([self.centre[0], 0.0, self.centre[1]])
+        spin = lean_rate * body[0] - yaw_rate * UP
+        poses = []
+        for side, edge, toe, edge_rate, toe_rate in zip(
+            (0.5, -0.5), edges_and_toes[:2], edges_and_toes[2:], turns[:2], turns[2:], strict=True
+        ):
+            sine = math.sin(edge)
+            bent = math.hypot(sine, BLUNT)
+            lift_rate = self.half_width * sine * math.cos(edge) * edge_rate / bent
+            from_centre = [-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height]
+            arm = np.array(from_centre) @ body
+            moving = np.array([-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate]) @ body
+            axes = axes_of(edge, 0.0, toe) @ body
+            turning = spin + toe_rate * body[2] - edge_rate * axes[0]
+            poses.append(BootPose(arm + origin, axes, moving + cross(spin, arm), turning))
+        return poses
 
     def step(self, command: Command, seen: Seen, dt: float) -> None:
         """Move by a period (s), as far as joints and legs allow."""
@@ -228,28 +239,3 @@ class Posture:
 def _stops_within(way: float) -> float:
     """Speed (m/s) from which the shift stops on a way (m)."""
     return math.sqrt(max(0.0, 2.0 * FASTEST_SHIFT * way))
-
-
-def pose_of(numbers: FloatArray, centre: tuple[float, float], half_width: float) -> list[tuple[FloatArray, FloatArray]]:
-    """Place and axes of the left and the right boot in the body that has these numbers."""
-    height = centre[1] + numbers[RISE]
-    lean, yaw = math.atan2(numbers[ASIDE], height), numbers[HIP]
-    body = _about_ahead(-lean) @ _about_up(yaw)
-    middle = np.array([numbers[AHEAD], numbers[ASIDE], height])
-    origin = np.array([centre[0], 0.0, centre[1]])
-    found = []
-    for side, edge, toe in ((0.5, LEFT_EDGE, LEFT_TOE), (-0.5, RIGHT_EDGE, RIGHT_TOE)):
-        up = half_width * (math.hypot(math.sin(numbers[edge]), BLUNT) - BLUNT)
-        foot = np.array([0.0, side * numbers[STANCE], up])
-        found.append((origin + body.T @ (foot - middle), axes_of(numbers[edge], 0.0, numbers[toe]) @ body))
-    return found
-
-
-def _about_ahead(angle: float) -> FloatArray:
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
-
-
-def _about_up(angle: float) -> FloatArray:
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])

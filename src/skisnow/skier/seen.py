@@ -124,12 +124,14 @@ def seen_at(
     """
     rotation, boots, spin = moment.rotation, moment.boots, moment.velocity[3:]
     up = normal @ rotation
-    mean = boots.mean(axis=0)
+    mean = 0.5 * (boots[0] + boots[1])
     ahead = mean[1]
     ahead = ahead - (ahead @ up) * up
-    ahead /= np.linalg.norm(ahead)
+    ahead /= math.hypot(*ahead.tolist())
     left = cross(up, ahead)
-    force, turning = (np.einsum("kca,kc->ka", boots[:, 1:4], part) for part in np.split(moment.wrench, 2, axis=1))
+    force, turning = (
+        np.einsum("kca,kc->ka", boots[:, 1:4], part) for part in (moment.wrench[:, :3], moment.wrench[:, 3:])
+    )
     middle = mean[0]
     centre = np.array([centre_of_mass[0], 0.0, centre_of_mass[1]])
     leg = centre - middle
@@ -166,7 +168,7 @@ def seen_at(
         feet_speed=math.hypot(step @ down, step @ aside),
         feet_course=course,
         heading=heading,
-        turn_rate=float((spin + boots[:, 5].mean(axis=0)) @ up),
+        turn_rate=float((spin + mean[5]) @ up),
         slip=math.remainder(heading - course, 2.0 * math.pi),
         body_heading=heading + hip,
         body_rate=float(spin @ up),
