@@ -96,6 +96,13 @@ def test_what_is_reported_of_the_skis_is_what_the_beams_and_boots_have() -> None
     assert (left[2], right[2]) == (0.0, 0.0)
 
 
+def test_the_track_of_a_flat_ski_does_not_jump_from_edge_to_edge() -> None:
+    """A sledge without edging across the fall line: the track moves aside by less than 5 mm in 10 ms, the ski is 67 mm wide."""
+    run = simulate(load_scenario("carved-46m", changes={"sledge.edge_angle_deg": 0.0, "run.duration_s": 0.3}))
+    aside = np.einsum("nka,na->nk", run.skis.track - run.place[:, None], run.attitude[:, :, 1])
+    assert np.abs(np.diff(aside, axis=0)).max() < 5e-3
+
+
 def test_the_track_of_a_ski_is_its_lower_edge_and_its_middle_where_it_is_flat() -> None:
     """A ski 0.3 m to the left of its boots' middle, 0.06 m wide, rolled by 0.2 rad to either side about its way."""
     ski = SimpleNamespace(boot=np.array([0.0, 0.3, -0.05]), axes=np.eye(3))
@@ -107,7 +114,7 @@ def test_the_track_of_a_ski_is_its_lower_edge_and_its_middle_where_it_is_flat() 
     )
     place = np.tile([5.0, 1.0, 0.03], (3, 1))
     attitude = Rotation.from_rotvec([[0.0, 0.0, 0.0], [0.2, 0.0, 0.0], [-0.2, 0.0, 0.0]]).as_matrix()
-    found = Record._tracks(cast("Any", SimpleNamespace(setup=parts)), place, attitude)
+    found = Record._tracks(cast("Any", SimpleNamespace(setup=parts)), place, attitude, np.zeros((3, 1)))
     cos, sin = math.cos(0.2), math.sin(0.2)
     aside = [1.3, 1.0 + 0.27 * cos + 0.03 * sin, 1.0 + 0.33 * cos - 0.03 * sin]
     assert found[:, 0] == pytest.approx(np.array([[5.0, y, 0.0] for y in aside]), abs=1e-12)

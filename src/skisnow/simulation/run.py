@@ -58,7 +58,7 @@ class SkiHistory(Shown):
     station
         Places along the ski, tip to tail, positive before the boot (m), (m,).
     track
-        (n, 2, 3) the loaded edge under the boot, on the snow surface (m).
+        (n, 2, 3) the loaded edge under the boot, nearer the middle of a flat ski, on the snow surface (m).
     depth
         (n, 2) of that edge below the undisturbed surface (m); negative: above it.
     edge_depth

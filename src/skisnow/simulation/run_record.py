@@ -131,7 +131,9 @@ class Record:
         bent = at_nodes(dofs, self.setup.dynamics.body.skis[0].unknown)
         skis = dict(zip(_ALONG, (*np.moveaxis(along, 2, 0), bent[..., 0], bent[..., 2]), strict=True))
         node, history = self.setup.node, self._boots()
-        track = self._tracks(place, attitude) if self.setup.drive is None else self._moved_tracks(history)
+        depth = _at_boot(node, skis["edge_depth"])
+        fixed = self.setup.drive is None
+        track = self._tracks(place, attitude, depth) if fixed else self._moved_tracks(history, depth)
         skis["force_per_length"], force = self._forces(
             AlongEdge(
                 station=node,
@@ -151,9 +153,7 @@ class Record:
             "velocity": velocity,
             "heading": _heading(attitude, normal),
             "turn_radius": turn_radius(time, velocity, attitude[:, :, 2]),
-            "skis": SkiHistory(
-                station=node, track=track, depth=_at_boot(node, skis["edge_depth"]), force=force, **skis
-            ),
+            "skis": SkiHistory(station=node, track=track, depth=depth, force=force, **skis),
             "energies": {name: energies[:, i] for i, name in enumerate((*STORED, *LOST, *GIVEN))},
             "boots": history,
         }
@@ -179,27 +179,48 @@ class Record:
             centre_of_mass=origin + axes @ np.array([forward, 0.0, height]),
         )
 
-    def _moved_tracks(self, boots: BootHistory) -> FloatArray:
+    def _moved_tracks(self, boots: BootHistory, depth: FloatArray) -> FloatArray:
         """The same of boots that move: (n, 2, 3)."""
         scenario, at_boot = self.setup.scenario, self.setup.scenario.ski.at(0.0)
         left, off = boots.axes[:, :, 1], boots.axes[:, :, 2]
-        side = -np.sign(left[..., 2:]) * float(at_boot.width) / 2.0
-        out = boots.place + float(at_boot.base_height) * off + side * left
+        side = side_of_load(left[..., 2], depth, float(at_boot.width))
+        out = boots.place + float(at_boot.base_height) * off + side[..., None] * left
         out[:, :, 2] = heights_of(scenario.slope, out[:, :, 0], out[:, :, 1])
         return np.asarray(out)
 
-    def _tracks(self, place: FloatArray, attitude: FloatArray) -> FloatArray:
-        """The edge of each ski that is down at the boot, brought to the slope's surface: (n, 2, 3)."""
+    def _tracks(self, place: FloatArray, attitude: FloatArray, depth: FloatArray) -> FloatArray:
+        """The loaded place across each ski at the boot, brought to the slope's surface: (n, 2, 3)."""
         scenario, tracks = self.setup.scenario, []
         at_boot = scenario.ski.at(0.0)
-        for ski in self.setup.dynamics.body.skis:
-            leans = attitude[:, 2] @ ski.axes[1]
-            side = np.where(np.abs(leans) > 1e-9, -np.sign(leans), 0.0) * float(at_boot.width) / 2.0
+        for number, ski in enumerate(self.setup.dynamics.body.skis):
+            side = side_of_load(attitude[:, 2] @ ski.axes[1], depth[:, number], float(at_boot.width))
             in_body = ski.boot + float(at_boot.base_height) * ski.axes[2] + side[:, None] * ski.axes[1]
             tracks.append(place + np.einsum("nab,nb->na", attitude, in_body))
         out = np.stack(tracks, axis=1)
         out[:, :, 2] = heights_of(scenario.slope, out[:, :, 0], out[:, :, 1])
         return out
+
+
+def side_of_load(lean: FloatArray, depth: FloatArray, width: float) -> FloatArray:
+    """Distance (m) of the loaded place from the middle of a ski to the left.
+
+    It is at the edge that is down while only this edge is in the snow. While the other edge is in the snow, too, the
+    place moves to the middle with the lean: the small rolling of a flat ski would make it jump from edge to edge.
+
+    Parameters
+    ----------
+    lean
+        Sine of the angle by which the left edge is up.
+    depth
+        Of the edge that is down (m); a ski in the air or in hardly marked snow counts as 0.001 `width` deep.
+    width
+        Of the ski (m).
+
+    >>> side_of_load(np.array([-0.5, 0.0, 0.005]), np.full(3, 1e-3), 0.1).tolist()
+    [0.05, -0.0, -0.025]
+    """
+    difference = lean * width / np.maximum(depth, 0.001 * width)
+    return np.asarray(-0.5 * width * np.clip(difference, -1.0, 1.0))
 
 
 def at_nodes(dofs: FloatArray, unknown: FloatArray) -> FloatArray:
