@@ -23,6 +23,7 @@ from skisnow.estimation.hardness import (
 )
 from skisnow.estimation.layering import growing_hardness, second_moment, site_growth
 from skisnow.estimation.readings import Readings, ReadingUncertainty
+from skisnow.estimation.spread_groups import bartlett
 from skisnow.geometry import Disc, LyingCylinder, SkiPiece, Tool
 
 from .conftest import MakeCampaign
@@ -299,3 +300,14 @@ def test_the_results_have_it_for_every_site() -> None:
     assert [row["site"] for row in growth["sites"]] == [*(f"site {letter}" for letter in "ABCDEFGH"), None]
     low, high = growth["sites"][-1]["growth_interval_percent"]
     assert low < 0.0 < high
+
+
+def test_spreads_are_compared_by_bartletts_test() -> None:
+    rng = np.random.default_rng(3)
+    samples = [rng.normal(0.0, scale, size) for scale, size in ((1.0, 8), (2.0, 12), (1.5, 5), (9.0, 3))]
+    squares, degrees = np.array([(((x - x.mean()) ** 2).sum(), len(x) - 1.0) for x in samples]).T
+    test = bartlett(squares, degrees, fewest=3.0)  # the last one has too few
+    assert test.p == pytest.approx(stats.bartlett(*samples[:3]).pvalue, rel=1e-12)
+    spreads = [x.std(ddof=1) for x in samples[:3]]
+    assert test.factor == pytest.approx(max(spreads) / min(spreads), rel=1e-12)
+    assert bartlett(squares[:1], degrees[:1], fewest=3.0).p == 1.0

@@ -26,6 +26,15 @@ def test_four_poses_are_enough() -> None:
         assert f", 0 to 3 {unit}" in repr(Boots(**FLAT, over=over))  # type: ignore[arg-type]
 
 
+def test_boots_rest_before_and_after_their_table() -> None:
+    moving = Boots(**FLAT | {"place": np.arange(4.0)[:, None, None] * np.ones((2, 3))}, over="time")
+    for at, place, rate in ((-1.0, 0.0, 0.0), (2.5, 2.5, 1.0), (3.0, 3.0, 1.0), (9.0, 3.0, 0.0)):
+        places, _, velocity, _ = moving.poses(at)
+        np.testing.assert_allclose(
+            (places, velocity), np.array([place, rate])[:, None, None] * np.ones((2, 3)), atol=1e-12
+        )
+
+
 @pytest.mark.parametrize(
     ("changes", "told"),
     [

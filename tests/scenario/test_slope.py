@@ -9,7 +9,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario, read_profile, read_terrain
-from skisnow.scenario.terrain import down_and_left, normals_of, surface_of
+from skisnow.scenario.terrain import down_and_left, heights_of, normals_of, surface_of
 from tests.coded import Coded, coded, raises
 
 MEASURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "slope-profiles"
@@ -229,6 +229,7 @@ def test_surface_has_the_slope_of_its_plane_in_every_direction() -> None:
     terrain = Terrain(
         np.array([-1.0, 1.0]), np.array([0.0, 3.0]), np.add.outer([0.6, -0.6], [0.0, 2.4])
     )  # z = -0.6 x + 0.8 y
+    assert float(heights_of(terrain, 0.5, 2.0)) == pytest.approx(1.3, abs=1e-15)
     normal = normals_of(terrain, np.zeros(2), np.array([0.0, 9.0]))
     np.testing.assert_allclose(normal, np.array([[0.6, -0.8, 1.0]] * 2) / math.sqrt(2.0), atol=1e-15)
     down, left = down_and_left(normal[0])

@@ -217,6 +217,8 @@ def test_nan_is_not_forgotten() -> None:
     assert percentile_interval(samples)[0].tolist() == [1.0, 1.0]
     assert np.isnan(percentile_interval(samples)[1]).all()
     assert np.isnan(percentile_interval(np.empty((0, 3)))).all()
+    few = np.append(np.arange(101.0), np.nan)  # it may be below or above all others: both ends are farther out
+    np.testing.assert_allclose(percentile_interval(few, confidence=0.9), [4.05, 95.95], rtol=1e-13)
     with pytest.raises(ParameterError):
         percentile_interval(1.0)
 
