@@ -18,7 +18,9 @@ PAGES = (
     ),
 )
 FIRST_WORDS = ("skisnow ", ".venv/bin/skisnow ", "python ", "make ", "pip ", "dask ", "cc ", "#!/bin/bash")
-BLOCK = re.compile(r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>[^\n`]*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(
+    r"^(?P<mark><!-- [^\n]* -->\n)?```(?P<language>[^\n`]*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL
+)
 MARK = re.compile(r"<!-- (?P<kind>not run|needs): (?P<reason>[\w ]+) -->")
 REASONS = {"server", "scheduler", "package index", "other checks", "data of others"}
 PACKAGES = {"fmpy", "mujoco", "exudyn"}
