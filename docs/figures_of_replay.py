@@ -114,10 +114,6 @@ def main() -> None:
             does(page, script)
             taken.append(picture(page.locator(".replay-canvas").screenshot(), width=560))
         write(sheet(taken), "views")
-        phone = browser.new_page(viewport={"width": 390, "height": 844}, device_scale_factor=1.5)
-        phone.goto(address)
-        does(phone, PAGE)
-        write(picture(phone.screenshot(), width=300), "phone")
         film(browser, Path(folder))
         browser.close()
 

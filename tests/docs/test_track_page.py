@@ -10,7 +10,7 @@ from skisnow.cli.shell import json_schema
 from skisnow.track.read import TrackFormat
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "docs" / "how-to" / "track.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "files" / "track.md").read_text(encoding="utf-8")
 
 
 def keys_of(schema: Any) -> Iterator[str]:
