@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from tests.key_names import DROP_CONE_DEPTH
 
-from skisnow.campaign import Problem, check_campaign
+from skisnow.campaign import Problem, check_campaign, read_campaign
 from skisnow.campaign.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, inspect_csv
 
 WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
@@ -106,6 +106,23 @@ def test_missing_columns_name_the_nearest(write_campaign: WriteCampaign, small_c
         ("unknown_column", SHEAR, 1, "Moment (Nm)", None, "Moment (Nm)"),
     ]
     assert "'Moment (Nm)'" in problems[2].action
+
+
+@pytest.mark.parametrize(("heading", "newtons"), [("load_kg", 9.80665), ("Last [kg]", 9.80665), ("load_kN", 1e3)])
+def test_a_heading_in_another_unit_is_mapped_and_not_renamed(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], heading: str, newtons: float
+) -> None:
+    """Numbers in kg below the name load_N would be read as N."""
+    before = read_campaign(write_campaign(small_campaign)).penetration
+    small_campaign[PEN] = small_campaign[PEN].replace("load_N", heading)
+    missing = next(each for each in check_campaign(write_campaign(small_campaign)) if each.code == "missing_column")
+    assert repr(heading) in missing.action
+    assert "'load_N'" in missing.action
+    small_campaign["campaign.toml"] += f'\n[columns]\n"{heading}" = "load_N"\n'
+    read = read_campaign(write_campaign(small_campaign)).penetration
+    assert before is not None
+    assert read is not None
+    assert read.load == pytest.approx(newtons * before.load)
 
 
 def test_points_in_a_file_of_commas(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:

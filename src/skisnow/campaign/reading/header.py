@@ -152,27 +152,46 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
     near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
     likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
     meant = as_written[near[0]] if near else likely.get(name)
-    action = (
-        Message(
+    if meant and _needs_conversion(meant, name):
+        action = _mapping(meant, name)
+    elif meant:
+        action = Message(
             "Did you mean {similar!r}? Rename the column, or map it under [columns] in campaign.toml; the unit is "
             "part of the name.",
             similar=meant,
         )
-        if meant
-        else Message("Add it; the unit belongs to the name.")
-    )
+    else:
+        action = Message("Add it; the unit belongs to the name.")
     allowed = Message("the columns {required}", required=list(form.required))
     return error("missing_column", form.file, row=row, column=name, value=meant, allowed=allowed, action=action)
+
+
+def _needs_conversion(heading: str, column: str) -> bool:
+    """True if a heading names another unit than that of the column."""
+    size = conversion(named_unit(heading), column)
+    return size is not None and size.changes
+
+
+def _mapping(heading: str, column: str) -> Message:
+    return Message(
+        "Map {heading!r} to {column!r} under [columns] in campaign.toml. This converts its numbers; a new name would "
+        "not.",
+        heading=heading,
+        column=column,
+    )
 
 
 def _unknown(form: TableForm, name: str, header: Header) -> Problem:
     free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
-    action = (
-        Message("The column is kept as text and not interpreted. Rename it if you meant {similar!r}.", similar=near[0])
-        if near
-        else Message("The column is kept as text and not interpreted; no action is needed.")
-    )
+    if near and _needs_conversion(name, near[0]):
+        action = _mapping(name, near[0])
+    elif near:
+        action = Message(
+            "The column is kept as text and not interpreted. Rename it if you meant {similar!r}.", similar=near[0]
+        )
+    else:
+        action = Message("The column is kept as text and not interpreted; no action is needed.")
     return warning(
         "unknown_column",
         form.file,
