@@ -46,7 +46,8 @@ _UNITS: Final = {"_force_v": "N", "_force_p": "m", "_moment_": "Nm", "_torque_":
 def read_c3d(path: str | Path) -> Markers:
     """Read the markers of a .c3d file.
 
-    Angles, forces, moments and powers that a program for gait stored among the points are listed in ``omitted``.
+    Angles, forces, moments and powers that a program for gait stored among the points are listed in ``omitted``, and
+    points without a name by their number.
 
     Raises
     ------
@@ -93,7 +94,8 @@ def read_c3d(path: str | Path) -> Markers:
     sizes = np.array([METRES[units[i]] for i in columns])
     place = points[:, columns] * sizes[:, None]
     time = (first + np.arange(len(place))) / rate
-    omitted = tuple(name for i, name in enumerate(names) if i not in columns)
+    nameless = (f"point {i + 1}" for i in range(len(names), points.shape[1]))
+    omitted = (*(name for i, name in enumerate(names) if i not in columns), *nameless)
     try:
         return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
     except ParameterError as error:
