@@ -10,8 +10,9 @@ from skisnow.campaign.caaml import read_caaml
 from skisnow.cli import main
 from skisnow.interop.caaml import write_caaml
 from skisnow.interop.snowex import site_pit
+from skisnow.scenario.snow_layers import read_snow_layers
 
-from ..campaign.recordings import plain_snow
+from ..campaign.recordings import NEWTON, STEP_MM, built, plain_snow
 from .pits import full_pit
 
 TOML = """
@@ -143,6 +144,21 @@ def test_a_recording_becomes_depth_and_force(tmp_path: Path, capsys: pytest.Capt
     assert main(["convert", str(source), str(tmp_path / "r.caaml")]) == 0
     assert read_caaml(tmp_path / "r.caaml").time == "2019-03-02"
     assert main(["convert", str(source), str(tmp_path / "none_density.csv.caaml"), "--time", "2019-03-03"]) == 0
+    capsys.readouterr()
+
+
+def test_a_recording_becomes_layers_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Air of 0.05 N, 10 mm of snow with 1 N over 10 mm with 3 N: shares of 0.5 and 1.5 of their mean."""
+    source, out = tmp_path / "two.pnt", tmp_path / "layers.csv"
+    force = [0.05] * round(30.0 / STEP_MM) + [1.0] * round(10.0 / STEP_MM) + [3.0] * round(12.0 / STEP_MM)
+    source.write_bytes(built([round(newtons / NEWTON) for newtons in force]))
+    assert main(["convert", str(source), str(out), "--layers-to-mm", "20"]) == 0
+    layers = read_snow_layers(out)
+    assert layers.tops == pytest.approx([top / 1e3 for top in range(21)])
+    assert layers.shares == pytest.approx([0.5] * 10 + [1.5] * 11)
+    for depth, target in (("30", "deeper.csv"), ("20", "layers.caaml")):
+        assert main(["convert", str(source), str(tmp_path / target), "--layers-to-mm", depth]) == 1
+        assert not (tmp_path / target).exists()
     capsys.readouterr()
 
 

@@ -35,22 +35,29 @@ def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     parser.add_argument(
         "--forces", type=Path, metavar="FILE", help="a .mot or .sto whose columns go into a .c3d beside the markers"
     )
+    parser.add_argument(
+        "--layers-to-mm",
+        type=whole_number(1, 98),
+        metavar="MM",
+        help="write layers of 1 mm for snow.layers_file down to this depth below the surface, from a .pnt file",
+    )
     parser.set_defaults(run=convert_file, parser=parser)
 
 
 def convert_file(options: argparse.Namespace) -> int:
     """Convert, and print the files that were written."""
-    from .._support.units import CM
+    from .._support.units import CM, MM
 
     with announced(f"reading {options.source}"):
         from ..interop.convert import ConvertOptions, convert
 
-        height = options.snow_height_cm
+        height, depth = options.snow_height_cm, options.layers_to_mm
         convert_options = ConvertOptions(
             site=options.site,
             time=options.time,
             snow_height=None if height is None else height * CM,
             forces=options.forces,
+            layers_to=None if depth is None else depth * MM,
             report=lambda text: print(f"note: {text}", file=sys.stderr),
         )
         written = convert(options.source, options.target, convert_options)

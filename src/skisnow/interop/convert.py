@@ -9,11 +9,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from .._support.errors import OutputError, ParameterError
 from .._support.messages import Message, joined
+from .._support.spreadsheet_text import csv_text
+from .._support.staging import write_file
+from .._support.units import MM
 from ..campaign import read_campaign, read_snow_micro_pen
 from ..campaign.caaml import read_caaml
 from ..campaign.smet import read_smet
+from ..campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
 from ..campaign.snow_pit import ForceProfile, SnowPit
 from ..parameters import nearest
 from .caaml import write_caaml
@@ -59,6 +65,8 @@ class ConvertOptions:
         ISO 8601, if the source does not state it.
     forces
         A .mot or .sto file; its columns are written to the .c3d file together with the markers.
+    layers_to
+        Depth (m) to which a recording becomes layers of a run (``snow.layers_file``); None: it becomes a force table.
     report
         Called with each note about the source, such as the points of a .c3d file that were omitted.
     """
@@ -67,6 +75,7 @@ class ConvertOptions:
     snow_height: float | None = None
     time: str | None = None
     forces: Path | None = None
+    layers_to: float | None = None
     report: Callable[[str], None] | None = None
 
 
@@ -108,6 +117,10 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
             "forces are written to a .c3d file with its markers; {target} is not one. Remove --forces",
             code="wrong_ending",
             target=target,
+        )
+    if options.layers_to is not None and kinds != ("SnowMicroPen", CSV):
+        raise ParameterError(
+            "layers of a run come from a .pnt file and go into a .csv file. Remove --layers-to-mm", code="wrong_ending"
         )
     return made(source, target, options)
 
@@ -156,6 +169,29 @@ def _pit_of_recording(source: Path) -> SnowPit:
         elevation=profile.height,
         forces=(ForceProfile("SnowMicroPen", profile.depth, profile.force.clip(min=0.0)),),
     )
+
+
+def _recording_as_csv(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+    profile = read_snow_micro_pen(source)
+    if options.layers_to is None:
+        return (write_snowex_force(profile, target),)
+    default = SnowMicroPenSettings()
+    surface = snow_surface(profile.force, profile.sample_distance, rise=default.surface_rise, hold=default.surface_hold)
+    tops = MM * np.arange(round(options.layers_to / MM) + 2)
+    if surface is None or profile.depth[-1] - surface.depth < tops[-1]:
+        raise ParameterError(
+            "{source} has no snow surface with {depth_mm:g} mm of snow below it",
+            code="no_data",
+            source=source,
+            depth_mm=tops[-1] / MM,
+        )
+    borders = np.searchsorted(profile.depth, surface.depth + tops)
+    layers = np.split(profile.force, borders)[1:-1]
+    rows = (
+        (f"{top / MM:g}", f"{max(float(layer.mean()), 1e-6):.6g}") for top, layer in zip(tops, layers, strict=False)
+    )
+    write_file(target, csv_text((("depth_mm", "force_N"), *rows)))
+    return (target,)
 
 
 def _completed(pit: SnowPit, options: ConvertOptions) -> SnowPit:
@@ -213,7 +249,7 @@ CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     ("CAAML", "CAAML"): _to_caaml(lambda source, _: read_caaml(source)),
     ("CAAML", CSV): _to_snowex(lambda source, _: read_caaml(source)),
     ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
-    ("SnowMicroPen", CSV): lambda source, target, _: (write_snowex_force(read_snow_micro_pen(source), target),),
+    ("SnowMicroPen", CSV): _recording_as_csv,
     ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
     ("SMET", CSV): lambda source, target, _: (write_weather_csv(read_smet(source), target),),
     ("OpenSim table", "OpenSim table"): _motion,
