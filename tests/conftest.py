@@ -75,7 +75,14 @@ def noted_errors(monkeypatch: pytest.MonkeyPatch) -> list[SkisnowError]:
 
 
 @pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+def undrawn() -> Iterator[None]:
+    """Empty pictures instead of figures."""
+    with without_figures():
+        yield
+
+
+@contextmanager
+def without_figures() -> Iterator[None]:
     """An empty picture, each another, in place of every figure: a figure takes a second, and these tests read words."""
     number = count()
 
@@ -84,7 +91,8 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
         each = svg.encode()
         return Picture(drawing.name, drawing.whole_caption, drawing.alt, drawing.wide, svg, each, each, each)
 
-    monkeypatch.setattr("skisnow.report.figures.figure_files.render", empty)
+    with patch("skisnow.report.figures.figure_files.render", empty):
+        yield
 
 
 @contextmanager

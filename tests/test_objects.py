@@ -21,7 +21,7 @@ from skisnow.estimation.results import results_json
 from tests.coded import Coded, coded, raises
 from tests.key_names import EDGE_ANGLE
 
-from .conftest import without_png
+from .conftest import without_figures
 from .report.runs import RADIUS, SPEED, circle_run
 
 
@@ -178,7 +178,7 @@ def test_impossible_changes_of_a_scenario_are_errors(changes: dict[str, Any], ex
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The report of a circle at 8 m/s."""
-    with without_png():
+    with without_figures():
         return circle_run().report(tmp_path_factory.mktemp("run") / "new").parent
 
 

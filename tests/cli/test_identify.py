@@ -52,7 +52,7 @@ def test_json_alone_with_full_keys(cells: Path, capsys: Printed) -> None:
     assert any("hardly told apart" in text for text in found["warnings"])
 
 
-@pytest.mark.usefixtures("svg_alone")
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_is_written(cells: Path, tmp_path: Path, capsys: Printed) -> None:
     out = tmp_path / "out"
     words = ["identify", "carved-46m", str(cells), "--free", "mu_0,drag_area", "--out", str(out), "--profile", *SETS]

@@ -90,7 +90,7 @@ def test_analyse_prints_json_alone_and_writes_nothing_without_out(
     assert files_below(tmp_path) == before
 
 
-@pytest.mark.usefixtures("svg_alone")
+@pytest.mark.usefixtures("undrawn")
 def test_analyse_writes_the_report(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "100", "--geometry", "paper"]) == 0

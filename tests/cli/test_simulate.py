@@ -88,7 +88,7 @@ def test_summary_says_in_words_what_came_out(capsys: Printed) -> None:
     assert "warning" not in err  # on a busy machine a line says that it is loading
 
 
-@pytest.mark.usefixtures("replaced", "svg_alone")
+@pytest.mark.usefixtures("replaced", "undrawn")
 def test_folder_holds_summary_track_file_and_report(tmp_path: Path, capsys: Printed) -> None:
     folder = tmp_path / "new" / "run"
     assert main(["simulate", *ASKED, "--verify", "--out", str(folder)]) == 0

@@ -47,9 +47,9 @@ def altered(analysis: Analysis, results: dict[str, Any]) -> Analysis:
 
 
 def reported(campaign: Campaign, folder: Path) -> Reported:
-    """Its pictures are only PNG and SVG; every form is drawn in test_drawing.py, and a whole report in a slow test."""
+    """Its pictures are only SVG; every form is drawn in test_drawing.py, and a whole report in a slow test."""
     analysis = analysis_of(campaign)
-    with only_drawn("png", "svg"):
+    with only_drawn("svg"):
         write_report(analysis, folder)
     return Reported(analysis, folder)
 

@@ -36,7 +36,7 @@ from skisnow.track.course.gates_table import GateGap
 from skisnow.track.summary import track_summary
 from skisnow.track.track import Track
 
-from ..conftest import only_drawn
+from ..conftest import without_figures
 from . import test_identify_report, test_turn_report
 from .conftest import Reported
 from .runs import circle_run
@@ -66,7 +66,7 @@ def texts(html: str) -> set[str]:
 @pytest.fixture(scope="module")
 def german(reference: Reported, tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("german")
-    with only_drawn("svg"):
+    with without_figures():
         write_report(reference.analysis, folder, language="de")
     return (folder / "report.html").read_text(encoding="utf-8")
 

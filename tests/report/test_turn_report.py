@@ -38,7 +38,7 @@ from skisnow.track.summary import TrackSummary, summary_dict, track_summary
 from skisnow.track.track import Track
 from tests.coded import raises
 
-from ..conftest import only_drawn, without_png
+from ..conftest import only_drawn, without_figures
 from ..track.paths import NOISE, along, circle, track
 from .runs import RADIUS, circle_run
 
@@ -86,7 +86,7 @@ def chain() -> TurnChain:
 @pytest.fixture(scope="module")
 def folder(chain: TurnChain, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("turn")
-    with without_png():
+    with without_figures():
         write_turn_report(chain, folder)
     return folder
 
@@ -303,7 +303,7 @@ def test_gap_is_a_hole_in_the_line() -> None:
 
 def test_files_are_written_and_the_same_each_time(tmp_path: Path) -> None:
     summary = slalom()
-    with only_drawn("png", "svg"):
+    with only_drawn("svg"):
         written = write_track_report(summary, tmp_path / "one")
         write_track_report(summary, tmp_path / "two")
     assert written == tmp_path / "one" / "track.json"

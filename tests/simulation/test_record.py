@@ -29,7 +29,7 @@ from skisnow.simulation.run_tables import COLUMNS, track_csv, write_track
 from skisnow.ski import ski_named, write_ski
 from skisnow.ski.editing import SkiEdit, edit_stations
 
-from ..conftest import without_png
+from ..conftest import without_figures
 from .straight_run import STRAIGHT, straight_run
 
 
@@ -257,7 +257,7 @@ def test_the_terminal_and_the_report_have_the_warning(tmp_path: Path, capsys: py
     ground = replace(ski_named("giant-slalom"), edge_radius=1e-4)
     write_ski(ground, tmp_path / "ground.toml")
     settings = ["--set", f"ski.file={tmp_path / 'ground.toml'}", "--set", "run.duration_s=0.05"]
-    with without_png():
+    with without_figures():
         main(["simulate", "carved-46m", *settings, "--out", str(tmp_path / "out")])
     (text,) = model_limits(ground).values()
     assert capsys.readouterr().err.count(text) == 1

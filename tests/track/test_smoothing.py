@@ -234,8 +234,10 @@ def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
     return found
 
 
-@pytest.mark.parametrize("rate", [1.0, 2.0, 10.0])
-@pytest.mark.parametrize("period", [4.0, 5.0, 6.0, 10.0, 17.0])
+@pytest.mark.parametrize(
+    ("period", "rate"),
+    [*((period, 1.0) for period in (4.0, 5.0, 6.0, 10.0, 17.0)), (4.0, 2.0), (17.0, 2.0), (4.0, 10.0)],
+)
 def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
     """No maximum at an end, and no length below the polyline's."""
     place = linked_turns(period, rate=rate, count=round(50 * rate))
@@ -287,14 +289,14 @@ def test_coverage_of_200_tracks(name: str) -> None:
 def test_more_noise_is_a_wider_interval() -> None:
     widths = []
     for noise in (0.05, 0.5, 2.0):
-        made = simulated_track(Kind(noise=noise, duration=40.0), 3)
+        made = simulated_track(Kind(noise=noise, duration=20.0), 3)
         length = estimate(made.place).length()
         widths.append(length.high - length.low)
     assert widths[0] < widths[1] < widths[2]
 
 
 def test_same_track_gives_the_same_numbers() -> None:
-    place = simulated_track(Kind(duration=20.0), 1).place
+    place = simulated_track(Kind(duration=10.0), 1).place
     assert estimate(place).max_speed() == estimate(place).max_speed()
 
 

@@ -179,18 +179,10 @@ def test_foreign_posts_and_sockets_are_rejected(served: Served) -> None:
     assert asked(served, "/", Origin=own)[0] == 200
 
 
-@pytest.fixture(scope="module")
-def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """One server for all questions here, none of which changes anything; its errors are read."""
-    made = Served(tmp_path_factory.mktemp("lab") / "store.sqlite3").start()
-    yield made
-    made.kill()
-
-
-def ask_lab(lab: Served, path: str, body: str | None = None) -> tuple[int, str]:
-    parts = urlsplit(lab.address)
+def ask_lab(served: Served, path: str, body: str | None = None) -> tuple[int, str]:
+    parts = urlsplit(served.address)
     connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
-    own = {"Origin": lab.address.rstrip("/"), "Content-Type": "text/plain;charset=UTF-8"}
+    own = {"Origin": served.address.rstrip("/"), "Content-Type": "text/plain;charset=UTF-8"}
     connection.request("GET" if body is None else "POST", path, body=body, headers=own)
     answer = connection.getresponse()
     found = answer.status, answer.read().decode()
@@ -215,15 +207,15 @@ MESSAGES = (
 )
 
 
-def test_malformed_messages_leave_a_line_each_and_no_trace(lab: Served, capfd: pytest.CaptureFixture[str]) -> None:
+def test_malformed_messages_leave_a_line_each_and_no_trace(served: Served, capfd: pytest.CaptureFixture[str]) -> None:
     opened = "/_nicegui_ws/socket.io/?EIO=4&transport=polling"
-    session = json.loads(ask_lab(lab, opened)[1][1:])["sid"]
+    session = json.loads(ask_lab(served, opened)[1][1:])["sid"]
     for message in ("40", *MESSAGES):
-        ask_lab(lab, f"{opened}&sid={session}", message)
-    nobody = json.loads(ask_lab(lab, f"{opened}&implicit_handshake=true")[1][1:])["sid"]
-    ask_lab(lab, f"{opened}&sid={nobody}", "40")
-    assert ask_lab(lab, "/")[0] == 200
-    log = (lab.store.parent / "lab" / "lab.log").read_text(encoding="utf-8")
+        ask_lab(served, f"{opened}&sid={session}", message)
+    nobody = json.loads(ask_lab(served, f"{opened}&implicit_handshake=true")[1][1:])["sid"]
+    ask_lab(served, f"{opened}&sid={nobody}", "40")
+    assert ask_lab(served, "/")[0] == 200
+    log = (served.store.parent / "lab" / "lab.log").read_text(encoding="utf-8")
     for kind in ("connect", "event"):
         assert log.count(f"malformed {kind} (KeyError)") == 1
     assert "Traceback" not in log
@@ -275,15 +267,15 @@ def test_half_a_request_is_not_waited_for(sent: bytes) -> None:
     assert heard.count(b"hi") == (1 if b"\r\n\r\nGET" in sent else 0)
 
 
-def upload(lab: Served, path: str, name: str, content: bytes, **fields: str) -> tuple[int, str]:
-    parts = urlsplit(lab.address)
+def upload(served: Served, path: str, name: str, content: bytes, **fields: str) -> tuple[int, str]:
+    parts = urlsplit(served.address)
     connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
     texts = "".join(
         f'--cut\r\nContent-Disposition: form-data; name="{key}"\r\n\r\n{text}\r\n' for key, text in fields.items()
     )
     head = f'--cut\r\nContent-Disposition: form-data; name="file{"s" if path == "/import" else ""}"; filename="{name}"'
     body = texts.encode() + head.encode() + b"\r\n\r\n" + content + b"\r\n--cut--\r\n"
-    own = {"Origin": lab.address.rstrip("/"), "Content-Type": "multipart/form-data; boundary=cut"}
+    own = {"Origin": served.address.rstrip("/"), "Content-Type": "multipart/form-data; boundary=cut"}
     connection.request("POST", path, body=body, headers=own)
     answer = connection.getresponse()
     found = answer.status, answer.read().decode()
@@ -291,18 +283,18 @@ def upload(lab: Served, path: str, name: str, content: bytes, **fields: str) -> 
     return found
 
 
-def test_a_track_that_ends_its_reader_does_not_end_the_lab(lab: Served) -> None:
+def test_a_track_that_ends_its_reader_does_not_end_the_lab(served: Served) -> None:
     depth = 200_000
     content = b"<?xml version='1.0'?>" + depth * b"<gpx>" + depth * b"</gpx>"
-    status, _ = upload(lab, "/replay/track", "deep.gpx", content, azimuth="180")
+    status, _ = upload(served, "/replay/track", "deep.gpx", content, azimuth="180")
     assert status == 400
-    assert ask_lab(lab, "/")[0] == 200
+    assert ask_lab(served, "/")[0] == 200
 
 
-def test_a_zip_that_is_none_is_rejected_by_its_reader(lab: Served) -> None:
-    status, _ = upload(lab, "/import", "campaign.zip", b"PK\x03\x04 and nothing")
+def test_a_zip_that_is_none_is_rejected_by_its_reader(served: Served) -> None:
+    status, _ = upload(served, "/import", "campaign.zip", b"PK\x03\x04 and nothing")
     assert status == 400
-    assert ask_lab(lab, "/")[0] == 200
+    assert ask_lab(served, "/")[0] == 200
 
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "store.md"

@@ -132,6 +132,7 @@ def test_giant_slalom_keeps_to_its_rules_and_says_where_it_does_not() -> None:
     assert "19 times" in flat[0] and "9 to 12" in flat[0]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_track_with_a_course_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A track at 10 m/s and 10 points a second through two gates, and past a third on the wrong side."""
     time = np.arange(0.0, 4.0, 0.1)

@@ -34,6 +34,7 @@ def weaker(_distance: float) -> float:
     return 0.9
 
 
+@cache
 def carve(seconds: float, laws: Laws | None = None) -> Run:
     return simulate(load_scenario("carved-46m", changes={"run.duration_s": seconds}), laws=laws)
 
@@ -149,6 +150,7 @@ def test_a_law_that_gives_no_strength_ends_the_run_with_its_name() -> None:
 SPEED, ANGLE_DEG = 3.0, 10.0
 
 
+@cache
 def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
     """Up the fall line on flat rigid skis, without friction; backwards it meets the lines that it has left."""
     ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)

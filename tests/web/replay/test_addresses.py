@@ -193,13 +193,17 @@ def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
             tracks.beside(name, replay)
 
 
-def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(tmp_path: Path) -> None:
+def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Half circles of 12 m at 6 m/s, left then right: two turns, with radius and speed in the table."""
-    way = np.arange(0.0, 2.0 * math.pi * 12.0, 0.6)
+    way = np.arange(0.0, 2.0 * math.pi * 12.0, 1.2)
     heading = np.where(way < math.pi * 12.0, way / 12.0, 2.0 * math.pi - way / 12.0)
-    x, y = np.cumsum(0.6 * np.cos(heading)), np.cumsum(0.6 * np.sin(heading))
-    places = [(k * 0.1, a, b, 0.0) for k, (a, b) in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
+    x, y = np.cumsum(1.2 * np.cos(heading)), np.cumsum(1.2 * np.sin(heading))
+    places = [(k * 0.2, a, b, 0.0) for k, (a, b) in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
     name, _ = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
+    # each process would import the package again; another test checks that they are separate
+    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
     app = FastAPI()
     add_addresses(app, RunFolders(tmp_path))
     client, page = Client(app), f"/replay/turns?track={name}"
