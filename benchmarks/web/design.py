@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -13,7 +15,7 @@ from skisnow.carving.outputs import OUTPUTS
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.task import design_task
 
-from .filled_lab import filled_lab
+from .filled_lab import served
 from .opening import DRAWN, PATIENCE_MS
 from .reacting import moved_slider
 
@@ -74,9 +76,9 @@ def main() -> None:
         return
     from playwright.sync_api import sync_playwright
 
-    with filled_lab(100, 1) as lab, sync_playwright() as playwright:
+    with TemporaryDirectory() as folder, served(Path(folder) / "store") as address, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=place, args=["--no-sandbox"])
-        for name, times in to_picture(browser, lab.address).items():
+        for name, times in to_picture(browser, address).items():
             print(_line(f"{name}: numbers", times[:, 0], 100.0))
             print(_line(f"{name}: charts", times[:, 1], 100.0), flush=True)
         browser.close()

@@ -49,7 +49,7 @@ def filled_lab(readings: int, campaigns: int) -> Iterator[FilledLab]:
             entry = _entered(store, readings)
             kept = tuple(_kept(store, folder / f"reference-{seed}", seed) for seed in range(1, campaigns + 1))
         _simulated(folder / "lab" / RUN)
-        with _served(place) as address:
+        with served(place) as address:
             yield FilledLab(address, place, entry, kept, readings)
 
 
@@ -102,7 +102,8 @@ def _simulated(folder: Path) -> None:
 
 
 @contextmanager
-def _served(store: Path) -> Iterator[str]:
+def served(store: Path) -> Iterator[str]:
+    """Address of a lab with this store, as a person serves it."""
     command = [sys.executable, "-m", "skisnow", "serve", "--port", "0", "--store", str(store)]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None

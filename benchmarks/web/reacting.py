@@ -15,12 +15,13 @@ GOAL_S = 0.1
 SERIES, LOADS = 4, 7
 STEPS = 28
 CHARTS = 4
+CELLS = "[...document.querySelectorAll('td')].map((each) => each.textContent).join()"
 
 # For each condition the time from the event until it holds and the next picture is to be drawn. ``before`` is its value
 # just before the event, ``drawn`` how many charts were drawn since.
 WATCH = """([kind, conditions]) => {
   const tests = conditions.map((text) => new Function('before', 'drawn', 'return ' + text));
-  const values = () => ({cell: document.querySelector('td')?.textContent,
+  const values = () => ({cells: CELLS,
                          value: document.querySelector('.beside .value')?.textContent});
   const before = values();
   const charts = () => [...document.querySelectorAll('[data-drawn]')]
@@ -41,7 +42,7 @@ WATCH = """([kind, conditions]) => {
     watching.observe(document.body, {subtree: true, childList: true, characterData: true, attributes: true});
     document.addEventListener(kind, () => { begun = performance.now(); }, {capture: true, once: true});
   });
-}"""
+}""".replace("CELLS", CELLS)
 
 
 def entry_form(browser: Any, lab: FilledLab) -> list[Times]:
@@ -83,7 +84,7 @@ def moved_slider(page: Any, name: str, charts: int) -> list[list[float]]:
     """Milliseconds to the numbers and to all charts, for steps of a slider up and down."""
     page.get_by_role("slider", name=name, exact=True).focus()
     page.wait_for_timeout(1000)
-    shown = ["document.querySelector('td').textContent !== before.cell", f"drawn >= {charts}"]
+    shown = [f"{CELLS} !== before.cells", f"drawn >= {charts}"]
     keys = ["ArrowRight"] * (STEPS // 2) + ["ArrowLeft"] * (STEPS // 2)
     return [_reaction(page, "input", shown, key) for key in keys]
 
