@@ -1,23 +1,41 @@
-"""python -m benchmarks.design_derivatives: a robust design with exact derivatives, and with finite differences.
+"""python -m benchmarks.design_derivatives [search|cost|kinks]: exact derivatives of a carve, and a search with them.
 
-Five variables, three snows, the worst deviation from 12 m, a limit of the grip. Solver, starts and tolerances are the
-same; of the differences the best of three steps counts. Prints equilibria, processor time and the best objective.
+``search``: a robust design with exact derivatives and with finite differences: five variables, three snows, the worst
+deviation from 12 m, a limit of the grip. Solver, starts and tolerances are the same. All ways run in turn, several
+times; of the differences the best of three steps counts.
+``cost``: results and new skis, in Newton iterations of the same equilibrium and in equilibria.
+``kinks``: how near 1,000 everyday questions are to a change of state.
 """
 
 from __future__ import annotations
 
+import math
+import sys
 import time
+from collections.abc import Callable
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
 import scipy.optimize  # noqa: F401 - its import does not count
 
 from skisnow._support.arrays import FloatArray
+from skisnow.carving.equilibrium import carve
+from skisnow.carving.outputs import OUTPUTS
+from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives
+from skisnow.carving.shape import shape_growth
+from skisnow.carving.solve import _core_ski, refined, solved
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.problem import Search
 from skisnow.design.task import Goal, design_task
+from skisnow.ski import read_ski
+from skisnow.ski.beam import clamped
+from skisnow.ski.editing import shape_parameters
+from skisnow.ski.ski_file import ski_of_keys
+from skisnow.snow import SnowProperties
 
 STEPS: Final = (1e-4, 1e-5, 1e-6)
+TRIES: Final = 200
 TASK: Final[dict[str, Any]] = {
     "ski": "slalom",
     "variables": {
@@ -59,17 +77,107 @@ def searched(evaluator: Evaluator, starts: int) -> tuple[float, int, float]:
     return best, evaluator.equilibria, time.process_time() - began
 
 
-def main(starts: int = 2) -> None:
+def compare_searches(repetitions: int = 3, starts: int = 2) -> None:
     """Print one row for each way."""
-    print(f"{'derivatives':12} {'objective':>14} {'equilibria':>11} {'processor s':>12}")
-    for step in (0.0, *STEPS):
-        evaluator = Differences(design_task(TASK)) if step else Evaluator(design_task(TASK))
-        if isinstance(evaluator, Differences):
-            evaluator.step = step
-        objective, equilibria, seconds = searched(evaluator, starts)
+    seconds: dict[float, list[float]] = {step: [] for step in (0.0, *STEPS)}
+    results: dict[float, tuple[float, int]] = {}
+    for _ in range(repetitions):
+        for step, times in seconds.items():
+            evaluator = Differences(design_task(TASK)) if step else Evaluator(design_task(TASK))
+            if isinstance(evaluator, Differences):
+                evaluator.step = step
+            *results[step], spent = searched(evaluator, starts)  # type: ignore[assignment]
+            times.append(spent)
+    print(f"{'derivatives':12} {'objective':>14} {'equilibria':>11} {'processor s, least':>19} {'median':>7}")
+    for step, (objective, equilibria) in results.items():
         name = f"step {step:g}" if step else "exact"
-        print(f"{name:12} {objective:14.8g} {equilibria:11d} {seconds:12.2f}", flush=True)
+        least, middle = min(seconds[step]), np.median(seconds[step])
+        print(f"{name:12} {objective:14.8g} {equilibria:11d} {least:19.3f} {middle:7.3f}")
+
+
+def _least_ms(call: Callable[[], object]) -> float:
+    times = []
+    for _ in range(TRIES):
+        began = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - began)
+    return 1e3 * min(times)
+
+
+def print_costs() -> None:
+    """Shortest times for the slalom ski at 45° and 800 N on a race piste."""
+    snow = SnowProperties(0.21e9, 0.52e6, source="race piste")
+    keys: dict[str, Any] = dict(read_ski("slalom").keys or {})
+    ski = ski_of_keys(keys)
+    request = carve(ski, snow, edge_angle=math.pi / 4.0, load=800.0, unloading_ratio=10.0).request
+    assert request is not None
+    model, conditions = request.model, request.conditions
+    equilibrium = _least_ms(lambda: solved(model, conditions))
+    iteration = equilibrium / solved(model, conditions).iterations
+    print(f"equilibrium {equilibrium:.3f} ms, Newton iteration {iteration:.4f} ms")
+    seeds = [output_seed(CarveDerivatives(request), name) for name in list(OUTPUTS)[:5]]
+
+    times: dict[int, list[float]] = {1: [], 5: []}
+    for _ in range(TRIES):
+        for count, seconds in times.items():
+            point = refined(model, conditions, request.solution)
+            began = time.perf_counter()
+            for seed in seeds[:count]:
+                point.gradient(*seed)
+            seconds.append(time.perf_counter() - began)
+    first, five = (1e3 * min(times[count]) / iteration for count in (1, 5))
+    refinement = _least_ms(lambda: refined(model, conditions, request.solution)) / iteration
+    print(f"in iterations: refinement {refinement:.1f}, first result {first:.2f}, five {five:.2f}")
+
+    def changed() -> dict[str, Any]:
+        return keys | {"waist_width_mm": 66.0 + float(np.random.default_rng().uniform(0.0, 4.0))}
+
+    def new_ski(names: tuple[str, ...]) -> None:
+        new = ski_of_keys(changed())
+        _core_ski(clamped(new, model.clamp_length, request.elements))
+        for name in names:
+            shape_growth(new, name, model.clamp_length, request.elements)
+
+    all_names = shape_parameters(ski)
+    of_search = ("ski.tip_width_mm", "ski.waist_width_mm", "ski.tail_width_mm", "edit.EI_N_m2", "ski.EI_N_m2[2]")
+    for text, names in (("no shape", ()), ("shapes of five parameters", of_search), ("of all", all_names)):
+        print(f"new ski, {text}: {_least_ms(partial(new_ski, names)) / equilibrium:.1f} equilibria")
+
+
+def output_seed(derivatives: CarveDerivatives, name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Growth of a result with the unknowns of the beam, depth and force."""
+    growth = derivatives._output(name)
+    assert growth is not None
+    none = np.zeros(len(derivatives.at.solution.edge_depth))
+    depth, force = (none if part is None else part for part in (growth.depth, growth.force))
+    return growth.by_unknowns(derivatives.request.model), depth, force
+
+
+def count_kinks(count: int = 1000) -> None:
+    """Questions in steps of 5° and 100 N, skis of the catalogue, six snows, k_u/H_V from 2 to 50, 12 parameters."""
+    random = np.random.default_rng(58)
+    skis = [read_ski(name) for name in ("slalom", "giant-slalom", "carver")]
+    names = (
+        *(name for name in CONDITIONS if not name.startswith("snow.S_f")),
+        "ski.tip_width_mm", "ski.waist_width_mm", "ski.tail_width_mm", "ski.camber_mm",
+        "edit.sidecut_depth", "edit.EI_N_m2", "edit.GJ_N_m2",
+    )  # fmt: skip
+    nearest: list[float] = []
+    while len(nearest) < count:
+        snow = SnowProperties(1e9 * float(random.choice([0.04, 0.08, 0.21, 0.55, 1.0, 2.0])), 0.5e6, source="everyday")
+        turn: dict[str, Any] = {
+            "edge_angle": math.radians(5.0 * random.integers(2, 15)),
+            "load": 100.0 * random.integers(3, 26),
+            "unloading_ratio": float(random.choice([2.0, 5.0, 10.0, 20.0, 50.0])),
+        }
+        request = carve(skis[random.integers(3)], snow, **turn).request
+        if request is None:
+            continue
+        found = CarveDerivatives(request).sensitivity("edge_depth_mm", names)
+        nearest.append(min(each.kink for each in found if each.parameter_value))
+    for limit in (1e-4, 1e-5, 1e-6):
+        print(f"nearer than {limit:g} to a kink: {np.sum(np.array(nearest) < limit)} of {count} questions")
 
 
 if __name__ == "__main__":
-    main()
+    {"search": compare_searches, "cost": print_costs, "kinks": count_kinks}[(sys.argv[1:] or ["search"])[0]]()

@@ -20,7 +20,7 @@ from ..ski.beam import (
     places_within,
     twist_shape,
 )
-from ..ski.editing import table_growth
+from ..ski.editing import TableGrowth, table_growth
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
@@ -66,13 +66,10 @@ class _Lines(NamedTuple):
         """Values of tables (…, rows) at the places."""
         return np.asarray(table[..., self.row] + self.share * (table[..., self.row + 1] - table[..., self.row]))
 
-    def growth(self, table: FloatArray, of_table: FloatArray, station: FloatArray, place: FloatArray) -> FloatArray:
-        """Growth of these, with those of the tables, their stations and the places; the rows stay the same."""
-        out = self.along(of_table)
-        if not (station.any() or place.any()):
-            return out
+    def moved(self, table: FloatArray, station: FloatArray, place: FloatArray) -> FloatArray:
+        """Growth of these where the tables' stations and the places grow; the rows stay the same."""
         share = (self.along(station) - place) / self.spacing
-        return np.asarray(out + share * (table[..., self.row + 1] - table[..., self.row]))
+        return np.asarray(share * (table[..., self.row + 1] - table[..., self.row]))
 
 
 class _Mesh(NamedTuple):
@@ -105,36 +102,63 @@ def _lines_at(station: bytes, place: tuple[float, ...]) -> _Lines:
     return _lines(station, np.array(place))
 
 
-@functools.lru_cache(maxsize=512)
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
     """Growth of the shape with a parameter of the ski; elements and rows of the tables keep their numbers."""
-    tables, (running_length, bevel, edge_width) = table_growth(ski, name)
-    mesh, station = _mesh(ski.station.tobytes(), clamp_length, elements), tables[0]
-    half = clamp_length / 2.0
+    growth, station = table_growth(ski, name), ski.station.tobytes()
+    widest = _widest(ski, clamp_length, elements)
+    fixed = _fixed_shape(growth, station, clamp_length, elements, widest)
+    by_station = growth.tables[0]
+    if not by_station.any():
+        return fixed
+    mesh, half = _mesh(station, clamp_length, elements), clamp_length / 2.0
     parts = np.array([float(ski.station[-1]), -half, half, float(ski.station[0])])
-    node = np.interp(mesh.node, parts, [station[-1], 0.0, 0.0, station[0]])
-    place, outline = places_within(node, STATION_POINTS).ravel(), np.array([ski.width, ski.base_height])
-    sections = mesh.stations.growth(outline, tables[1:3], station, place)
+    node = np.interp(mesh.node, parts, [by_station[-1], 0.0, 0.0, by_station[0]])
+    place, gauss = places_within(node, STATION_POINTS).ravel(), places_within(node, GAUSS_POINTS)
+    sections = fixed.sections + mesh.stations.moved(np.array([ski.width, ski.base_height]), by_station, place)
     stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
-    widest = int(np.argmax(mesh.stations.along(ski.width)))
     return Shape(
         node,
         node[:-1] - node[1:],
         place,
         sections,
-        stiff := mesh.gauss.growth(stiffness, tables[3:], station, places_within(node, GAUSS_POINTS)),
-        np.array([running_length, sections[0, widest], bevel, edge_width]),
-        moves=bool(station.any()),
-        widens=bool(sections.any()),
-        stiffens=bool(stiff.any()),
+        fixed.stiffness + mesh.gauss.moved(stiffness, by_station, gauss),
+        np.array([fixed.numbers[0], sections[0, widest], *fixed.numbers[2:]]),
+        moves=True,
+        widens=True,
+        stiffens=True,
     )
+
+
+@functools.lru_cache(maxsize=512)
+def _fixed_shape(growth: TableGrowth, station: bytes, clamp_length: float, elements: int, widest: int) -> Shape:
+    """Growth of the shape on fixed places between fixed rows."""
+    mesh, tables = _mesh(station, clamp_length, elements), growth.tables
+    widens, stiffens = bool(tables[1:3].any()), bool(tables[3:].any())
+    stations = len(mesh.stations.row)
+    sections = mesh.stations.along(tables[1:3]) if widens else np.zeros((2, stations))
+    stiffness = mesh.gauss.along(tables[3:]) if stiffens else np.zeros((2, *mesh.gauss.row.shape))
+    running_length, bevel, edge_width = growth.numbers
+    numbers = np.array([running_length, sections[0, widest], bevel, edge_width])
+    none = np.zeros(len(mesh.node))
+    return Shape(
+        none, none[1:], np.zeros(stations), sections, stiffness, numbers, moves=False, widens=widens, stiffens=stiffens
+    )
+
+
+@functools.lru_cache(maxsize=64)
+def _widest(ski: Ski, clamp_length: float, elements: int) -> int:
+    """Number of the widest station."""
+    return int(np.argmax(_mesh(ski.station.tobytes(), clamp_length, elements).stations.along(ski.width)))
 
 
 def sections_growth(ski: Ski, name: str, place: FloatArray) -> FloatArray:
     """Growth of width and height of the base with a parameter of the ski at fixed places (2, k)."""
-    tables, _ = table_growth(ski, name)
+    tables = table_growth(ski, name).tables
     lines = _lines_at(ski.station.tobytes(), tuple(place.tolist()))
-    return lines.growth(np.array([ski.width, ski.base_height]), tables[1:3], tables[0], 0.0 * place)
+    out = lines.along(tables[1:3])
+    if tables[0].any():
+        out += lines.moved(np.array([ski.width, ski.base_height]), tables[0], 0.0 * place)
+    return out
 
 
 @functools.lru_cache(maxsize=32)

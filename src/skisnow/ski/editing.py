@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import re
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -264,10 +264,16 @@ def is_linear(keys: Mapping[str, Any], key: str) -> bool:
     return key in LINEAR and not (key.endswith("width_mm") and "tip_end_width_mm" in keys)
 
 
-class TableGrowth(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class TableGrowth:
     """Growth of a ski with a parameter, SI per its unit, on rows that move with it.
 
-    With tables of station, width, base height, EI and GJ, shape (5, rows); running length, base bevel, edge width.
+    Attributes
+    ----------
+    tables
+        Of station, width, base height, EI and GJ, shape (5, rows).
+    numbers
+        Of running length, base bevel, edge width.
     """
 
     tables: FloatArray
@@ -277,56 +283,49 @@ class TableGrowth(NamedTuple):
 _LINEAR_GROWTHS: Final[dict[tuple[object, ...], TableGrowth]] = {}
 _MOST_KEPT: Final = 256
 _WITHOUT_EFFECT: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # on growths with `LINEAR`
-_LENGTH_STEP: Final = 1e-2  # mm; of other parameters a thousandth
+_LENGTH_STEP: Final = 1e-3  # mm; of other parameters a ten thousandth
 
 
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
-    """Growth of a ski with a parameter of `shape_parameters`, by central differences of its tables.
-
-    Exact where these are linear in the parameter, otherwise extrapolated (Richardson).
-    """
+    """Growth of a ski with a parameter of `shape_parameters`, by central differences where there is no closed form."""
     value, key = shape_value(ski, name), name.removeprefix("ski.")
-    stiffness = stiffness_growth(ski, name)
-    if stiffness is not None:
-        tables = np.zeros((len(_TABLES), len(ski.station)))
-        tables[_TABLES.index(stiffness[0])] = stiffness[1]
-        return TableGrowth(tables, np.zeros(len(_NUMBERS)))
+    row = _ROW.fullmatch(key)
+    if name in FACTORS:
+        column = name.removeprefix("edit.")
+        if column == SIDECUT:
+            return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
+        return _of_table(EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column])))
+    require_own_tables(ski)
+    if row and row[1] in STIFFNESSES:
+        return _of_table(EDITED_COLUMNS[row[1]], _growth_with_row(ski, row[1], int(row[2]) - 1))
 
     def central(h: float) -> TableGrowth:
         skis = [varied_ski(ski, name, side * h) for side in (1.0, -1.0)]
         ends = [[np.array([getattr(each, field) for field in names]) for names in (_TABLES, _NUMBERS)] for each in skis]
         return TableGrowth(*((upper - lower) / (2.0 * h) for upper, lower in zip(*ends, strict=True)))
 
-    if not name.startswith("ski."):
-        return central(1e-2 * value)
-    if is_linear(ski.keys or {}, key):
-        require_own_tables(ski)
-        # the growth is the same for all skis of these lengths
-        same = (key, *((k, str(v)) for k, v in (ski.keys or {}).items() if k not in _WITHOUT_EFFECT))
-        if same not in _LINEAR_GROWTHS:
-            if len(_LINEAR_GROWTHS) >= _MOST_KEPT:
-                _LINEAR_GROWTHS.clear()
-            _LINEAR_GROWTHS[same] = central(1e-2 * abs(value) or _LENGTH_STEP)
-        return _LINEAR_GROWTHS[same]
-    step = _LENGTH_STEP if name.endswith("_mm") else 1e-3 * abs(value) or _LENGTH_STEP
-    once, half = central(step), central(step / 2.0)
-    return TableGrowth(*((4.0 * fine - coarse) / 3.0 for fine, coarse in zip(half, once, strict=True)))
+    if not is_linear(ski.keys or {}, key):
+        return central(_LENGTH_STEP if name.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP)
+    # the growth is the same for all skis of these lengths
+    same = (key, *((k, str(v)) for k, v in (ski.keys or {}).items() if k not in _WITHOUT_EFFECT))
+    if same not in _LINEAR_GROWTHS:
+        if len(_LINEAR_GROWTHS) >= _MOST_KEPT:
+            _LINEAR_GROWTHS.clear()
+        _LINEAR_GROWTHS[same] = central(1e-2 * abs(value) or _LENGTH_STEP)
+    return _LINEAR_GROWTHS[same]
 
 
-def stiffness_growth(ski: Ski, name: str) -> tuple[str, FloatArray] | None:
-    """Growth of EI or GJ (name in `Ski`) at the stations with a parameter; None of one that changes more than that."""
-    row = _ROW.fullmatch(name.removeprefix("ski."))
-    column = row[1] if row else name.removeprefix("edit.")
-    if column not in STIFFNESSES or not (row or name in FACTORS):
-        return None
-    if row is None:
-        return EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column]))
-    require_own_tables(ski)
-    keys, place = ski.keys or {}, int(row[2]) - 1
-    listed = np.array(keys[column], float)
-    stations = keys.get("stiffness_station_mm")
-    where = None if stations is None else np.array(stations) * MM
+def _of_table(table: str, growth: FloatArray) -> TableGrowth:
+    tables = np.zeros((len(_TABLES), len(growth)))
+    tables[_TABLES.index(table)] = growth
+    return TableGrowth(tables, np.zeros(len(_NUMBERS)))
+
+
+def _growth_with_row(ski: Ski, column: str, row: int) -> FloatArray:
+    """Growth of a stiffness at the stations with a row of its list."""
+    keys = ski.keys or {}
+    listed, stations = np.array(keys[column], float), keys.get("stiffness_station_mm")
     layout = Layout(
         tip=float(ski.station[0]),
         tail=float(ski.station[-1]),
@@ -334,14 +333,10 @@ def stiffness_growth(ski: Ski, name: str) -> tuple[str, FloatArray] | None:
         running_length=ski.running_length,
         sidecut_length=ski.sidecut_length,
     )
-
-    def central(h: float) -> FloatArray:
-        ends = [stiffness_table(listed + side * h * np.eye(len(listed))[place], where, layout) for side in (1.0, -1.0)]
-        return np.asarray((ends[0].at(ski.station) - ends[1].at(ski.station)) / (2.0 * h))
-
+    table = stiffness_table(listed, None if stations is None else np.array(stations) * MM, layout)
     # the slope of the curve changes its form where two neighbours are equal
-    apart = np.abs(np.delete(listed, place)[max(0, place - 1) : place + 1] - listed[place])
-    return EDITED_COLUMNS[column], central(min([_STEP * listed[place], *(0.1 * apart[apart > 0.0])]))
+    apart = np.abs(np.delete(listed, row)[max(0, row - 1) : row + 1] - listed[row])
+    return table.growth(row, min([_STEP * listed[row], *(0.1 * apart[apart > 0.0])]), ski.station)
 
 
 def varied_ski(ski: Ski, name: str, change: float) -> Ski:

@@ -191,11 +191,24 @@ class StationTable:
         if self.station.size == 1:
             return np.full(np.shape(station), self.value[0])
         x, y = self.station[::-1], self.value[::-1]
-        within = np.clip(station, x[0], x[-1])
-        at = np.clip(np.searchsorted(x, within, side="right") - 1, 0, x.size - 2)
-        width, slope = np.diff(x)[at], _slopes(x, y)
-        t, rise, first, last = (within - x[at]) / width, np.diff(y)[at], width * slope[at], width * slope[at + 1]
-        return np.asarray(y[at] + t * (first + t * (3.0 * rise - 2.0 * first - last + t * (first + last - 2.0 * rise))))
+        return _cubic(x, y, _slopes(x, y), station)
+
+    def growth(self, row: int, step: float, station: FloatArray) -> FloatArray:
+        """Growth of the values at stations (m) with that of a row; `step`: of it, for differences of the slopes."""
+        if self.station.size == 1:
+            return np.ones(np.shape(station))
+        x, y, one = self.station[::-1], self.value[::-1], np.eye(self.station.size)[row][::-1]
+        slopes = (_slopes(x, y + step * one) - _slopes(x, y - step * one)) / (2.0 * step)
+        return _cubic(x, one, slopes, station)
+
+
+def _cubic(x: FloatArray, y: FloatArray, slope: FloatArray, station: FloatArray) -> FloatArray:
+    """Cubics at stations (m) through points with slopes; beyond the ends their values."""
+    within = np.clip(station, x[0], x[-1])
+    at = np.clip(np.searchsorted(x, within, side="right") - 1, 0, x.size - 2)
+    width = np.diff(x)[at]
+    t, rise, first, last = (within - x[at]) / width, np.diff(y)[at], width * slope[at], width * slope[at + 1]
+    return np.asarray(y[at] + t * (first + t * (3.0 * rise - 2.0 * first - last + t * (first + last - 2.0 * rise))))
 
 
 def _slopes(x: FloatArray, y: FloatArray) -> FloatArray:
