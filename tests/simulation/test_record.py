@@ -97,7 +97,7 @@ def test_what_is_reported_of_the_skis_is_what_the_beams_and_boots_have() -> None
 
 
 def test_the_track_of_a_flat_ski_does_not_jump_from_edge_to_edge() -> None:
-    """A sledge without edging across the fall line: the track moves aside by less than 5 mm in 10 ms, the ski is 67 mm wide."""
+    """The skis of a sledge without edging, 67 mm wide: their tracks move aside by less than 5 mm in 10 ms."""
     run = simulate(load_scenario("carved-46m", changes={"sledge.edge_angle_deg": 0.0, "run.duration_s": 0.3}))
     aside = np.einsum("nka,na->nk", run.skis.track - run.place[:, None], run.attitude[:, :, 1])
     assert np.abs(np.diff(aside, axis=0)).max() < 5e-3
