@@ -76,7 +76,7 @@ ABOVE_MM: Final = 3.0
 """Height above the snow that the chart of depths shows (mm)."""
 HEADLINE: Final = "turn_radius_boot_m"
 """Key of the main result; the other results are in the table."""
-DESIGNED: Final = "the designed ski"
+DESIGNED: Final = Message("the designed ski")
 """Word for the ski of a question that gives keys of a ski file instead of a word."""
 
 

@@ -160,7 +160,7 @@ class _Design(CarvedTurn):
     def _keys(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
         name = str(self._ski.value)
         changes = {key: float(SHAPES[key][2] if key in without else self.sliders[key].value) for key in SHAPES}
-        source = f"designed in the lab from the ski {name}"
+        source = said(Message("designed in the lab from the ski {name}", name=name))
         designed = said(Message("{name}, designed", name=name))
         return designed_keys(self._begun[name], changes) | {"name": designed, "source": source}
 
