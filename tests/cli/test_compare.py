@@ -115,6 +115,7 @@ def test_out_writes_the_json_and_the_figure(straight: Path, tmp_path: Path, caps
     assert (folder / "track_comparison.eps").read_bytes().startswith(b"%!PS-Adobe")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_two_runs_through_one_course_are_compared_gate_by_gate(straight: Path, tmp_path: Path, capsys: Printed) -> None:
     folders = []
     for name, time in (("mine", 2.25), ("theirs", 2.0)):
@@ -131,7 +132,7 @@ def test_two_runs_through_one_course_are_compared_gate_by_gate(straight: Path, t
     ]
     assert (out / "gate_gaps.csv").read_text(encoding="utf-8").splitlines()[2] == "2,passed,2.25,passed,2.0,0.25,0.25"
     assert "0.25 s behind" in (out / "report.html").read_text(encoding="utf-8")
-    assert (out / "gate_gaps.pdf").read_bytes().startswith(b"%PDF")
+    assert (out / "gate_gaps.pdf").is_file()
     assert main(["compare", *map(str, folders)]) == 0
     assert "crosses gate 2 0.25 s behind" in capsys.readouterr().out
     (folders[0] / "gates.csv").unlink()
@@ -280,6 +281,7 @@ def test_the_slope_of_a_run_counts_with_a_known_azimuth(tmp_path: Path, capsys: 
 CASE = Path(__file__).parents[3] / "shared" / "cases" / "compare" / "north.gpx"
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.skipif(not CASE.is_file(), reason="no ../shared")
 def test_the_shared_track_of_a_carved_turn_is_found(tmp_path: Path, capsys: Printed) -> None:
     run = tmp_path / "run"

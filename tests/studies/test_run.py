@@ -238,17 +238,7 @@ def test_at_rest_and_carving_are_in_one_table(study_file: Path) -> None:
     assert (rests["side_force_N"], carves["side_force_N"]) == (0.0, pytest.approx(490.0))
 
 
-SHARDED_STUDY = """
-out = "table.csv"
-[fixed]
-published = "race-piste"
-unloading_ratio = 10
-elements = 40
-[grid]
-ski = ["slalom", "no-such-ski"]
-load_N = [400, 800]
-edge_angle_deg = [30, 45, 95]
-"""
+SHARDED_STUDY = TEXT.replace("[0, 30, 95]", "[30, 45, 95]")
 
 
 def whole(study_file: Path) -> bytes:

@@ -303,7 +303,7 @@ def assert_told_and_not_raised(folder: Path) -> None:
 
 
 SHARED_FOLDER = settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+    max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 )
 BROKEN = st.one_of(
     st.binary(max_size=200),

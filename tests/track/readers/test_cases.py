@@ -187,7 +187,7 @@ def test_whole_files_read(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", FILES)
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(damage=damages())
 def test_damaged_files(tmp_path: Path, name: str, damage: Damage) -> None:
     path = tmp_path / name
@@ -234,7 +234,7 @@ def test_messages_sealed_with_a_right_checksum(tmp_path: Path, payload: bytes, w
     require_track_or_our_error(path)
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     kind=st.sampled_from(["GGA", "GNS", "RMC", "VTG", "GST", "ZDA", "GSV", "ABC"]),
     cells=st.lists(
