@@ -29,7 +29,6 @@ void SnowContact::Before::put_back(GrooveLines& into) const {
 namespace {
 
 constexpr double MOST_PARTS = 1e4;  // into which a way is divided
-constexpr double SLIPPING = 0.999;  // share of the displacement above which an edge slips
 
 // The polyline that a section presses into its line: the base where it is wet, and the way of its edge since it was
 // marked last. Both are straight and meet at the edge, so that one of them is the deeper wherever both are.
@@ -220,7 +219,7 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
   const auto marked = [&](std::int64_t n) {
     return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5 && depth(n) > 0.0;
   };
-  const double most = SLIPPING * snow_->shear_displacement;
+  const double most = snow_->shear_displacement - THIN;  // a slip leaves the anchor as far off, but for rounding
   const auto slips = [&](int slot, int k) {
     const auto of = [&](LineField left) { return v[of_edge(left, k)][slot]; };
     return of(LEFT_MARK_DEPTH) > 0.0 && std::fabs(of(LEFT_ANCHOR) - of(LEFT_MARK)) > most;
