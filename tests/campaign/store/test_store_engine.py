@@ -285,7 +285,9 @@ def campaigns(folder: Path, names: list[str]) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("state", ["absent", "old schema", pytest.param("empty file", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "state", ["absent", *(pytest.param(each, marks=pytest.mark.slow) for each in ("old schema", "empty file"))]
+)
 def test_two_processes_lose_nothing(state: str, place: Path, tmp_path: Path) -> None:
     """They race to make or migrate the store, then each adds its own campaigns and two that both have."""
     if state != "absent":
