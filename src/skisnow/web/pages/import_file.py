@@ -11,14 +11,14 @@ from nicegui import run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, template
 from ...campaign.importing import Answers
-from ...campaign.importing.columns import FROM_NOTES
+from ...campaign.importing.columns import FROM_NOTES, number_columns
 from ...campaign.reading.headings import units_for
 from ..elements import Outcome, Words, add_head, add_items, button, choice, field, named
 from ..layout import error_sentence, framed, heading, sentence
 from ..settings import BUILD_S
 from ..subprocesses import BOUNDS, confined
 from ..transfer import FileImports, TriedImport, try_import
-from ..words import TABLES, label, said
+from ..words import TABLES, label, number_said, said
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -217,6 +217,7 @@ def _list_problems(proposal: Proposal) -> None:
 def _show_rows(table: ImportedTable) -> None:
     """First rows as they are stored."""
     present = dict.fromkeys(name for row in table.rows[:_SHOWN_ROWS] for name in row.cells)
+    numbers = number_columns(table.form)
     names = sorted(present, key=lambda name: name in {"time", *FROM_NOTES})  # measured numbers first
     count = len(table.rows)
     place, file = table.section.key, table.form.file
@@ -230,4 +231,5 @@ def _show_rows(table: ImportedTable) -> None:
                 with ui.element("tr"):
                     for name in names:
                         with ui.element("td"):
-                            ui.label(row.cells.get(name, ""))
+                            text = row.cells.get(name, "")
+                            ui.label(number_said(text) if name in numbers else text)
