@@ -153,7 +153,20 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
 )
 def test_the_matrix_is_the_derivative(angle: float, hardness: float, ratio: float, bevel: float, radius: float) -> None:
     """Memory, bevel and the end of the base in the snow: each had a wrong term, off by 1e-6 to 2e-3."""
-    ski = replace(read_ski("slalom"), base_bevel=math.radians(bevel), edge_radius=radius * 1e-3, side_edge=1.5)
+    require_derivative("slalom", angle, hardness, ratio, bevel, radius)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
+def test_the_matrix_of_every_ski_is_the_derivative(name: str) -> None:
+    for angle, hardness, ratio, bevel in itertools.product(
+        (5.0, 25.0, 45.0, 65.0), (0.01e9, 0.21e9, 2e9), (1.0, 10.0, 1000.0), (0.0, 1.0)
+    ):
+        require_derivative(name, angle, hardness, ratio, bevel, 0.0)
+
+
+def require_derivative(name: str, angle: float, hardness: float, ratio: float, bevel: float, radius: float) -> None:
+    ski = replace(read_ski(name), base_bevel=math.radians(bevel), edge_radius=radius * 1e-3, side_edge=1.5)
     model = clamped(ski, CLAMP_LENGTH, 160)
     given = conditions(angle=angle, hardness=hardness, ratio=ratio, edges=ski.edge_shape)
     found = solved(model, given)
