@@ -159,7 +159,7 @@ def run_ski(options: argparse.Namespace) -> int:
         if stiffness is not None:
             print(f"{'station mm':>10}  {name + ' N m²':>10}  {'error':>8}")
             for station, value, error in zip(stiffness.station, stiffness.value, stiffness.error, strict=True):
-                print(f"{station / MM:10.0f}  {value:10.4g}  {error:8.2g}")
+                print(f"{station / MM:10.0f}  {value:10.4g}  {f'{error:8.2g}' if error >= 0.0 else ''}".rstrip())
     for each in made.assumed:
         print(f"Assumed: {each}")
     snow = "--published race-piste --unloading-ratio 10"
