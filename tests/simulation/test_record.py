@@ -23,7 +23,7 @@ from skisnow.dynamics import Ended
 from skisnow.scenario import Plane
 from skisnow.scenario.plausibility import model_limits
 from skisnow.simulation.moving_boots import StrengthDrive
-from skisnow.simulation.run_record import Record
+from skisnow.simulation.run_record import Record, stored_and_lost
 from skisnow.simulation.run_setup import Setup, set_up
 from skisnow.simulation.run_tables import COLUMNS, track_csv, write_track
 from skisnow.ski import ski_named, write_ski
@@ -57,15 +57,16 @@ def test_moments_are_kept_replaced_and_dropped() -> None:
 
 def test_stored_and_lost_energies_are_separate() -> None:
     """Stored: kinetic, potential, skis, snow with what sticks, delayed depth; then losses and energies given."""
-    dynamics: Any = SimpleNamespace(
-        snow_energies=(5.0, 3.0, 0.25, 0.5), energies=(100.0, 200.0, 7.0), work=(10.0, 20.0, -30.0, 4.0, 5.0, 6.0),
-        snow_losses=(19.5, 9.0, 19.75, 6.5, 0.0), work_given=(8.0, 9.0), body=SimpleNamespace(skis=()), time=0.0,
-        position=np.zeros(3), rotation=np.eye(3), boots=None, boot_wrench=None, beam_dofs=np.zeros((0, 0)),
-        pushes=np.zeros((0, 3)),
-    )  # fmt: skip
-    setup: Any = SimpleNamespace(dynamics=dynamics, place=np.zeros(3), attitude=np.eye(3), velocity=np.zeros(3))
+    parts = {
+        "energies": [100.0, 200.0, 7.0],
+        "snow_energies": [5.0, 3.0, 0.25, 0.5],
+        "snow_losses": [19.5, 9.0, 19.75, 6.5, 0.0],
+        "work": [10.0, 20.0, -30.0, 4.0, 5.0, 6.0],
+        "work_given": [8.0, 9.0],
+    }
+    energies = stored_and_lost({name: np.array([numbers]) for name, numbers in parts.items()})
     stored, lost = (100.0, 200.0, 7.0, 8.25, 0.5), (19.5, 9.0, 19.75, 4.0, 5.0, 6.5)
-    assert Record(setup)._present().energies == (*stored, *lost, 8.0, 9.0)
+    assert energies.tolist() == [[*stored, *lost, 8.0, 9.0]]
 
 
 def test_forces_of_friction_are_sums_over_the_sections() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from skisnow.dynamics.motion import MOMENT
 from skisnow.geometry.boot_axes import axes_of
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario
 from skisnow.simulation.moving_boots import BootHistory
@@ -85,7 +86,10 @@ def test_the_heading_continues_beyond_half_a_turn() -> None:
     ],
 )
 def test_energy_out_of_nothing(first: tuple[float, ...], last: tuple[float, ...], gains: bool) -> None:
-    record = stub(_moments=[stub(energies=first), stub(energies=(math.inf,) * 5), stub(energies=last)])
+    rows = np.zeros((3, 39))
+    rows[:, MOMENT["energies"]] = [first[:3], [math.inf] * 3, last[:3]]
+    rows[:, MOMENT["work_given"]] = [first[3:], [math.inf] * 2, last[3:]]
+    record = stub(_moments=[stub(row=row) for row in rows])
     assert cast("Any", Record.gains_energy).fget(record) is gains
 
 
@@ -105,13 +109,13 @@ def test_lean_and_height_are_against_the_slope_under_the_boots() -> None:
     setup.slope_normal = lambda x, y: Setup.slope_normal(setup, x, y)
     setup._slope_at_boots = lambda: Setup._slope_at_boots(setup)
     assert cast("Any", Setup.height).fget(setup) == pytest.approx(0.4)
-    assert cast("Any", Setup.leaning).fget(setup) == pytest.approx(math.atan(0.75))
+    assert cast("Any", Setup.tilt).fget(setup)[0] == pytest.approx(math.atan(0.75))
     setup.attitude = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
-    assert cast("Any", Setup.leaning).fget(setup) == pytest.approx(0.0, abs=1e-7)
+    assert cast("Any", Setup.tilt).fget(setup)[0] == pytest.approx(0.0, abs=1e-7)
     setup.attitude = -setup.attitude
-    assert cast("Any", Setup.leaning).fget(setup) == pytest.approx(math.pi)
+    assert cast("Any", Setup.tilt).fget(setup)[0] == pytest.approx(math.pi)
     setup.scenario.slope, setup.attitude = Plane(0.5), np.eye(3)
-    assert (cast("Any", Setup.height).fget(setup), cast("Any", Setup.leaning).fget(setup)) == (-1.1, 0.0)
+    assert (cast("Any", Setup.height).fget(setup), cast("Any", Setup.tilt).fget(setup)[0]) == (-1.1, 0.0)
 
 
 def under_way(t: float, *, driven: bool) -> Any:

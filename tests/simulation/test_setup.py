@@ -63,12 +63,12 @@ def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge:
 @pytest.mark.parametrize(
     ("parts", "flying", "skied", "outcome"),
     [
-        ({"leaning": 1.04}, 0.29, False, None),
-        ({"leaning": 1.05}, 0.3, False, "tipped_over"),
-        ({"leaning": 1.05}, 0.3, True, "fell"),
-        ({"pitching": 0.7}, 0.3, False, "tipped_over"),
-        ({"pitching": 0.69, "height": -0.6}, 0.3, False, "airborne"),
-        ({"pitching": 0.7, "touches": False}, 0.3, False, "airborne"),
+        ({"tilt": (1.04, 0.0)}, 0.29, False, None),
+        ({"tilt": (1.05, 0.0)}, 0.3, False, "tipped_over"),
+        ({"tilt": (1.05, 0.0)}, 0.3, True, "fell"),
+        ({"tilt": (0.0, 0.7)}, 0.3, False, "tipped_over"),
+        ({"tilt": (0.0, 0.69), "height": -0.6}, 0.3, False, "airborne"),
+        ({"tilt": (0.0, 0.7), "touches": False}, 0.3, False, "airborne"),
         ({"height": -0.51, "past_end": True}, 0.0, False, "sunk"),
         ({"height": -0.49, "past_end": True}, 0.0, False, "end_of_slope"),
     ],
@@ -76,7 +76,7 @@ def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge:
 def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied: bool, outcome: str | None) -> None:
     """Leaning by more than 60°, on the snow by more than 40° ahead, 0.3 s in the air, sunk, off the slope, in order."""
     scenario = SimpleNamespace(skier=object() if skied else None)
-    usual: dict[str, Any] = {"leaning": 0.0, "pitching": 0.0, "height": 0.0, "past_end": False}
+    usual: dict[str, Any] = {"tilt": (0.0, 0.0), "height": 0.0, "past_end": False}
     usual |= {"touches": True, "drive": None}
     stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))
     assert simulated_run._ended(stub, flying) == outcome

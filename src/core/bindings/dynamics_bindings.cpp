@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "bindings/arrays.hpp"
 #include "dynamics/dynamics.hpp"
@@ -22,16 +23,6 @@ FlexibleSki flexible_ski(const Array& boot, const Array& axes, const Array& unkn
   out.coupling = copied(coupling);
   out.damping = damping;
   out.prepare();
-  return out;
-}
-
-// The unknowns of all skis, one after the other, without the empty places between them.
-std::vector<double> of_beams(const Layout& layout, const Numbers& numbers) {
-  std::vector<double> out;
-  for (int k = 0; k < layout.beams(); k++) {
-    const double* from = numbers.data() + layout.first(k);
-    out.insert(out.end(), from, from + layout.size(k));
-  }
   return out;
 }
 
@@ -66,23 +57,16 @@ void set_push(Dynamics& self, const Array& force, const Array& at) {
   self.set_push({force.data()[0], force.data()[1], force.data()[2]}, {at.data()[0], at.data()[1], at.data()[2]});
 }
 
-// Force and moment of each ski on its boot, (skis, 6), in its axes.
-Result boot_wrench(const Dynamics& self) {
-  std::vector<double> all;
-  for (int k = 0; k < self.layout().beams(); k++)
-    for (int part = 0; part < 2; part++)
-      all.insert(all.end(), self.boot_wrench(k)[part].begin(), self.boot_wrench(k)[part].end());
-  return array(std::move(all), {std::size_t(self.layout().beams()), BODY});
+// Motion of a boot against the body: place, rows of the axes, velocity and angular velocity.
+void add_boot(const FlexibleSki& ski, std::vector<double>& out) {
+  for (const Vector3* each : {&ski.boot, &ski.axes[0], &ski.axes[1], &ski.axes[2], &ski.velocity, &ski.turning})
+    out.insert(out.end(), each->begin(), each->end());
 }
 
-// Motion of the boots against the body: place, rows of the axes, velocity and angular velocity, (skis, 18).
+// Of all boots, (skis, 18).
 Result boots(const Dynamics& self) {
   std::vector<double> all;
-  for (int k = 0; k < self.layout().beams(); k++) {
-    const FlexibleSki& ski = self.stage(k);
-    for (const Vector3* each : {&ski.boot, &ski.axes[0], &ski.axes[1], &ski.axes[2], &ski.velocity, &ski.turning})
-      all.insert(all.end(), each->begin(), each->end());
-  }
+  for (int k = 0; k < self.layout().beams(); k++) add_boot(self.stage(k), all);
   return array(std::move(all), {std::size_t(self.layout().beams()), 18});
 }
 
@@ -91,46 +75,35 @@ void set_pose(Dynamics& self, const Array& position, const Array& rotation) {
   std::copy_n(rotation.data(), 9, &self.state.rotation[0][0]);
 }
 
-Result bend_of(const Dynamics& self) {
-  std::vector<double> all = of_beams(self.layout(), self.state.bend);
-  const std::size_t n = all.size();
-  return array(std::move(all), {n});
-}
-
-Result along_of(const Dynamics& self, int k) {
-  const Along& a = self.along(k);
-  std::vector<double> all(a.depth);
-  all.insert(all.end(), a.force.begin(), a.force.end());
-  all.insert(all.end(), a.shear.begin(), a.shear.end());
-  const std::size_t n = a.depth.size();
-  return array(std::move(all), {3, n});
-}
-
-// Forces of the snow on each ski along the edge, of friction across it and off the surface, (skis, 3).
-Result pushes_of(const Dynamics& self) {
-  std::vector<double> all;
-  for (int k = 0; k < self.layout().beams(); k++) all.insert(all.end(), self.along(k).push, self.along(k).push + 3);
-  return array(std::move(all), {std::size_t(self.layout().beams()), 3});
-}
-
-nb::tuple energies_of(const Dynamics& self) {
+// The present moment as one row: motion, energies and works, then of each ski in turn its forces on the whole, depth
+// and forces along it, bend, boot, and force and moment on the boot (not a number where its inertia is unknown).
+Result moment_of(const Dynamics& self) {
+  const auto& state = self.state;
   const Energies e = self.total_energies();
-  return nb::make_tuple(e.kinetic, e.potential, e.elastic);
-}
-
-nb::tuple work_of(const Dynamics& self) {
-  const Work& w = self.work();
-  return nb::make_tuple(w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping, w.boots, w.push);
-}
-
-nb::tuple snow_store_of(const Dynamics& self) {
   const SnowStore& s = self.snow_store();
-  return nb::make_tuple(s.pressure, s.shear, s.friction, s.delayed);
-}
-
-nb::tuple snow_losses_of(const Dynamics& self) {
-  const SnowAccount& s = self.snow_losses();
-  return nb::make_tuple(s.penetration.total, s.shear.total, s.friction.total, s.rate.total, s.owed());
+  const SnowAccount& l = self.snow_losses();
+  std::vector<double> out{self.time};
+  const auto add = [&](const auto* from, std::size_t count) { out.insert(out.end(), from, from + count); };
+  add(state.position.data(), 3), add(&state.rotation[0][0], 9), add(state.rate.data(), BODY);
+  for (const double each : {e.kinetic, e.potential, e.elastic, s.pressure, s.shear, s.friction, s.delayed,
+                            l.penetration.total, l.shear.total, l.friction.total, l.rate.total, l.owed()})
+    out.push_back(each);
+  const Work& w = self.work();
+  for (const double each : {w.shear, w.friction, w.normal, w.drag, w.damping, w.snow_damping, w.boots, w.push})
+    out.push_back(each);
+  for (int k = 0; k < self.layout().beams(); k++) {
+    const Along& along = self.along(k);
+    add(along.push, 3);
+    for (const auto* each : {&along.depth, &along.force, &along.shear}) add(each->data(), each->size());
+    add(state.bend.data() + self.layout().first(k), std::size_t(self.layout().size(k)));
+    add_boot(self.stage(k), out);
+    if (const Vector3* wrench = self.boot_wrench(k))
+      add(wrench[0].data(), 3), add(wrench[1].data(), 3);
+    else
+      out.insert(out.end(), BODY, std::numeric_limits<double>::quiet_NaN());
+  }
+  const std::size_t size = out.size();
+  return array(std::move(out), {size});
 }
 
 nb::tuple counts_of(const Dynamics& self) {
@@ -185,7 +158,6 @@ void bind_dynamics(nb::module_& m) {
       .def("move_boots", &move_boots)
       .def("hold_body", &Dynamics::hold_body)
       .def("set_push", &set_push)
-      .def_prop_ro("boot_wrench", &boot_wrench, nb::rv_policy::automatic)
       .def_prop_ro("boots", &boots, nb::rv_policy::automatic)
       .def("settle", &Dynamics::settle, nb::call_guard<nb::gil_scoped_release>())
       .def("begin", &Dynamics::begin, nb::call_guard<nb::gil_scoped_release>())
@@ -195,15 +167,9 @@ void bind_dynamics(nb::module_& m) {
       .def(
           "copy", [](const Dynamics& self) { return Dynamics(self); }, nb::keep_alive<0, 1>())  // same contact
       .def("assign", [](Dynamics& self, const Dynamics& other) { self = other; })
-      .def_prop_ro("bend", &bend_of, nb::rv_policy::automatic)
-      .def("along", &along_of)
-      .def_prop_ro("pushes", &pushes_of, nb::rv_policy::automatic)
-      .def_prop_ro("snow_store", &snow_store_of)
-      .def_prop_ro("snow_losses", &snow_losses_of)
+      .def_prop_ro("moment", &moment_of, nb::rv_policy::automatic)
       .def_prop_ro("touches", &Dynamics::touches)
       .def_prop_ro("next_step", &Dynamics::next_step)
-      .def_prop_ro("energies", &energies_of)
-      .def_prop_ro("work", &work_of)
       .def_prop_ro("counts", &counts_of);
   bind_motion(bound);
 }

@@ -33,6 +33,7 @@ Dynamics::Dynamics(Body body, SnowContact& contact, const StepRule& rule)
   system_ = BorderedSystem(layout_, contact.kernels().band);
   end_.poses.resize(body_.skis.size());
   end_.motions.resize(body_.skis.size());
+  observe();
 }
 
 Dynamics::Formula Dynamics::formula(double h) const {

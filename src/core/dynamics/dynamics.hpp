@@ -65,8 +65,8 @@ class Dynamics {
   void hold_body() { held_ = true; }
   void set_push(const Vector3& force, const Vector3& at);
   // Force and moment of a ski on its boot, about it in its axes, at the last moment that `advance` or `begin` reached
-  // (6).
-  const Vector3* boot_wrench(int k) const { return boot_[std::size_t(k)].data(); }
+  // (6); null where the inertia of the skis is unknown.
+  const Vector3* boot_wrench(int k) const { return boot_.empty() ? nullptr : boot_[std::size_t(k)].data(); }
   Energies total_energies() const;
   const FlexibleSki& stage(int k) const { return body_.skis[std::size_t(k)]; }
 

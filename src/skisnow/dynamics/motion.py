@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
@@ -14,7 +15,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..compiled import core
 from ..contact import ContactState, SnowContact
-from .body import Body, shaped
+from .body import Body, FlexibleSki, shaped
 from .boots import BootMotion
 
 STEPS_AT_ONCE: Final = 1000
@@ -99,6 +100,34 @@ class DynamicsState:
 
     motion: core.Dynamics
     contact: ContactState
+
+
+MOMENT: Final[Mapping[str, slice]] = {
+    "position": slice(1, 4),
+    "rotation": slice(4, 13),
+    "velocity": slice(13, 19),
+    "energies": slice(19, 22),
+    "snow_energies": slice(22, 26),
+    "snow_losses": slice(26, 31),
+    "work": slice(31, 37),
+    "work_given": slice(37, 39),
+}
+"""Places in a row of `Dynamics.moment` after the time and before its skis."""
+_OF_SKIS: Final[int] = MOMENT["work_given"].stop
+
+
+def moment_parts(rows: FloatArray, skis: Sequence[FlexibleSki]) -> dict[str, FloatArray]:
+    """Parts of rows (..., width) of `Dynamics.moment`, each named and shaped as the property of `Dynamics`."""
+    shape = rows.shape[:-1]
+    parts: dict[str, FloatArray] = {"time": rows[..., 0]} | {name: rows[..., at] for name, at in MOMENT.items()}
+    parts["rotation"] = parts["rotation"].reshape(*shape, 3, 3)
+    of_skis, begin = rows[..., _OF_SKIS:].reshape(*shape, len(skis), -1), 0
+    shapes = {"pushes": (3,), "along": (3, len(skis[0].unknown)), "beam_dofs": (len(skis[0].mass),)}
+    for name, of_ski in (shapes | {"boots": (6, 3), "boot_wrench": (6,)}).items():
+        end = begin + math.prod(of_ski)
+        parts[name] = of_skis[..., begin:end].reshape(*shape, len(skis), *of_ski)
+        begin = end
+    return parts
 
 
 class Dynamics:
@@ -199,9 +228,7 @@ class Dynamics:
 
         In the ski's axes, about the boot; not a number for a ski without inertia.
         """
-        if not self.feels_boots:
-            return np.full((len(self.body.skis), 6), np.nan)
-        return self._core.boot_wrench
+        return self._part("boot_wrench")
 
     def find_equilibrium(self) -> float:
         """Move to static equilibrium in height, roll, pitch and deflection; Newton's last step, the residual (m).
@@ -264,13 +291,21 @@ class Dynamics:
         return self._core.velocity
 
     @property
+    def moment(self) -> FloatArray:
+        """All of the present moment as one row of numbers; `moment_parts` names them."""
+        return self._core.moment
+
+    def _part(self, name: str) -> FloatArray:
+        return moment_parts(self.moment, self.body.skis)[name]
+
+    @property
     def beam_dofs(self) -> FloatArray:
         """Degrees of freedom of the beams, (skis, n): deflection (m), its slope and twist (rad) at each free node."""
-        return self._core.bend.reshape(len(self.body.skis), -1)
+        return self._part("beam_dofs")
 
     def along(self, ski: int) -> FloatArray:
         """At the last time reached: depth of the edge (m), force and shear per length (N/m) at the nodes, (3, m)."""
-        return self._core.along(ski)
+        return self._part("along")[ski]
 
     @property
     def pushes(self) -> FloatArray:
@@ -278,7 +313,7 @@ class Dynamics:
 
         Along the edge, forward positive; of friction across it, and off the surface.
         """
-        return self._core.pushes
+        return self._part("pushes")
 
     @property
     def touches(self) -> bool:
@@ -286,35 +321,35 @@ class Dynamics:
         return bool(self._core.touches)
 
     @property
-    def energies(self) -> tuple[float, float, float]:
+    def energies(self) -> tuple[float, ...]:
         """Kinetic, potential, elastic in the skis (J)."""
-        return self._core.energies
+        return tuple(self._part("energies").tolist())
 
     @property
-    def snow_energies(self) -> tuple[float, float, float, float]:
+    def snow_energies(self) -> tuple[float, ...]:
         """Energies that the snow can give back: pressure, shear at edges, friction that sticks, delayed depth (J)."""
-        return self._core.snow_store
+        return tuple(self._part("snow_energies").tolist())
 
     @property
-    def snow_losses(self) -> tuple[float, float, float, float, float]:
+    def snow_losses(self) -> tuple[float, ...]:
         """Losses since `begin` (J): penetration, shear, friction, damping with delayed depth; then the energy owed.
 
         A loss never falls. Owed is the energy that the snow gave beyond the energy that it had stored.
         """
-        return self._core.snow_losses
+        return tuple(self._part("snow_losses").tolist())
 
     @property
-    def work(self) -> tuple[float, float, float, float, float, float]:
+    def work(self) -> tuple[float, ...]:
         """Since `begin` (J): taken by shear and friction, given by the normal force, taken by air and skis.
 
         The last: the part of the normal force's work that the snow's dashpot absorbed.
         """
-        return self._core.work[:6]
+        return tuple(self._part("work").tolist())
 
     @property
-    def work_given(self) -> tuple[float, float]:
+    def work_given(self) -> tuple[float, ...]:
         """Since `begin` (J), by who moves the boots, and by the push."""
-        return self._core.work[6:]
+        return tuple(self._part("work_given").tolist())
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:

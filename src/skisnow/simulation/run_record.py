@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from .._support.arrays import FloatArray
 from ..dynamics import Ended
+from ..dynamics.motion import MOMENT, moment_parts
 from ..scenario.terrain import down_and_left, heights_of, normals_of
 from .moving_boots import BootHistory
 from .run import GIVEN, LOST, STORED, Outcome, SkiHistory
@@ -20,45 +21,24 @@ from .run_setup import Setup
 GAINED_SHARE, GAINED = 0.05, 10.0
 """Share of the energy exchanged, and energy (J), that may seem to be gained before numbers have diverged (modelling
 assumption)."""
-_MECHANICAL = 3  # kinetic, potential, elastic in the skis
 _OUTCOMES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small", Ended.NOT_FINITE: "not_finite"}
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(NamedTuple):
     """Values of one output time, SI.
 
     Attributes
     ----------
-    time, place, attitude, velocity
-        Motion of the boots' middle, in space: (), (3,), (3, 3), (3,).
-    energies
-        Kinetic, potential, elastic in the skis and in the snow, in its delayed depth; lost to penetration, shear,
-        friction, drag, damping of the skis and of the snow since the start; given by boots and by pushes (J), (13,).
-    along
-        Depth of the edge (m), force and shear per length (N/m) at the nodes, for each ski (3, m).
-    push
-        Forces of the snow on each ski along the edge, forward positive; of friction across it, and off the surface (N),
-        (skis, 3).
-    dofs
-        Unknowns of the beams at the free nodes (skis, n): deflection (m), its slope and twist (rad).
-    body
-        Place of the body's origin and its axes as columns, in space, (3,) and (3, 3).
-    boots, wrench
-        In the body's axes, (skis, 5, 3), see `Dynamics.boots`; force and moment of the ski on it in its own (skis, 6).
+    place, attitude, velocity
+        Motion of the boots' middle, in space: (3,), (3, 3), (3,).
+    row
+        All of the sledge and its skis, see `Dynamics.moment`.
     """
 
-    time: float
     place: FloatArray
     attitude: FloatArray
     velocity: FloatArray
-    energies: tuple[float, ...]
-    along: tuple[FloatArray, ...]
-    push: FloatArray
-    dofs: FloatArray
-    body: tuple[FloatArray, FloatArray]
-    boots: FloatArray
-    wrench: FloatArray
+    row: FloatArray
 
 
 @dataclass(slots=True)
@@ -82,37 +62,25 @@ class Record:
         ended = self.setup.advance(moment, self.run_length, is_over=is_over)
         last, present = self._moments[-1], self._present()
         self.run_length += _arc(last, present)
-        if (replace and len(self._moments) > 1) or present.time <= last.time:
+        if (replace and len(self._moments) > 1) or present.row[0] <= last.row[0]:
             self._moments[-1] = present
         else:
             self._moments.append(present)
         return _OUTCOMES.get(ended)
 
     def _present(self) -> Moment:
-        setup, dynamics = self.setup, self.setup.dynamics
-        skis = range(len(dynamics.body.skis))
-        along = tuple(dynamics.along(k) for k in skis)
-        return Moment(
-            dynamics.time, setup.place, setup.attitude, setup.velocity, self._energies(), along, dynamics.pushes,
-            dynamics.beam_dofs,
-            (dynamics.position, dynamics.rotation), dynamics.boots, dynamics.boot_wrench,
-        )  # fmt: skip
-
-    def _energies(self) -> tuple[float, ...]:
-        """Stored energies, losses since the start and energies given (J)."""
-        dynamics = self.setup.dynamics
-        pressure, sheared, stuck, delayed = dynamics.snow_energies
-        _, _, _, drag, damping, _ = dynamics.work
-        penetration, shear, friction, rate, _ = dynamics.snow_losses
-        lost = (penetration, shear, friction, drag, damping, rate)
-        return (*dynamics.energies, pressure + sheared + stuck, delayed, *lost, *dynamics.work_given)
+        setup, row = self.setup, self.setup.dynamics.moment
+        if setup.drive is not None:
+            return Moment(setup.place, setup.attitude, setup.velocity, row)
+        attitude = row[MOMENT["rotation"]].reshape(3, 3)
+        return Moment(row[MOMENT["position"]], attitude, attitude @ row[MOMENT["velocity"]][:3], row)
 
     @property
     def gains_energy(self) -> bool:
         """True if motion, height and deflection have more energy than at the start: numbers have diverged."""
-        first, last = self._moments[0].energies, self._moments[-1].energies
-        energy_given = sum(last[-len(GIVEN) :])
-        gained = sum(last[:_MECHANICAL]) - sum(first[:_MECHANICAL]) - energy_given
+        first, last = (moment.row[MOMENT["energies"]].tolist() for moment in (self._moments[0], self._moments[-1]))
+        energy_given = sum(self._moments[-1].row[MOMENT["work_given"]].tolist())
+        gained = sum(last) - sum(first) - energy_given
         exchanged = first[0] + max(0.0, first[1] - last[1]) + abs(energy_given)
         return not gained <= GAINED_SHARE * exchanged + GAINED
 
@@ -124,13 +92,14 @@ class Record:
 
     def histories(self) -> dict[str, Any]:
         """The arrays of a `Run`."""
-        time, place, attitude, velocity, energies, along, push, dofs = (
-            np.array([getattr(moment, name) for moment in self._moments]) for name in _ARRAYS
-        )
+        place, attitude, velocity, rows = map(np.array, zip(*self._moments, strict=True))
+        parts = moment_parts(rows, self.setup.dynamics.body.skis)
+        time, energies = parts["time"], stored_and_lost(parts)
         normal = normals_of(self.setup.scenario.slope, place[:, 0], place[:, 1])
-        bent = at_nodes(dofs, self.setup.dynamics.body.skis[0].unknown)
-        skis = dict(zip(_ALONG, (*np.moveaxis(along, 2, 0), bent[..., 0], bent[..., 2]), strict=True))
-        node, history = self.setup.node, self._boots()
+        bent = at_nodes(parts["beam_dofs"], self.setup.dynamics.body.skis[0].unknown)
+        along = np.moveaxis(parts["along"], 2, 0)
+        skis = dict(zip(_ALONG, (*along, bent[..., 0], bent[..., 2]), strict=True))
+        node, history = self.setup.node, self._boots(parts)
         depth = _at_boot(node, skis["edge_depth"])
         fixed = self.setup.drive is None
         track = self._tracks(place, attitude, depth) if fixed else self._moved_tracks(history, depth)
@@ -142,7 +111,7 @@ class Record:
                 shear=skis["shear_per_length"],
                 bending=skis["bending"],
                 twist=skis["twist"],
-                push=push,
+                push=parts["pushes"],
             ),
             history,
         )
@@ -166,11 +135,10 @@ class Record:
         along = replace(along, force=along.force + thrust)
         return along.force, snow_forces(along, boots, normal=normal, ski=scenario.flexing_ski)
 
-    def _boots(self) -> BootHistory:
+    def _boots(self, parts: Mapping[str, FloatArray]) -> BootHistory:
         """The boots in space."""
         forward, height = self.setup.scenario.sledge.centre_of_mass
-        origin, axes = (np.array([moment.body[part] for moment in self._moments]) for part in (0, 1))
-        boots, wrench = (np.array([getattr(moment, name) for moment in self._moments]) for name in ("boots", "wrench"))
+        origin, axes, boots, wrench = (parts[name] for name in ("position", "rotation", "boots", "boot_wrench"))
         return BootHistory(
             place=origin[:, None] + np.einsum("nab,nkb->nka", axes, boots[:, :, 0]),
             axes=np.einsum("nab,nkcb->nkca", axes, boots[:, :, 1:4]),
@@ -223,6 +191,16 @@ def side_of_load(lean: FloatArray, depth: FloatArray, width: float) -> FloatArra
     return np.asarray(-0.5 * width * np.clip(difference, -1.0, 1.0))
 
 
+def stored_and_lost(parts: Mapping[str, FloatArray]) -> FloatArray:
+    """Energies by the names of `STORED`, `LOST` and `GIVEN` (J), (n, 13), from parts of n moments."""
+    pressure, sheared, stuck, delayed = parts["snow_energies"].T
+    penetration, shear, friction, rate, _ = parts["snow_losses"].T
+    drag, damping = parts["work"].T[3:5]
+    stored = (*parts["energies"].T, pressure + sheared + stuck, delayed)
+    lost = (penetration, shear, friction, drag, damping, rate)
+    return np.stack([*stored, *lost, *parts["work_given"].T], axis=1)
+
+
 def at_nodes(dofs: FloatArray, unknown: FloatArray) -> FloatArray:
     """Unknowns of the free nodes (..., skis, n) at all nodes, zero where held: (..., skis, nodes, 3)."""
     out = np.zeros((*dofs.shape[:-1], len(unknown), 3))
@@ -240,14 +218,13 @@ def _at_boot(node: FloatArray, values: FloatArray) -> FloatArray:
 def _arc(one: Moment, other: Moment) -> float:
     """Length of path between two moments (m), by the velocities at both ends and the chord."""
     chord = math.dist(one.place, other.place)
-    before, after = math.hypot(*one.velocity), math.hypot(*other.velocity)
+    before, after = math.hypot(*one.velocity.tolist()), math.hypot(*other.velocity.tolist())
     if before * after == 0.0:
         return chord
     angle2 = max(0.0, 2.0 * (1.0 - float(one.velocity @ other.velocity) / (before * after)))
     return chord * (1.0 + angle2 / 24.0) if angle2 < 1.0 else chord
 
 
-_ARRAYS = ("time", "place", "attitude", "velocity", "energies", "along", "push", "dofs")
 _ALONG = ("edge_depth", "force_per_length", "shear_per_length", "bending", "twist")
 
 

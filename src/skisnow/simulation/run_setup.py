@@ -150,7 +150,7 @@ class Setup:
     @property
     def speed(self) -> float:
         """Speed of the boots' middle (m/s)."""
-        return float(np.linalg.norm(self.dynamics.velocity[:3] if self.drive is None else self.velocity))
+        return math.hypot(*(self.dynamics.velocity[:3] if self.drive is None else self.velocity).tolist())
 
     @property
     def touches(self) -> bool:
@@ -158,14 +158,10 @@ class Setup:
         return self.dynamics.touches
 
     @property
-    def leaning(self) -> float:
-        """Angle between the sledge's axis upwards and the snow's normal (rad)."""
-        return math.acos(min(1.0, max(-1.0, float(self.attitude[:, 2] @ self._slope_at_boots()[1]))))
-
-    @property
-    def pitching(self) -> float:
-        """Angle between the sledge's axis ahead and the snow's surface (rad)."""
-        return math.asin(min(1.0, abs(float(self.attitude[:, 0] @ self._slope_at_boots()[1]))))
+    def tilt(self) -> tuple[float, float]:
+        """Angles between the sledge's axis upwards and the snow's normal, its axis ahead and the surface (rad)."""
+        ahead, _, up = (self._slope_at_boots()[1] @ self.attitude).tolist()
+        return math.acos(min(1.0, max(-1.0, up))), math.asin(min(1.0, abs(ahead)))
 
     @property
     def height(self) -> float:

@@ -303,7 +303,8 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:
-    if setup.leaning > TIPPED or (setup.touches and setup.drive is None and setup.pitching > PITCHED):
+    leaning, pitching = setup.tilt
+    if leaning > TIPPED or (pitching > PITCHED and setup.drive is None and setup.touches):
         return "tipped_over" if setup.scenario.skier is None else "fell"
     if flying >= LONGEST_FLIGHT:
         return "airborne"

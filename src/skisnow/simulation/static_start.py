@@ -106,7 +106,8 @@ def largest_standing(setup: Setup, value: float, sledge_with: Callable[[float], 
 def _stands(setup: Setup, sledge: RigidSledge) -> bool:
     trial = laid_out(replace(setup.scenario, sledge=sledge), setup.snow)
     rests = trial.dynamics.find_equilibrium() <= AT_REST
-    return rests and trial.leaning <= TIPPED and trial.pitching <= PITCHED
+    leaning, pitching = trial.tilt
+    return rests and leaning <= TIPPED and pitching <= PITCHED
 
 
 def _two_digits(value: float) -> float:
