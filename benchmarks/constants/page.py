@@ -79,7 +79,7 @@ def _head(count: int, varied: int) -> Iterator[str]:
     yield f"is 7 mm after 46 m. A change of S_f by 0.1 % moves ends by {ways}. A constant of the solver should not"
     yield "move them by more than the larger of both. These do:"
     yield ""
-    yield "* Steps: `DOWN`, `MILNE`, `SAFETY`, `UP` and `SLOW`. Lines and parts: `MARGIN`, `MOST_TURN`, `STEEP`,"
+    yield "* Steps: `DOWN`, `MILNE`, `SAFETY`, `UP` and `SLOW`. Lines and parts: `MARGIN`, `MOST_TURN`,"
     yield "  `PART_ACROSS` and `PART_ALONG`."
     yield "* `ELEMENTS` in the skid: it is the key `solver.elements`. `SHEAR_DISPLACEMENT`, `CLAMP_LENGTH` and"
     yield "  `CAMBER_ROUNDING` are keys of snow, scenario and ski. Other constants of `ski` are shape."
@@ -97,9 +97,8 @@ def _head(count: int, varied: int) -> Iterator[str]:
     yield "  how many parts a step has."
     yield "* The motion is not that sensitive: 10⁻⁶ more speed at the start moves the skid by 0.4 mm. A tolerance of"
     yield "  the groove of 10⁻⁸ moves it by 0.7 mm."
-    yield "* `MARGIN` moves the skid by at most 18 mm and the skier by 5 mm with fixed steps. `MOST_TURN` and `STEEP`,"
-    yield "  halved, still move the skier by 57 and 27 mm: lines laid anew, and where a pitched ski crosses them."
-    yield "  With `STEEP` at 0 the skier moves by 50 mm and the carve by 0.1 mm, in the same processor time."
+    yield "* `MARGIN` moves the skid by at most 18 mm and the skier by 5 mm with fixed steps. `MOST_TURN`, halved,"
+    yield "  still moves the skier by 57 mm: lines laid anew."
     yield ""
     yield from _parts()
 

@@ -81,18 +81,12 @@ def test_shear_gives_back_no_more_than_it_stored(law: str) -> None:
     assert counted == SEEDS
 
 
-@pytest.mark.parametrize("law", [law for law in allowed_keys.LAWS if law != "machining"])
-def test_pressing_pays_for_what_shear_returns_beyond_its_store(law: str) -> None:
-    """Snow of ten times the strength that was ever measured, in which an edge that is displaced is pressed deeper.
-
-    The thrust of machining is a part of the normal force, so that pressing is not known there.
-    """
+@pytest.mark.parametrize("law", allowed_keys.LAWS)
+def test_a_tail_that_ploughs_gains_no_energy_from_the_shear(law: str) -> None:
+    """Soft skis that bend by 65 mm at a pitch of 14°: the bent edge crosses a line 16 mm before the straight one."""
     found = moments(allowed_keys.changes(72_006, law), count=8)
-    pressed = -found["normal"] - sum(found[name] - found[name][0] for name in ("pressure", "delayed"))
-    returned = -found["work"] - found["held"].max()
-    assert returned.max() > 0.0
-    assert (returned <= pressed).all()
-    assert found["owed"].max() <= 0.1 * (found["pressure"] + found["held"]).max()
+    assert (-found["work"]).max() <= 0.0
+    assert found["held"].max() > 0.0
 
 
 @pytest.mark.slow

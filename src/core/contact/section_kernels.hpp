@@ -387,19 +387,19 @@ struct BasePieces {
 
 // [cross_bent_edge] The straight ski's stations, which `cross_lines` gives, miss the lines under a bent ski that is
 // pitched against the surface: by its deflection times `ahead.z / ahead.x`. What is missed, m, leaves the place of a
-// curved edge wrong by ½ κ m², and its rate by m dκ/dt: a shovel that ploughs would gain energy from the shear.
-// Newton's method on the bent edge corrects the stations. At a slope below STEEP both are lost in the other errors of a
-// place.
+// curved edge wrong by ½ κ m², and its rate by m dκ/dt: a shovel or tail that ploughs would gain energy from the shear.
+// Newton's method on the bent edge corrects the stations. Below MISSED both are lost in the other errors of a place.
 template <class V>
 void cross_bent_edge(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
-  constexpr double STEEP = 0.25, FULLY = 0.35, LONGEST = 0.1;  // LONGEST: of a correction (m)
+  constexpr double MISSED = 0.005, FULLY = 0.007, LONGEST = 0.1;  // (m); LONGEST: of a correction
   constexpr int STEPS = 3;
-  if (pose.beam.empty()) return;
+  double most = 0.0;  // deflection
+  for (std::size_t i = 0; i < pose.beam.size(); i += 3) most = std::max(most, std::fabs(pose.beam[i]));
   for_lanes<V>(s, lines, [&](int i, int) {
     const V up = load<V>(s[LINE_AHEAD_2] + i), forwards = load<V>(s[LINE_AHEAD_0] + i);
-    if (!any(absolute(up) > STEEP * absolute(forwards))) return;  // most lines: no division
-    const V slope = absolute(V(up / forwards));
-    const V straight = load<V>(s[STATION] + i), weight = within((slope - STEEP) / (FULLY - STEEP), 0.0, 1.0);
+    if (!any(most * absolute(up) > MISSED * absolute(forwards))) return;  // most lines: no division
+    const V missed = most * absolute(V(up / forwards));
+    const V straight = load<V>(s[STATION] + i), weight = within((missed - MISSED) / (FULLY - MISSED), 0.0, 1.0);
     const V straight_side = load<V>(s[GRIP_REACH] + i);
     V station = straight, side = straight_side;
     for (int step = 0; step < STEPS; step++) {
