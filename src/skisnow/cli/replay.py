@@ -66,6 +66,8 @@ def write_pages(options: argparse.Namespace) -> int:
         options.parser.error("--fall-line-azimuth-deg and --starts-at-s place a track: name it with --track")
     if options.other is not None and options.ghost is not None:
         options.parser.error("one second run is shown: name it behind the first one or with --ghost")
+    if options.out is not None and options.out.suffix.lower() == ".html":
+        options.parser.error(f"--out names the folder of replay.html: write --out {options.out.parent}")
     second = options.other or options.ghost
     with announced(f"reading {options.folder}"):
         from ..replay import replay_of_file
