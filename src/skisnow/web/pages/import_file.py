@@ -32,6 +32,8 @@ NONE: Final = "-"
 LEFT_OUT: Final = Message("excluded")
 TEXT: Final = Message("kept as text")
 _SHOWN_ROWS: Final = 4
+_READABLE: Final = 6
+"""Characters of a number with five digits and a decimal sign."""
 QUESTIONS: Final = {
     "table": template("Which table begins at {key}?"),
     "column": template("Which column is {key}?"),
@@ -232,4 +234,14 @@ def _show_rows(table: ImportedTable) -> None:
                     for name in names:
                         with ui.element("td"):
                             text = row.cells.get(name, "")
-                            ui.label(number_said(text) if name in numbers else text)
+                            ui.label(number_said(_five_digits(text)) if name in numbers else text)
+
+
+def _five_digits(number: str) -> str:
+    """A number that is short enough to read; the stored one keeps all its digits.
+
+    >>> _five_digits("294.1995"), _five_digits("22.50"), _five_digits("1250000")
+    ('294.2', '22.50', '1250000')
+    """
+    shown = f"{float(number):.5g}" if len(number) > _READABLE else number
+    return number if "e" in shown else shown
