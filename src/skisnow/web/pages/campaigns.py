@@ -23,6 +23,7 @@ from ..elements import Words, button, link, named
 from ..layout import framed, heading, sentence
 from ..page_requests import analysis, correcting, entering, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
+from ..replay_addresses import LIST as REPLAYS
 from ..transfer import IMPORT
 from ..words import TABLES, language_of, minute_words, said
 
@@ -53,6 +54,9 @@ def add_page(lab: Lab) -> None:
         with framed(Message("Campaigns"), here=PATH):
             if added:
                 sentence(Message("The campaign is imported, byte for byte."), "good").props("role=status")
+                if added in {campaign.id for campaign in lab.store.list()}:
+                    with ui.element("div").classes("acts"):
+                        link(Message("Analysis of this campaign"), analysis("kept", added), "main")
             _first_minute()
             is_first = not Journals(lab.store).list() and not lab.store.list()
             if is_first:
@@ -187,3 +191,5 @@ def _import_form(lab: Lab) -> None:
         with upload_form(IMPORT).classes("acts"):
             file_input("files", text[0], f"import-{id_}", f"multiple {further}")
             submit_button(text[1])
+    with ui.element("div").classes("acts"):
+        link(Message("Add a measured track"), REPLAYS)

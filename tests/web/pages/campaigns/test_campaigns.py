@@ -69,12 +69,14 @@ def test_an_imported_campaign_leads_to_its_pages_and_announces_its_import(desk: 
     id_ = kept(desk, tmp_path / "one")
     with desk.lab.store.engine.begin() as connection:
         connection.exec_driver_sql("UPDATE campaign SET n_errors = 1, n_warnings = 3")
-    page = desk.open("/?added=1")
+    page = desk.open(f"/?added={id_}")
     page.shows(" · 1 error, 3 warnings")
     links = [page.link(text) for text in ("Correct", "Analysis", "Export")]
     assert links == [f"/correct/{id_}", f"/analysis/kept/{id_}", f"/export/kept/{id_}.zip"]
     (announced,) = (each for each in page.of(ui.label) if "good" in each.classes)
     assert announced.props["role"] == "status"
+    assert page.link("Analysis of this campaign") == f"/analysis/kept/{id_}"
+    assert "Analysis of this campaign" not in "".join(desk.open("/?added=1").outline())
     assert not any("good" in each.classes for each in desk.open("/").of(ui.label))
 
 
