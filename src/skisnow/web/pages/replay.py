@@ -62,7 +62,7 @@ def add_page(lab: Lab) -> None:
                 sentence(Message("Simulate one, then it can be watched here."))
             if names:
                 _side_by_side_form({name: runs.title(name) for name in names}, tracks.names(), track)
-            _track_form()
+            _track_form(is_open=not tracks.names())
             if tracks.names():
                 heading(Message("Measured tracks"), 2)
             for name in tracks.names():
@@ -114,9 +114,9 @@ def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:
             ui.element("option").props(properties + (" selected" if name == chosen else ""))
 
 
-def _track_form() -> None:
+def _track_form(*, is_open: bool) -> None:
     """Form for a measured track."""
-    with folded(Message("Add a measured track")):
+    with folded(Message("Add a measured track"), is_open=is_open):
         sentence(
             Message(
                 "CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {largest_track_bytes} MB and {most_points} "

@@ -77,8 +77,11 @@ def test_two_runs_are_put_together_the_newest_over_the_one_before(desk: Desk, ru
 
 def test_a_track_that_was_imported_is_chosen_for_a_run_alone(desk: Desk, run_files: dict[str, bytes]) -> None:
     keep(desk.lab.runs, "older", run_files)
+    (form,) = desk.open("/replay").tagged("details")
+    assert "open" in form.props
     name = keep_track(desk.lab.runs)
     page = desk.open("/replay")
+    assert "open" not in page.tagged("details")[0].props
     assert page.outline()[2] == "h2 Side by side"
     assert options(page, "ghost") == [("", "none", True), ("older", "older", False)]
     assert options(page, "track") == [("", "none", True), (name, name, False)]
