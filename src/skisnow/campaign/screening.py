@@ -5,7 +5,7 @@ The flags of `NEED_HARDNESS` are set where hardness is estimated.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
@@ -78,12 +78,14 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
 
 
 def _any_reading(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    """True (m,) for series with at least one of the bad readings (n,)."""
     flagged = np.zeros(len(tests), dtype=np.bool_)
     flagged[tests.series_of_reading[bad]] = True
     return flagged
 
 
 def _flagged_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    """True (m,) for series with at least one of the bad readings of the unloading."""
     flagged = np.zeros(len(tests), dtype=np.bool_)
     if tests.unloading is not None:
         flagged[tests.unloading.series_of_reading[bad]] = True
@@ -111,6 +113,7 @@ def _step(values: FloatArray) -> FloatArray:
 
 
 def _any_step(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
+    """True (m,) for series with a bad reading (n,) after their first one."""
     within = bad.copy()
     within[tests.first[:-1]] = False  # a step from one series into the next
     counts = np.bincount(tests.series_of_reading[within], minlength=len(tests))
@@ -250,8 +253,12 @@ def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
     return Problem("mark", code, SHEAR.file, row, column, experiment, value, allowed, _effect_of_flag(campaign, code))
 
 
+_Cause: TypeAlias = tuple[int, str | None, str | None, str]
+"""Index of the reading that causes a flag, column, value (None without one of them), and the allowed values."""
+
+
 class _FlaggedReadings:
-    """Problems of penetration experiments with the reading that caused the flag."""
+    """Problems of penetration experiments; the method ``_CODE`` returns the cause of a flag in one experiment."""
 
     def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
         self._campaign = campaign
@@ -273,14 +280,14 @@ class _FlaggedReadings:
         """Depth in mm, as text without the unit."""
         return f"{self._tests.penetration_depth[reading] / MM:.10g}"
 
-    def _cancelled(self, index: int) -> tuple[int, str, str, str]:
+    def _cancelled(self, index: int) -> _Cause:
         return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNFLAGGED_STATUS
 
-    def _too_few_loads(self, index: int) -> tuple[int, str, str, str]:
+    def _too_few_loads(self, index: int) -> _Cause:
         first, end = self._tests.first[index : index + 2].tolist()
         return first, "load_N", str(end - first), Message("at least {count} load steps", count=FEWEST_LOADS)
 
-    def _loads_not_rising(self, index: int) -> tuple[int, str, str, str]:
+    def _loads_not_rising(self, index: int) -> _Cause:
         load = self._tests.series(index).load
         step = int(np.flatnonzero(np.diff(load) <= 0)[0])
         reading = int(self._tests.first[index]) + step + 1
@@ -291,17 +298,17 @@ class _FlaggedReadings:
             Message("more than the {load:.10g} N of the reading before", load=load[step]),
         )
 
-    def _depth_shrinks(self, index: int) -> tuple[int, str, str, str]:
+    def _depth_shrinks(self, index: int) -> _Cause:
         step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
         before = int(self._tests.first[index]) + step
         allowed = Message("at least the {depth} mm of the reading before", depth=self._depth(before))
         return before + 1, "depth_mm", self._depth(before + 1), allowed
 
-    def _zero_depth(self, index: int) -> tuple[int, str, str, str]:
+    def _zero_depth(self, index: int) -> _Cause:
         reading = int(self._largest[index])
         return reading, "depth_mm", self._depth(reading), _UNFLAGGED_ZERO
 
-    def _beyond_tool(self, index: int) -> tuple[int, str, str, str]:
+    def _beyond_tool(self, index: int) -> _Cause:
         series = self._tests.series(index)
         reading = int(self._tests.first[index]) + int(np.argmax(series.penetration_depth))
         allowed = Message(
@@ -311,14 +318,15 @@ class _FlaggedReadings:
         )
         return reading, "depth_mm", self._depth(reading), allowed
 
-    def _below_resolution(self, index: int) -> tuple[int, str, str, str]:
+    def _below_resolution(self, index: int) -> _Cause:
         reading = int(self._largest[index])
         return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
 
-    def _layered(self, index: int) -> tuple[int, str, None, str]:
+    def _layered(self, index: int) -> _Cause:
+        """Cause of the flag `layered`: the reading under the largest load, without a value."""
         return int(self._largest[index]), "depth_mm", None, _UNFLAGGED_LAYERED
 
-    def _creeps(self, index: int) -> tuple[int, str, str, str]:
+    def _creeps(self, index: int) -> _Cause:
         first, end = self._tests.first[index : index + 2].tolist()
         reading = first + int(np.flatnonzero(find_creep(self._campaign, self._tests)[first:end])[0])
         assert self._tests.depth_after is not None
@@ -331,7 +339,7 @@ class _FlaggedReadings:
         )
         return reading, "depth_after_mm", value, allowed
 
-    def _unloading_not_falling(self, index: int) -> tuple[int, str, str, str]:
+    def _unloading_not_falling(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_not_falling")
         return (
             reading,
@@ -340,12 +348,12 @@ class _FlaggedReadings:
             Message("less than the load of the reading before"),
         )
 
-    def _unloading_sinks(self, index: int) -> tuple[int, str, str, str]:
+    def _unloading_sinks(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_sinks")
         depth = f"{self._unloading.penetration_depth[reading] / MM:.10g}"
         return reading, "depth_mm", depth, "at most the depth of the reading before and one step of the gauge"
 
-    def _rebound_unresolved(self, index: int) -> tuple[int, str, None, str]:
+    def _rebound_unresolved(self, index: int) -> _Cause:
         return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNFLAGGED_REBOUND
 
     @property
@@ -357,5 +365,5 @@ class _FlaggedReadings:
         own = self._unloading.series_of_reading == index
         return int(np.flatnonzero(find_implausible_unloading(self._campaign, self._tests)[code] & own)[0])
 
-    def _hardness_outlier(self, index: int) -> tuple[int, None, None, str]:
+    def _hardness_outlier(self, index: int) -> _Cause:
         return int(self._largest[index]), None, None, _UNFLAGGED_OUTLIER

@@ -148,6 +148,7 @@ def _table(
 
 
 def _concerns(note: Note, sheet: str, with_tables: set[str]) -> bool:
+    """True for a note on the sheet, or on a sheet without tables."""
     return note.sheet == sheet or note.sheet not in with_tables
 
 
@@ -305,6 +306,7 @@ def _problems(name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTa
 
 
 def _at_source(name: str, problem: Problem, tables: Sequence[ImportedTable]) -> Problem:
+    """The problem with the sheet and row of the imported file instead of those of the CSV file."""
     places = [
         (table.section.sheet.name, row.source)
         for table in tables

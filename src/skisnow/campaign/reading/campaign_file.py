@@ -205,6 +205,7 @@ def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[
 
 
 def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
+    """Length (m) of each valid plate by name, and the names of all plates, invalid ones as well."""
     plates: dict[str, float] = {}
     names: set[str] = set()
     for entry in top.tables("plate"):

@@ -49,7 +49,7 @@ def _exclude() -> Schema:
 
 
 def _by_heading(words: str) -> Schema:
-    """Schema of texts by headings, for all tables or for one."""
+    """Schema of a mapping from headings to texts, for all tables or nested for one table; ``words`` describe it."""
     pairs = {"type": "object", "additionalProperties": {"type": "string"}}
     either: Schema = {"anyOf": [{"type": "string"}, pairs]}
     words = f"{words}; in a table of a table's name, such as penetration, for that one."
