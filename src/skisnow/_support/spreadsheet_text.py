@@ -133,7 +133,7 @@ def number(cell: str, mark: str = ".") -> float:
 
 
 def decimal_mark(groups: Iterable[Iterable[str]], *, separator: str) -> str:
-    """True if numbers are written with a decimal point or a decimal comma.
+    """Decimal mark of the numbers in the cells: a point or a comma.
 
     The first group of cells with a fraction decides, by its majority; where both are equally many, a file separated by
     commas has points and any other has commas. Without any fraction it is the point.

@@ -70,7 +70,7 @@ class Crew(ABC):
         return lost_workers_message() if isinstance(error, CancelledError) else None
 
     def require_alive(self) -> None:  # noqa: B027 - most have nothing to look after
-        """Called now and then while chunks are waited for; raises where none will come."""
+        """Raise an error if no worker can compute the chunks; called regularly during the wait."""
 
     @abstractmethod
     def end(self, *, at_once: bool) -> None:
@@ -116,6 +116,7 @@ class ProcessCrew(Crew):
         self._executor = None
 
     def _let_go(self) -> None:
+        """Close the connection to the workers, on which each of them ends."""
         if self._leash is not None:
             self._leash.close()
         self._leash = None
@@ -200,7 +201,7 @@ def _in_worker(points: list[Numbered]) -> Done:
 
 @contextmanager
 def interrupts_ignored() -> Iterator[None]:
-    """While processes start, which inherit it; in a thread other than the main one nothing is changed."""
+    """Ignore interrupts while processes start, which inherit this; no effect outside the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -246,7 +247,7 @@ class Done:
 
 
 class Identity(NamedTuple):
-    """Version of skisnow and machine of a worker: two equal identities give the same bits on one kind of machine."""
+    """Version of skisnow and hash of its core's source: equal identities give the same bits on one kind of machine."""
 
     version: str
     core: str
@@ -279,18 +280,18 @@ def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
 
 
 def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
-    """The rows of some points by a function that was sent; a worker keeps the last few that it was sent.
+    """Rows of points by a pickled function; the worker caches the last four functions.
 
     Parameters
     ----------
     packed
         The function, pickled.
-    asked
-        Which skisnow sent it.
+    identity
+        Version and core of the sender's skisnow.
     folder
-        Where relative paths start there; where there is such a folder it becomes the worker's, too.
+        Working folder of the sender; the worker changes to it if it exists here.
     points
-        With their numbers.
+        Numbered points.
 
     Raises
     ------
@@ -310,6 +311,7 @@ def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: S
 
 @lru_cache(maxsize=4)
 def _unpacked(packed: bytes, folder: str) -> Any:
+    """Function from its pickled bytes, after a change to its folder and a check of its files."""
     if Path(folder).is_dir() and folder != str(Path.cwd()):
         os.chdir(folder)
     function = pickle.loads(packed)

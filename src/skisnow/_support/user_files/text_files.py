@@ -121,7 +121,7 @@ class GivenError(ParameterError):
         self.what, self.line = what, line
 
     def of(self, title: str) -> GivenError:
-        """The same error of a file."""
+        """The same error with the title of the file."""
         return GivenError(self.what, code=self.code, line=self.line, title=title)
 
 
