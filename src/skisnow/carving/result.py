@@ -321,13 +321,14 @@ def _holds(conditions: Conditions, limit: float | None) -> bool:
 
 
 def radius_at_boot(model: ClampedSki, conditions: Conditions, solution: Solution) -> float | None:
-    """Radius of the circle through the edge line there (m); None without an equilibrium."""
+    """Radius (m) of the circle through the edge line at the boot; None without an equilibrium."""
     if not solution.converged or float(np.max(solution.edge_depth)) > SINKING_DEPTH:
         return None
     return EdgeLine(model, conditions.edge_angle, solution).radius_at_boot()
 
 
 def _bridges(station: FloatArray, below: BoolArray) -> bool:
+    """True if the contact has several pieces, or none under the boot."""
     pieces = int(below[0]) + int(np.count_nonzero(np.diff(below.astype(int)) == 1))
     contact = station[below]
     return pieces != 1 or not contact[-1] <= 0.0 <= contact[0]

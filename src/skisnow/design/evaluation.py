@@ -39,7 +39,7 @@ class Evaluator:
 
     @property
     def start(self) -> FloatArray:
-        """The ski to begin with, moved into the bounds."""
+        """Variables of the initial ski, from 0 to 1 of their bounds; values beyond a bound are clipped."""
         keys = self.task.ski.keys or {}
         values = [
             (start_value(keys, variable.name) - variable.lowest) / variable.width for variable in self.task.variables
@@ -78,6 +78,7 @@ class Evaluator:
         return self._points[place]
 
     def _point(self, number: int, ski: Ski, near: Solution | None) -> CarveDerivatives:
+        """Refined equilibrium of a ski at the condition with this number, from 0."""
         self.equilibria += 1
         derivatives = carve_at(ski, self.task.conditions[number], self.snows[number], near=near)
         if derivatives is None:
@@ -117,6 +118,7 @@ class Evaluator:
         return factors.get(name.partition("[")[0], 1.0) if "[" in name else 1.0
 
     def _chosen(self, goal: Goal, z: FloatArray) -> list[CarveDerivatives]:
+        """Equilibria at the conditions of a goal (default: all)."""
         points = self.points(z)
         return [points[int(number) - 1] for number in goal.conditions] if goal.conditions else list(points)
 

@@ -83,6 +83,7 @@ class FileParts:
         return ski
 
     def _shaped(self) -> tuple[Layout, StationFunction, str]:
+        """Layout, width and name of a ski whose outline is a shape file of MonkeyCAM."""
         values = self.values
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
         values.refuse_together(outlined, "shape", Message("Remove one of them."))
@@ -91,6 +92,7 @@ class FileParts:
         return shape.outline.layout, shape.outline.width_at, shape.name
 
     def _laid_out(self) -> tuple[Layout, StationFunction, str]:
+        """Layout, width and name of a ski by its table or its keys."""
         values = self.values
         layout = self._layout_of_table() if self.table else self._layout_of_keys()
         if "width_mm" in self.table:
@@ -183,6 +185,7 @@ class FileParts:
             ) from error
 
     def _require_mass(self, ski: Ski) -> None:
+        """Reject a stated mass that differs from the integral of the mass per length."""
         mass = self.values.said.mass
         if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
             allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)

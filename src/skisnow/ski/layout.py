@@ -332,6 +332,7 @@ class _End:
         return 2.0 * self.rocker_height / self.rocker_length if self.rocker_length > 0 else 0.0
 
     def _bend(self) -> float:
+        """Coefficient c (1/m) of the rise c x² beyond the rocker that reaches the height of the tip or tail."""
         if self.length <= 1e-9:
             if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
                 raise ParameterError(

@@ -94,6 +94,7 @@ class MachiningShear(ShearLaw):
         return cutting_stress(self.dynamic_shear_strength, cut, transverse_friction=self.transverse_friction)
 
     def _cut_angle(self, angle: FloatArray) -> FloatArray:
+        """Edge angles (rad), raised where the shear plane would be below `least_shear_plane`."""
         if self.least_shear_plane == 0.0:
             return angle
         return np.maximum(angle, np.arctan(self.transverse_friction) + 2.0 * self.least_shear_plane)
