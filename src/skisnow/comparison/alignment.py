@@ -89,6 +89,7 @@ class Motion:
 
 
 def _turn(angle: float, dimensions: int) -> FloatArray:
+    """Matrix of the rotation by an angle (rad) in the plane of x and y."""
     matrix = np.eye(dimensions)
     matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
     return matrix
@@ -318,6 +319,7 @@ def _correlation(rest: FloatArray) -> float:
 
 
 def _across(vectors: FloatArray, along: FloatArray) -> FloatArray:
+    """Parts of vectors (n, d) perpendicular to the unit vectors ``along`` (n, d)."""
     return vectors - (vectors * along).sum(axis=1, keepdims=True) * along
 
 

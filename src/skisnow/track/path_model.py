@@ -269,7 +269,7 @@ class PathModel:
         return self._turns[parameters.period]
 
     def _log_prior_scale(self, parameters: MotionParameters) -> float:
-        """Logarithm of the scale of all densities, up to a constant."""
+        """Logarithm of the normalising factors of all Gaussian densities of the model, up to a constant."""
         steps, points = len(self.step), len(self.points)
         turn, speed = np.log(parameters.turn_rate), np.log(parameters.acceleration)
         scale = -(3 * steps + 2) * turn - (2 * steps + 1) * speed - 2 * steps * np.log(parameters.drift)
