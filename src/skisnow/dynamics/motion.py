@@ -272,7 +272,7 @@ class Dynamics:
 
     @property
     def time(self) -> float:
-        """Since `begin` (s)."""
+        """Time since `begin` (s)."""
         return float(self._core.time)
 
     @property
@@ -340,7 +340,7 @@ class Dynamics:
 
     @property
     def work(self) -> tuple[float, ...]:
-        """Since `begin` (J): taken by shear and friction, given by the normal force, taken by air and skis.
+        """Work since `begin` (J): taken by shear and friction, given by the normal force, taken by air and skis.
 
         The last: the part of the normal force's work that the snow's dashpot absorbed.
         """
@@ -348,7 +348,7 @@ class Dynamics:
 
     @property
     def work_given(self) -> tuple[float, ...]:
-        """Since `begin` (J), by who moves the boots, and by the push."""
+        """Work since `begin` (J) of the motion of the boots, and of the push."""
         return tuple(self._part("work_given").tolist())
 
     @property

@@ -102,6 +102,7 @@ class Windows:
         return self._surrogate(batches, first).least(place, alike=self.window == len(line.turns))
 
     def _surrogate(self, batches: Batches, first: int) -> SurrogateSearch:
+        """Search with a surrogate of the turns from gate ``first``, whose number also varies the seed."""
         how = self.how
         return SurrogateSearch(
             batches=batches, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=(how.seed, first),
@@ -123,7 +124,7 @@ class Windows:
 
 
 def _as_found(line: RacingLine, evaluation: Evaluated) -> RacingLine:
-    """A line with the turns that were found, and behind them its own."""
+    """The line with its first turns replaced by those of an evaluated point of the search."""
     turns = turns_in(evaluation.row)
     return RacingLine(line.course, line.start, (*turns, *line.turns[len(turns) :]))
 

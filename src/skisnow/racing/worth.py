@@ -244,6 +244,7 @@ def _on(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
 
 
 def _about(value: float, spread: float) -> tuple[float, float]:
+    """Interval from value / (1 + spread) to value (1 + spread)."""
     return value / (1.0 + spread), value * (1.0 + spread)
 
 

@@ -58,14 +58,14 @@ class Planned:
 
 
 class Plan(Protocol):
-    """Says how to turn."""
+    """Plan of the turns."""
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
         """Plan from a state onwards."""
 
 
 class Line(Protocol):
-    """Lies over a course."""
+    """Line over a course."""
 
     def at(self, x: float) -> tuple[float, float, float]:
         """Place aside (m), slope and second derivative (1/m) at a place down the slope (m)."""

@@ -126,6 +126,7 @@ class WedgeControl:
         return toe, force * min(1.0, (toe / 0.12) ** 2), wanted
 
     def _learn(self, seen: Seen, toe: float, dt: float) -> None:
+        """Adjust the estimated grip of the snow to the measured deceleration."""
         if not seen.bears or toe < 0.12 or seen.speed < SLOW:
             return
         expected = self.snow.force(seen.edge[0], seen.left) + self.snow.force(seen.edge[1], seen.right)
