@@ -224,11 +224,13 @@ def _sheared(shear: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArra
 
 
 def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[FloatArray, TextArray]:
+    """Values of the used experiments that have one, and the site of each."""
     there = used & np.isfinite(value)
     return value[there], np.array(site, dtype=object)[there]
 
 
 def _of(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
+    """Values of a site; all values without a site."""
     return value if site is None else value[sites == site]
 
 
@@ -244,10 +246,12 @@ def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
 
 
 def _tested(campaign: Campaign) -> set[str]:
+    """Sites with a penetration or shear test."""
     return {site for tests in (campaign.penetration, campaign.shear) if tests is not None for site in tests.site}
 
 
 def _described(campaign: Campaign) -> dict[str, set[str]]:
+    """Sites in each table of snow data, by file."""
     tables = {
         "density.csv": campaign.density,
         "drop_cone.csv": campaign.drop_cone,

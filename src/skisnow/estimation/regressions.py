@@ -105,7 +105,7 @@ def _observations(
 
 
 def _own_or_site(own: FloatArray, site: tuple[str, ...], means: Mapping[str, float]) -> FloatArray:
-    """An experiment's own value wins; else its site's mean; else NaN: it takes no part."""
+    """Value of each experiment: its own, otherwise the mean of its site, otherwise NaN."""
     of_site = np.array([means.get(name, np.nan) for name in site])
     return np.where(np.isfinite(own), own, of_site)
 
@@ -119,6 +119,7 @@ def _by_spot(data: Observations, values: FloatArray) -> dict[tuple[str, str], fl
 
 
 def _nothing(*keys: str) -> Observations:
+    """Columns without any observation."""
     return Observations({key: np.zeros(0) for key in keys}, (), ())
 
 
@@ -233,6 +234,7 @@ def fit_warnings(fits: tuple[ModelFit, ...], selected: ModelFit | None, load: Fl
 
 
 def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
+    """Warning if the selected model misses the loads of the root mean square ``size`` (N) by too much."""
     if selected is not None and selected.rmse > POOR * size:
         yield (
             Message(
@@ -247,6 +249,7 @@ def _poor(selected: ModelFit | None, size: float) -> Iterator[str]:
 
 
 def _all_fail(fits: tuple[ModelFit, ...], size: float) -> Iterator[str]:
+    """Warning that every model misses the loads by more than their root mean square ``size`` (N)."""
     best = min(fits, key=lambda fit: fit.rmse)
     yield (
         Message(

@@ -129,6 +129,7 @@ def _ends(best: float, place: FloatArray, rise: FloatArray, limit: float) -> tup
 
 
 def _as_values(parameter: Parameter, ends: tuple[float | None, float | None]) -> Interval:
+    """Convert both ends from the scale of the search to the parameter's unit."""
     low, high = (None if end is None else parameter.value(end) for end in ends)
     return low, high
 
@@ -193,6 +194,7 @@ def posterior_places(
 
 
 def _quadratic(solution: Solution) -> Callable[[FloatArray], FloatArray]:
+    """Log likelihood as a function of places (n, p), from residuals to second order about the optimum."""
     optimum = solution.optimum
     lower, upper = bounds_of(solution.problem.parameters)
     jacobian, second = optimum.jacobian, optimum.second
@@ -209,6 +211,7 @@ def _quadratic(solution: Solution) -> Callable[[FloatArray], FloatArray]:
 
 
 def _true(solution: Solution) -> Callable[[FloatArray], FloatArray]:
+    """Log likelihood as a function of places (n, p), from the residuals computed at each."""
     lower, upper = bounds_of(solution.problem.parameters)
     widening = solution.widening
 

@@ -338,6 +338,7 @@ class Axis:
         return Column(np.array([round(x) for x in numbers.tolist()]) if whole else numbers)
 
     def _at(self, share: FloatArray) -> FloatArray:
+        """Values at shares from 0 to 1 of the range, on its linear or logarithmic scale."""
         low, high = (math.log(end) for end in self.ends) if self.log else self.ends
         even = low + (high - low) * share
         return np.exp(even) if self.log else even

@@ -95,7 +95,7 @@ class Study(Shown):
 
     @property
     def numbered(self) -> Points:
-        """The points as such."""
+        """The points as `Points`, which compute each from its number."""
         return self.points if isinstance(self.points, Points) else ListedPoints(self.points)
 
     @property
