@@ -209,5 +209,6 @@ class ReportData:
 
 
 def _complete(intervals: FloatArray) -> FloatArray:
+    """Intervals (n, 2) with NaN for both ends where one is not finite."""
     complete = np.isfinite(intervals).all(axis=1, keepdims=True)
     return np.where(complete, intervals, np.nan)

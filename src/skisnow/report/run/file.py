@@ -115,6 +115,7 @@ def _create_dimensions(file: Any, run: Run) -> None:
 
 
 def _write_ski_names(file: Any) -> None:
+    """Write the labels "left" and "right" of the dimension of skis."""
     variable = file.createVariable("ski_name", "c", (SKI, "letter"))
     variable.long_name = b"which ski"
     variable[:] = np.array([list(name.ljust(_LETTERS)) for name in SKI_NAMES], dtype="S1")
@@ -275,12 +276,14 @@ def _boot_variables() -> list[RunVariable]:
 
 
 def _boots(run: Run, name: str) -> FloatArray:
+    """A quantity of the boots (n, 2, 3); NaN for a run without boots."""
     if run.boots is None:
         return np.full((len(run.time), 2, 3), np.nan)
     return np.asarray(getattr(run.boots, name))
 
 
 def _part(name: str, axis: int) -> Values:
+    """Function that returns one component of a quantity of the boots."""
     return lambda run: _boots(run, name)[..., axis]
 
 

@@ -405,5 +405,6 @@ def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLi
 
 
 def _joined(pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]]) -> tuple[_Values, _Values]:
+    """All x and all y of several curves, one curve after the other."""
     x, y = zip(*pairs, strict=True)
     return list(chain.from_iterable(x)), list(chain.from_iterable(y))

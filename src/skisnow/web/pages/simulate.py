@@ -291,7 +291,7 @@ def _keep_course(courses: LabCourses, form: FormData) -> str:
 
 
 def _course_form() -> None:
-    """Form for a course."""
+    """Form that uploads a course from a CSV or GPX file."""
     with folded(Message("Add a course")):
         sentence(
             Message(
