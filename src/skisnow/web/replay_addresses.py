@@ -20,7 +20,8 @@ from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ..replay.run_file import RUN_FILE, replay_of_file
 from ..report.track.comparison_page import page_of_folders
-from ..report.track.page import page_of_track
+from ..report.track.page import file_of_track, page_of_track
+from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import read_ski
 from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
 from .layout import plain_page
@@ -41,6 +42,8 @@ LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"
 GATES: Final = f"{LIST}/gates"
 TURNS: Final = f"{LIST}/turns"
+TRACK_FILES: Final = {TURNS_FILE: "text/csv", GPX_FILE: "application/gpx+xml"}
+"""Media type of each file of a track."""
 FILES: Final = f"{LIST}/files"
 DATA: Final = f"{LIST}/data"
 MODEL: Final = f"{LIST}/model"
@@ -161,11 +164,29 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
         return _confined_page(request, page_of_track, arguments)
 
+    def track_file(request: Request, track: str, file: str) -> Response:
+        def arguments() -> tuple[Path, str, str]:
+            path, placing = TrackFolders(runs.folder).file(track)
+            return path, placing.called, file
+
+        if file not in TRACK_FILES:
+            return PlainTextResponse("", 404)
+        return _confined_page(
+            request, file_of_track, arguments, lambda text: _download(text, f"{track}-{file}", TRACK_FILES[file])
+        )
+
     def first() -> Response:
         headers = {"content-encoding": "gzip", "cache-control": "no-cache"}
         return Response(FIRST_FILE.read_bytes(), media_type="application/octet-stream", headers=headers)
 
-    answers = ((SHOW, show), (GATES, gates), (TURNS, turns), (FIRST, first), (f"{FILES}/{{name}}", program_file))
+    answers = (
+        (SHOW, show),
+        (GATES, gates),
+        (TURNS, turns),
+        (f"{TURNS}/{{file}}", track_file),
+        (FIRST, first),
+        (f"{FILES}/{{name}}", program_file),
+    )
     for address, answer in answers:
         app.add_api_route(address, answer, include_in_schema=False, response_model=None)
     models = ((f"{MODEL}/{{name}}.glb", model), (f"{MOVING_MODEL}/{{name}}.glb", moving_model))
@@ -173,10 +194,15 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         app.add_api_route(address, of_run, include_in_schema=False, response_model=None)
 
 
-def _confined_page(request: Request, work: Callable[..., str], arguments: Callable[[], tuple[Any, ...]]) -> Response:
-    """Page of a function in a separate process, or one with the sentence why it cannot be shown."""
+def _confined_page(
+    request: Request,
+    work: Callable[..., str],
+    arguments: Callable[[], tuple[Any, ...]],
+    answer: Callable[[str], Response] = HTMLResponse,
+) -> Response:
+    """Page or file of a function in a separate process, or a page with the sentence why it cannot be shown."""
     try:
-        return HTMLResponse(confined(BOUNDS, work, *arguments()))
+        return answer(confined(BOUNDS, work, *arguments()))
     except (FieldDataError, ParameterError) as error:
         sentence = error.text(language_of_request(request))
         return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
@@ -188,8 +214,12 @@ def _limit_exaggeration(exaggeration: float) -> float:
 
 
 def _model_file(content: bytes, name: str) -> Response:
-    named = f"attachment; filename*=UTF-8''{quote(name, safe='')}.glb"
-    return Response(content, media_type="model/gltf-binary", headers={"content-disposition": named})
+    return _download(content, f"{name}.glb", "model/gltf-binary")
+
+
+def _download(content: bytes | str, name: str, media_type: str) -> Response:
+    named = f"attachment; filename*=UTF-8''{quote(name, safe='')}"
+    return Response(content, media_type=media_type, headers={"content-disposition": named})
 
 
 def program_file(name: str) -> Response:

@@ -4,6 +4,7 @@ import io
 import math
 import os
 import re
+from csv import DictReader
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 from skisnow._support.errors import SkisnowError
 from skisnow.replay import replay_of_run
+from skisnow.track.read import read_track
 from skisnow.web.lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, Placing, TrackFolders
 from tests.coded import raises
 
@@ -216,4 +218,22 @@ def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
     assert sides == [["left", "right"], ["links", "rechts"]]
     radii = [float(each) for each in re.findall(r'data-name="Minimum radius \(m\)">([\d.]+)', english.text)]
     assert radii == pytest.approx([12.0, 12.0], rel=0.05)
-    assert client.get("/replay/turns?track=nothing").status_code == 404
+    table = client.get(f"/replay/turns/turns.csv?track={name}")
+    assert [row["side"] for row in DictReader(io.StringIO(table.text))] == ["left", "right"]
+    assert table.headers["content-disposition"].endswith(f"{name}-turns.csv")
+    assert client.get(f"/replay/turns/track.gpx?track={name}").status_code == 404  # in the axes of a slope
+    found = [client.get(f"/replay/turns{file}?track=nothing").status_code for file in ("", "/turns.csv")]
+    assert found == [404, 404]
+    assert client.get(f"/replay/turns/about.json?track={name}").status_code == 404
+
+
+def test_a_kept_track_of_a_receiver_is_a_gpx_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    places = [(8.0 * k, 0.0) for k in range(30)]
+    name, _ = TrackFolders(tmp_path).keep(io.BytesIO(gpx(places)), Placing("x.gpx", 0.0))
+    monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
+    app = FastAPI()
+    add_addresses(app, RunFolders(tmp_path))
+    answer = Client(app).get(f"/replay/turns/track.gpx?track={name}")
+    assert answer.status_code == 200
+    (tmp_path / "again.gpx").write_text(answer.text, encoding="utf-8")
+    assert len(read_track(tmp_path / "again.gpx").time) == 30

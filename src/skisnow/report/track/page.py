@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language, outcome_words
 from ...track.read import read_track
 from ...track.summary import track_summary
@@ -15,7 +16,7 @@ from ..formatting import counted
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table, record_table
 from .report import track_drawings
-from .summary import turn_rows
+from .summary import GPX_FILE, TURNS_FILE, track_gpx, turn_rows, turns_csv
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,3 +71,14 @@ def page_of_track(path: Path, name: str, language: str = ENGLISH) -> str:
             Section("pictures", Message("From above"), pictures=pictures),
         ]
         return sheet(Header(Message("Measured track"), name, [], headline=count), sections)
+
+
+def file_of_track(path: Path, name: str, file: str) -> str:
+    """Text of turns.csv or track.gpx of a track; errors as in `page_of_track`, and without latitude and longitude."""
+    summary = track_summary(replace(read_track(path), name=name))
+    text = {TURNS_FILE: turns_csv, GPX_FILE: track_gpx}[file](summary)
+    if text is None:
+        raise ParameterError(
+            "{track} has no latitude and longitude, which GPX requires. Use its CSV", code="no_origin", track=name
+        )
+    return text

@@ -10,6 +10,7 @@ from nicegui import app, ui
 from ..._support.messages import Message
 from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
+from ...report.track.summary import GPX_FILE, TURNS_FILE
 from ..elements import Words, folded, link, named
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
 from ..layout import framed, heading, sentence
@@ -49,9 +50,8 @@ def add_page(lab: Lab) -> None:
         with framed(Message("Replay"), here=PATH):
             names = runs.names()
             if track in tracks.names():
-                sentence(
-                    Message("The track {track} is kept. Choose the run to compare it with.", track=track), "good"
-                ).props("role=status")
+                kept = Message("The track {track} is kept. Its turns are below.", track=track)
+                sentence(kept, "good").props("role=status")
             sentence(
                 Message(
                     "{n_names} kept, the newest first.", n_names=counted(len(names), "{count} run", "{count} runs")
@@ -66,8 +66,14 @@ def add_page(lab: Lab) -> None:
             if tracks.names():
                 heading(Message("Measured tracks"), 2)
             for name in tracks.names():
+                asked = f"?track={quote(name, safe='')}"
                 with ui.element("div").classes("acts"):
-                    link(Message("Turns of {name}", name=name), f"{TURNS}?track={quote(name, safe='')}")
+                    link(Message("Turns of {name}", name=name), f"{TURNS}{asked}")
+                    for file, words in (
+                        (TURNS_FILE, Message("Turns as CSV")),
+                        (GPX_FILE, Message("Track as GPX")),
+                    ):
+                        named(link(words, f"{TURNS}/{file}{asked}"), Message("{words}: {name}", words=words, name=name))
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))
 
