@@ -44,6 +44,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "campaign.importing.folder:undo_import": "hashes that the import has written; none leads out of the folder",
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
     "campaign.store.export:add_corrections": "a file of the campaign that it has just exported",
+    "campaign.store.export:_add_attachments": "a file of the campaign that it has just exported",
     "campaign.store.engine:_damage": "a store that is known to be damaged, for the integrity check",
     "studies.writing:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
