@@ -180,9 +180,9 @@ def side_of_load(lean: FloatArray, depth: FloatArray, width: float) -> FloatArra
     lean
         Sine of the angle by which the left edge is up.
     depth
-        Of the edge that is down (m); a ski in the air or in hardly marked snow counts as 0.001 `width` deep.
+        Depth of the edge that is down (m); a ski in the air or in hardly marked snow counts as 0.001 `width` deep.
     width
-        Of the ski (m).
+        Width of the ski (m).
 
     >>> side_of_load(np.array([-0.5, 0.0, 0.005]), np.full(3, 1e-3), 0.1).tolist()
     [0.05, -0.0, -0.025]

@@ -288,7 +288,7 @@ _LENGTH_STEP: Final = 1e-3  # mm; of other parameters a ten thousandth
 
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
-    """Growth of a ski with a parameter of `shape_parameters`, by central differences where there is no closed form."""
+    """Growth of a ski with a parameter of `shape_parameters`, in closed form, otherwise by central differences."""
     value, key = shape_value(ski, name), name.removeprefix("ski.")
     row = _ROW.fullmatch(key)
     if name in FACTORS:

@@ -185,7 +185,7 @@ class Journals:
             _require_current(connection, id, entry, seen)
             if connection.execute(select(journal.c.id).where(journal.c.id == id)).first() is None:
                 connection.execute(insert(journal).values(id=id, begun_at=now()))
-            if entry.action != "add":  # of a photo or position, which no file has
+            if entry.action != "add":  # an added photo or position is in no file
                 base = _entry_of_file(connection, id, entry, standing)
                 entry = replace(entry, about=base) if entry.action == "correct" else entry
             _require_subject(connection, id, entry)
