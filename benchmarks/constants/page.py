@@ -93,12 +93,14 @@ def _head(count: int, varied: int) -> Iterator[str]:
     yield from (f"| {' | '.join(map(str, row))} |" for row in FIXED_STEPS)
     yield ""
     yield "* These ends converge with order 1. Those of the error control do not: the skid ends at 33.945, 33.962,"
-    yield "  33.980 and 34.017 m with 1, 0.5, 0.25 and 0.125 µm. Its constants choose the lengths of steps, and so"
-    yield "  how many parts a step has."
+    yield "  33.980 and 34.017 m with 1, 0.5, 0.25 and 0.125 µm. Its constants choose the lengths of steps, and"
+    yield "  probably act by the number of parts in a step; this was not tested alone."
     yield "* The motion is not that sensitive: 10⁻⁶ more speed at the start moves the skid by 0.4 mm. A tolerance of"
     yield "  the groove of 10⁻⁸ moves it by 0.7 mm."
     yield "* `MARGIN` moves the skid by at most 18 mm and the skier by 5 mm with fixed steps. `MOST_TURN`, halved,"
-    yield "  still moves the skier by 57 mm: lines laid anew."
+    yield "  still moves the skier by 57 mm: lines that are laid again."
+    yield "* `MISSED` and `FULLY`, doubled together, move the skier by 36 mm: the miss of a bent edge from which its"
+    yield "  sections are corrected. Without a threshold, carves move by about 0.1 mm."
     yield ""
     yield from _parts()
 
