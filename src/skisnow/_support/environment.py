@@ -19,21 +19,11 @@ if TYPE_CHECKING:
 def needed(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
     """The module of a package that an extra installs.
 
-    Parameters
-    ----------
-    module
-        Module to import.
-    extra
-        The name of the extra in ``pyproject.toml``.
-    what
-        Work that is impossible without it, a noun phrase.
-    instead
-        Another way, a whole sentence.
-
-    Raises
-    ------
-    ParameterError
-        It is not installed, or cannot be loaded.
+    module: module to import.
+    extra: the name of the extra in ``pyproject.toml``.
+    what: work that is impossible without it, a noun phrase.
+    instead: another way, a whole sentence.
+    Raises ParameterError: it is not installed, or cannot be loaded.
     """
     try:
         return import_module(module)
@@ -63,10 +53,8 @@ def paused_collector() -> Iterator[None]:
 def load_certificate(context: ssl.SSLContext, file: str | Path, key: str | Path | None = None) -> None:
     """Load a certificate and its private key, which may be in the same file.
 
-    Raises
-    ------
-    OSError, ssl.SSLError, ValueError
-        The files cannot be read, or the key has a password: OpenSSL would ask for it on the terminal.
+    Raises OSError, ssl.SSLError or ValueError: the files cannot be read, or the key has a password: OpenSSL would ask
+        for it on the terminal.
     """
     context.load_cert_chain(file, key, password=_no_password)
 

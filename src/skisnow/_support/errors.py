@@ -155,10 +155,7 @@ def most_like(word: str, words_allowed: Iterable[str]) -> str | None:
 def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
     """Reject a value that is not one of a parameter's choices.
 
-    Raises
-    ------
-    ParameterError
-        With the choice that is most like the value.
+    Raises ParameterError: with the choice that is most like the value.
     """
     words = list(choices)
     if value not in words:

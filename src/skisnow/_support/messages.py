@@ -60,14 +60,10 @@ def use_language_of_pages(language: Callable[[], str]) -> None:
 class Message(str):
     """English text of a template with its fields; `str(message)` and f-strings give it in the current language.
 
-    Parameters
-    ----------
-    template
-        Whole sentences with named fields, as for `str.format`. Must be a literal (or marked by `template`), so that it
-        is extracted for translation.
-    fields
-        Values: text, numbers, dates and paths; a tuple of numbers is an interval or a vector ([1.5, 3]), a list is an
-        enumeration. Messages, errors and problems are translated, text is not.
+    template: whole sentences with named fields, as for `str.format`. Must be a literal (or marked by `template`), so
+        that it is extracted for translation.
+    fields: values: text, numbers, dates and paths; a tuple of numbers is an interval or a vector ([1.5, 3]), a list is
+        an enumeration. Messages, errors and problems are translated, text is not.
     """
 
     template: str

@@ -72,10 +72,7 @@ def encoding_of(data: bytes) -> tuple[str, str | None]:
 def decoded(data: bytes) -> DecodedText:
     """Decode a text file, without byte order marks.
 
-    Raises
-    ------
-    NoTextError
-        The bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+    Raises NoTextError: the bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
     """
     codec, foreign = encoding_of(data)
     try:
@@ -219,16 +216,10 @@ _HEAD: Final = 1 << 16
 class CsvRow:
     """One row of a table.
 
-    Attributes
-    ----------
-    path, row
-        File and row, the header being row 1.
-    cells
-        By column, without blanks around them.
-    action
-        Action that the error of a cell recommends.
-    mark
-        The decimal mark of the file's numbers.
+    path, row: file and row, the header being row 1.
+    cells: by column, without blanks around them.
+    action: action that the error of a cell recommends.
+    mark: the decimal mark of the file's numbers.
     """
 
     path: Path
@@ -240,10 +231,7 @@ class CsvRow:
     def number(self, column: str) -> float:
         """A finite number.
 
-        Raises
-        ------
-        ParameterError
-            It is not a number.
+        Raises ParameterError: it is not a number.
         """
         value = number(self.cells[column], self.mark)
         if not math.isfinite(value):
@@ -269,20 +257,11 @@ def csv_rows(
 ) -> Iterator[CsvRow]:
     """The rows of a table that are not blank, one after the other: a wrong row is rejected before the next is read.
 
-    Parameters
-    ----------
-    path
-        UTF-8 text with a first line of the names of the columns; comma, semicolon or tab, and with the last two a
+    path: UTF-8 text with a first line of the names of the columns; comma, semicolon or tab, and with the last two a
         decimal point or comma.
-    columns, further
-        Columns that must be there, and those that may be, in any case of letters; others are not read.
-    action
-        Action that errors recommend.
-
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, is not CSV, lacks a column, or has more cells in a row than columns.
+    columns, further: columns that must be there, and those that may be, in any case of letters; others are not read.
+    action: action that errors recommend.
+    Raises ParameterError: the file cannot be read, is not CSV, lacks a column, or has more cells in a row than columns.
     """
     path = Path(path)
     text = plain_text(path, most_bytes=MOST_CSV_BYTES)

@@ -35,10 +35,7 @@ _PLACE_REASONS: Final = {
 def connect(place: Path | None, *, mode: Mode = "rwc", timeout_s: float = 0.0) -> sqlite3.Connection:
     """Open a database without a transaction of the driver's own; None: in memory. Threads may share it.
 
-    Raises
-    ------
-    sqlite3.Error
-        The file cannot be opened; much damage shows only when it is read.
+    Raises sqlite3.Error: the file cannot be opened; much damage shows only when it is read.
     """
     return sqlite3.connect(
         ":memory:" if place is None else _address(place, mode),
@@ -57,10 +54,7 @@ def _address(place: Path, mode: Mode) -> str:
 def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
     """Check that tables are there, as tables and with all of their columns.
 
-    Raises
-    ------
-    sqlite3.DatabaseError
-        One is missing.
+    Raises sqlite3.DatabaseError: one is missing.
     """
     for table, columns in tables.items():
         query = "select count(*) from sqlite_master where type = 'table' and name = ?"
@@ -75,10 +69,7 @@ def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
 def require_sound_pages(database: sqlite3.Connection) -> None:
     """Check the file's pages by SQLite's quick check, which reads all of them once.
 
-    Raises
-    ------
-    sqlite3.DatabaseError
-        A page is damaged.
+    Raises sqlite3.DatabaseError: a page is damaged.
     """
     (message,) = database.execute("pragma quick_check(1)").fetchone()
     if message != "ok":

@@ -37,12 +37,9 @@ _MOST_STALE: Final = 10_000
 class Stage:
     """Folder to write to.
 
-    Attributes
-    ----------
-    path
-        The folder to fill.
-    stale
-        Paths in the target of files that only an earlier run can have left; they are removed if there are no new ones.
+    path: the folder to fill.
+    stale: paths in the target of files that only an earlier run can have left; they are removed if there are no new
+        ones.
     """
 
     path: Path
@@ -53,17 +50,9 @@ class Stage:
 def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     """Stage whose files are moved into a folder at the end of the block; an error before changes nothing.
 
-    Parameters
-    ----------
-    folder
-        The place, which is there; other files in it stay.
-    last
-        File whose presence shows that all others are complete: removed first, moved last.
-
-    Raises
-    ------
-    OutputError
-        The place cannot be written.
+    folder: the place, which is there; other files in it stay.
+    last: file whose presence shows that all others are complete: removed first, moved last.
+    Raises OutputError: the place cannot be written.
     """
     try:
         hidden, lock = _new_hidden(folder)
@@ -201,10 +190,7 @@ def _locked(hidden: Path) -> int | None:
 def write_file(path: str | Path, content: str | bytes) -> None:
     """Write a file in one piece; text as UTF-8 with plain line ends. An existing file is replaced.
 
-    Raises
-    ------
-    OutputError
-        The place cannot be written or is full; an earlier file is unchanged.
+    Raises OutputError: the place cannot be written or is full; an earlier file is unchanged.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
     with place_to_write(path) as place:
@@ -215,10 +201,7 @@ def write_file(path: str | Path, content: str | bytes) -> None:
 def place_to_write(path: str | Path) -> Iterator[Path]:
     """An empty file to be filled by its name, which has its name when the block ends well, and else nowhere.
 
-    Raises
-    ------
-    OutputError
-        The place cannot be written or is full; an earlier file is unchanged.
+    Raises OutputError: the place cannot be written or is full; an earlier file is unchanged.
     """
     path = Path(path)
     temporary: Path | None = None
@@ -243,10 +226,7 @@ def place_to_write(path: str | Path) -> Iterator[Path]:
 def require_writable(folder: str | Path) -> None:
     """Make a folder where it is missing and try a file in it, so that long work is not done for nothing.
 
-    Raises
-    ------
-    OutputError
-        The folder cannot be made or written.
+    Raises OutputError: the folder cannot be made or written.
     """
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)

@@ -49,18 +49,11 @@ _PLAUSIBLE: Final = {
 class StationSeries(Shown):
     """Readings of a weather station, in rising time.
 
-    Attributes
-    ----------
-    file, station
-        Name of the file; ``station_name``, else ``station_id``.
-    latitude_deg, longitude_deg, altitude
-        Place of the station (degree, m); None if not in the header.
-    utc_offset
-        Offset of the file's times from UTC, hours east of Greenwich.
-    time
-        (n,) seconds since 1970-01-01, UTC.
-    fields
-        Columns by their names in the file, in SI; NaN for missing values.
+    file, station: name of the file; ``station_name``, else ``station_id``.
+    latitude_deg, longitude_deg, altitude: place of the station (degree, m); None if not in the header.
+    utc_offset: offset of the file's times from UTC, hours east of Greenwich.
+    time: (n,) seconds since 1970-01-01, UTC.
+    fields: columns by their names in the file, in SI; NaN for missing values.
     """
 
     file: str
@@ -97,11 +90,8 @@ class StationSeries(Shown):
 def read_smet(path: str | Path) -> StationSeries:
     """Read a SMET file in ASCII.
 
-    Raises
-    ------
-    FieldDataError
-        The file cannot be read, is not SMET in ASCII, lacks a key of the header, or has an invalid row, time or
-        number; the message names the line.
+    Raises FieldDataError: the file cannot be read, is not SMET in ASCII, lacks a key of the header, or has an invalid
+        row, time or number; the message names the line.
     """
     path = Path(path)
     try:
@@ -116,10 +106,7 @@ def read_smet(path: str | Path) -> StationSeries:
 def parse_smet(name: str, data: bytes) -> StationSeries:
     """Parse the bytes of a SMET file.
 
-    Raises
-    ------
-    FieldDataError
-        As `read_smet`.
+    Raises FieldDataError: as `read_smet`.
     """
     return _Reading(name, data).series()
 

@@ -62,22 +62,13 @@ class SnowMicroPenSettings:
 class SnowMicroPenRecordings(Shown):
     """The m recordings that snow_micro_pen.csv names.
 
-    Attributes
-    ----------
-    recording, site, spot, file
-        Names as written in the table; an absent spot is ``""``.
-    surface
-        Depth of the snow surface stated in the table, from the start of the recording (m); NaN if to be detected.
-    cancelled
-        Reason for cancelling the recording, or ``""``.
-    row
-        Line of the table.
-    contents
-        Bytes of each file.
-    settings
-        Settings of the evaluation.
-    further
-        Other columns as text.
+    recording, site, spot, file: names as written in the table; an absent spot is ``""``.
+    surface: depth of the snow surface stated in the table, from the start of the recording (m); NaN if to be detected.
+    cancelled: reason for cancelling the recording, or ``""``.
+    row: line of the table.
+    contents: bytes of each file.
+    settings: settings of the evaluation.
+    further: other columns as text.
     """
 
     recording: tuple[str, ...]

@@ -81,30 +81,16 @@ class PlateValue:
 class SnowPit(Shown):
     """A snow pit. Depths count from the surface down; unknown values are None, ``""`` or empty.
 
-    Attributes
-    ----------
-    name
-        Name of the pit or site.
-    time
-        Day, or day and time with or without an offset, in ISO 8601; ``""`` if unknown.
-    observer, comment, country, region
-        Texts; the country as two letters of ISO 3166.
-    latitude_deg, longitude_deg
-        WGS 84.
-    elevation
-        Elevation above sea level (m).
-    aspect
-        N, NE, …, or degrees, as text.
-    slope_angle_deg
-        Inclination.
-    snow_height
-        Height of the snow on the ground (m).
-    air_temperature_C
-        Temperature of the air.
-    layers, densities, temperatures, forces
-        From the top down, as observed.
-    snow_hardness, failure_shear_stress
-        H_V (N/mm³) and S_f (N/mm²) of plate tests.
+    name: name of the pit or site.
+    time: day, or day and time with or without an offset, in ISO 8601; ``""`` if unknown.
+    observer, comment, country, region: texts; the country as two letters of ISO 3166.
+    latitude_deg, longitude_deg: WGS 84.
+    elevation: elevation above sea level (m).
+    aspect: N, NE, …, or degrees, as text.
+    slope_angle_deg: inclination.
+    snow_height: height of the snow on the ground (m).
+    layers, densities, temperatures, forces: from the top down, as observed.
+    snow_hardness, failure_shear_stress: H_V (N/mm³) and S_f (N/mm²) of plate tests.
     """
 
     name: str

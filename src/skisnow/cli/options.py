@@ -114,14 +114,9 @@ def number(
 ) -> Callable[[str], float]:
     """Converter of numbers for an option; its error states the allowed form.
 
-    Parameters
-    ----------
-    unit
-        Unit of the number; empty without one.
-    lowest, highest
-        Allowed range; None if a table of keys declares it, which is checked before the work begins.
-    above
-        True if the lowest value itself is excluded.
+    unit: unit of the number; empty without one.
+    lowest, highest: allowed range; None if a table of keys declares it, which is checked before the work begins.
+    above: True if the lowest value itself is excluded.
     """
     ranged = highest < math.inf
 
@@ -193,10 +188,7 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 def scheduler_of(options: argparse.Namespace) -> str | None:
     """Executor of the options; an error if it cannot work, and a warning that the network must be trusted.
 
-    Raises
-    ------
-    ParameterError
-        It is not a scheduler, or Dask is not installed.
+    Raises ParameterError: it is not a scheduler, or Dask is not installed.
     """
     scheduler: str | None = options.scheduler
     if scheduler is not None and scheduler not in LOCAL and options.workers is not None:
@@ -212,10 +204,7 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
 def checked_scheduler(scheduler: str | None) -> str | None:
     """The same for a value of the option.
 
-    Raises
-    ------
-    ParameterError
-        As of `scheduler_of`.
+    Raises ParameterError: as of `scheduler_of`.
     """
     if scheduler is None or scheduler in LOCAL:
         return scheduler

@@ -53,10 +53,7 @@ def list_fonts() -> None:
 def prepare_output(folder: Path) -> None:
     """Require a writable folder, clean up after killed processes with a message, and list the fonts for figures.
 
-    Raises
-    ------
-    OutputError
-        The folder cannot be made or written.
+    Raises OutputError: the folder cannot be made or written.
     """
     from .._support.staging import prepare_folder
 
@@ -183,12 +180,8 @@ class Ended(KeyboardInterrupt):
 class Ending:
     """Requests to end this process, kept also if the interrupt was caught.
 
-    Attributes
-    ----------
-    requested
-        True after a request of the system.
-    pressed
-        True after Ctrl-C during `finishing`.
+    requested: True after a request of the system.
+    pressed: True after Ctrl-C during `finishing`.
     """
 
     requested: bool = False

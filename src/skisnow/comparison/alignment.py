@@ -55,23 +55,15 @@ _OSCILLATION: Final = 10
 class Motion:
     """Rigid motion of the simulated track onto the measured one.
 
-    Attributes
-    ----------
-    moved : (d,) m
-        Displacement of its first point.
-    turned
-        Rotation (rad) about the vertical through its first point, positive to the left.
-    undetermined
-        Number of undetermined directions, such as along two straight lines; the track is not moved along them.
-    rms
-        Root mean square of the remaining nearest distances (m); infinite if the steps do not settle.
-    share
-        Share of the measured track that is compared.
-    turned_error
-        Half of the 95 % interval of `turned` (rad), at most π; 0 if no heading was fitted, None if `rival` has another
-        heading.
-    rival
-        The best different solution, if it is about as good.
+    moved: (d,) m, displacement of its first point.
+    turned: rotation (rad) about the vertical through its first point, positive to the left.
+    undetermined: number of undetermined directions, such as along two straight lines; the track is not moved along
+        them.
+    rms: root mean square of the remaining nearest distances (m); infinite if the steps do not settle.
+    share: share of the measured track that is compared.
+    turned_error: half of the 95 % interval of `turned` (rad), at most π; 0 if no heading was fitted, None if `rival`
+        has another heading.
+    rival: the best different solution, if it is about as good.
     """
 
     moved: FloatArray
@@ -98,10 +90,7 @@ def _turn(angle: float, dimensions: int) -> FloatArray:
 def require_offsets(fit: Collection[str]) -> None:
     """Check that all offsets are among `OFFSETS`.
 
-    Raises
-    ------
-    ParameterError
-        An offset is unknown.
+    Raises ParameterError: an offset is unknown.
     """
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
@@ -121,10 +110,7 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     for a heading, in `HEADINGS` directions. The solution has the lowest `_score`. Solutions in which the tracks run in
     opposite directions are used only if there is no other.
 
-    Raises
-    ------
-    FitError
-        No start leads to a solution in which half of the measured track is compared.
+    Raises FitError: no start leads to a solution in which half of the measured track is compared.
     """
     path = Path(simulated.place)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))

@@ -24,12 +24,8 @@ _GAUSS_WEIGHT: Final = np.array([5.0, 8.0, 5.0]) / 18.0
 class OffsetSeries(ShownFields):
     """Offsets at places along the measured track; between two of them the offset changes linearly.
 
-    Attributes
-    ----------
-    arc_length : (k,) m
-        Length of the measured track up to the place, not falling.
-    offset : (k, d) m
-        From the measured to the simulated track; NaN if missing.
+    arc_length: (k,) m, length of the measured track up to the place, not falling.
+    offset: (k, d) m, from the measured to the simulated track; NaN if missing.
     """
 
     arc_length: FloatArray
@@ -170,17 +166,9 @@ def arc_length_offsets(simulated: Polyline, measured: Polyline) -> OffsetSeries:
 def time_offsets(simulated: Polyline, measured: Polyline, *, later: float = 0.0) -> OffsetSeries | None:
     """Offsets between places at the same time, at the times of both tracks, while both are on their way.
 
-    Parameters
-    ----------
-    simulated, measured
-        Tracks with times that do not fall.
-    later
-        Time of the simulated track minus that of the measured one (s).
-
-    Returns
-    -------
-    Apart or None
-        None if their times do not overlap.
+    simulated, measured: tracks with times that do not fall.
+    later: time of the simulated track minus that of the measured one (s).
+    Returns: None if their times do not overlap.
     """
     clock = simulated.time - later
     begin, end = max(clock[0], measured.time[0]), min(clock[-1], measured.time[-1])
@@ -199,14 +187,9 @@ def time_offsets(simulated: Polyline, measured: Polyline, *, later: float = 0.0)
 class Polyline(ShownFields):
     """Straight pieces in the order of time.
 
-    Attributes
-    ----------
-    place : (n, d) m
-        Places; d = 2 from above, or 3.
-    time : (n,) s
-        Times of the places.
-    arc_length : (n,) m
-        Length of the pieces up to each place.
+    place: (n, d) m, places; d = 2 from above, or 3.
+    time: (n,) s, times of the places.
+    arc_length: (n,) m, length of the pieces up to each place.
     """
 
     place: FloatArray
@@ -255,10 +238,7 @@ def compared_points(track: Track, *, dimensions: int) -> BoolArray:
 def track_polyline(track: Track, *, dimensions: int) -> Polyline:
     """The usable points of a track, joined.
 
-    Raises
-    ------
-    ParameterError
-        Fewer than two such points, or all in one place.
+    Raises ParameterError: fewer than two such points, or all in one place.
     """
     points = compared_points(track, dimensions=dimensions)
     line = polyline(track.place[points][:, :dimensions], track.time[points])

@@ -35,20 +35,12 @@ _ROUNDING: Final = 1e-12
 class NearestPlaces:
     """Nearest places of n points.
 
-    Attributes
-    ----------
-    foot : (n, d) m
-        The nearest place on the path.
-    distance : (n,) m
-        Distance to it.
-    arc_length : (n,) m
-        Length of the path up to it.
-    direction : (n, d)
-        Unit vector of the path there.
-    where : (n,)
-        Number of the straight piece or point of the path on which the nearest place is.
-    beyond : (n,) bool
-        True if the nearest place is an end of the path and the point is ahead of that end.
+    foot: (n, d) m, the nearest place on the path.
+    distance: (n,) m, distance to it.
+    arc_length: (n,) m, length of the path up to it.
+    direction: (n, d), unit vector of the path there.
+    where: (n,), number of the straight piece or point of the path on which the nearest place is.
+    beyond: (n,) bool, True if the nearest place is an end of the path and the point is ahead of that end.
     """
 
     foot: FloatArray
@@ -66,10 +58,7 @@ class PieceTree:
     piece of length L at the distance r from a point has an end of its piece within √(r² + L²/4). The number of
     neighbouring nodes is therefore doubled until the next one is farther than that for the nearest piece so far.
 
-    Parameters
-    ----------
-    places : (m + 1, d) m
-        Ends of m pieces, at least one.
+    places: (m + 1, d) m, ends of m pieces, at least one.
     """
 
     def __init__(self, places: FloatArray) -> None:
@@ -119,15 +108,8 @@ class PieceTree:
 class Path:
     """Path of straight pieces through points, with a search for nearest places.
 
-    Parameters
-    ----------
-    points : (m, d) m
-        Points in their order, d = 2 or 3, all finite, at least two different ones.
-
-    Raises
-    ------
-    ParameterError
-        All points are in one place.
+    points: (m, d) m, points in their order, d = 2 or 3, all finite, at least two different ones.
+    Raises ParameterError: all points are in one place.
     """
 
     def __init__(self, points: FloatArray) -> None:

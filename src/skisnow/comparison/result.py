@@ -254,14 +254,9 @@ FIRST_POINTS: Final = "let time be counted from each track's first point, or fit
 class Clock:
     """A clock for two tracks.
 
-    Attributes
-    ----------
-    ahead
-        Time of the simulated track minus that of the measured one (s).
-    origin
-        Description of the zero of time.
-    reason
-        Reason why the tracks have no common clock (default: they have one).
+    ahead: time of the simulated track minus that of the measured one (s).
+    origin: description of the zero of time.
+    reason: reason why the tracks have no common clock (default: they have one).
     """
 
     ahead: float
@@ -302,10 +297,7 @@ def fit_time(simulated: Polyline, measured: Polyline) -> float:
     The mean square distance over the measured track's length is computed for all offsets at which at least half of the
     shorter track overlaps with the other, and then minimised from the best of them.
 
-    Raises
-    ------
-    FitError
-        One of the tracks has no duration.
+    Raises FitError: one of the tracks has no duration.
     """
     shorter = min(simulated.time[-1] - simulated.time[0], measured.time[-1] - measured.time[0])
     if not shorter > 0.0:

@@ -35,16 +35,12 @@ _SCATTER2_LIMITS: Final = (1e-8, 1.0)
 class Priors:
     """Weak priors of the spreads: each is scaled inverse chi-squared about a value, with degrees of freedom.
 
-    Attributes
-    ----------
-    seating, seating_series
-        τ (m), and the number of series with this spread that the prior counts as. A campaign may state its own τ.
-    layering, layering_series
-        σ_g, and the number of series.
-    mean_layering
-        Standard deviation of g_0 about 1, the value of even snow.
-    scatter, rebound, readings
-        s, the relative scatter of the rebound, and the number of readings that each of these priors counts as.
+    seating, seating_series: τ (m), and the number of series with this spread that the prior counts as. A campaign may
+        state its own τ.
+    layering, layering_series: σ_g, and the number of series.
+    mean_layering: standard deviation of g_0 about 1, the value of even snow.
+    scatter, rebound, readings: s, the relative scatter of the rebound, and the number of readings that each of these
+        priors counts as.
     """
 
     seating: float = 0.05 * MM

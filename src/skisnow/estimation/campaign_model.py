@@ -61,26 +61,15 @@ class Parts(NamedTuple):
 class CampaignModel(ShownFields):
     """The fitted model of m series in G groups; NaN where a series has no estimate.
 
-    Attributes
-    ----------
-    log_hardness, exponent, offset
-        ln H_V (N/m³), g and δ (m).
-    covariance
-        Of these three, (m, 3, 3).
-    scatter_parts
-        Variances of these three that s causes, (m, 3).
-    n_zero
-        Readings at the end of the gauge's scale, which the fit leaves out.
-    misfit, free
-        Weighted sum of squared residuals, and the readings less the parameters that they determine.
-    counts
-        Mask of the series that the spreads are estimated from.
-    group, spreads, freedom
-        Index of the group of each series; spreads and their degrees of freedom, by group.
-    uncertainty, priors
-        Uncertainty of a reading, and priors of the spreads.
-    grouped_by, group_names
-        ``campaign``, ``site`` or ``tool``, and the names of the groups.
+    log_hardness, exponent, offset: ln H_V (N/m³), g and δ (m).
+    covariance: of these three, (m, 3, 3).
+    scatter_parts: variances of these three that s causes, (m, 3).
+    n_zero: readings at the end of the gauge's scale, which the fit leaves out.
+    misfit, free: weighted sum of squared residuals, and the readings less the parameters that they determine.
+    counts: mask of the series that the spreads are estimated from.
+    group, spreads, freedom: index of the group of each series; spreads and their degrees of freedom, by group.
+    uncertainty, priors: uncertainty of a reading, and priors of the spreads.
+    grouped_by, group_names: ``campaign``, ``site`` or ``tool``, and the names of the groups.
     """
 
     log_hardness: FloatArray
@@ -162,18 +151,12 @@ def fit_campaign(
 ) -> CampaignModel:
     """Fit the model to all series.
 
-    Parameters
-    ----------
-    readings, uncertainty
-        The readings, and the standard uncertainties of one.
-    hardness
-        H_V of Eqn 1 (N/m³), from which the iteration starts, (m,).
-    counts
-        Mask of the series that the spreads are estimated from (default: all). The others are fitted with these spreads.
-    group
-        Index of the group of each series (default: one group).
-    priors
-        Priors of the spreads.
+    readings, uncertainty: the readings, and the standard uncertainties of one.
+    hardness: H_V of Eqn 1 (N/m³), from which the iteration starts, (m,).
+    counts: mask of the series that the spreads are estimated from (default: all). The others are fitted with these
+        spreads.
+    group: index of the group of each series (default: one group).
+    priors: priors of the spreads.
     """
     m = readings.n_series
     group = np.zeros(m, dtype=np.int64) if group is None else group

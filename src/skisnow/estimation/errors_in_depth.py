@@ -54,18 +54,11 @@ _BLOCK: Final = 8192
 class FittedHardness(ShownFields):
     """Hardness of m series from all their readings.
 
-    Attributes
-    ----------
-    readings
-        The readings at the depths less the offset of their series.
-    offset
-        δ (m) that was subtracted; 0 where the model has no estimate.
-    value
-        H by definition (SI).
-    interval
-        (m, 2), 95 %, of H_V (N/m³).
-    scatter
-        Relative scatter s of each series about F = H_V V.
+    readings: the readings at the depths less the offset of their series.
+    offset: δ (m) that was subtracted; 0 where the model has no estimate.
+    value: H by definition (SI).
+    interval: (m, 2), 95 %, of H_V (N/m³).
+    scatter: relative scatter s of each series about F = H_V V.
     """
 
     readings: Readings
@@ -169,14 +162,10 @@ _LARGEST_VARIANCE: Final = 0.2
 class VolumeFactor(ShownFields):
     """The factor b of n series.
 
-    Attributes
-    ----------
-    n
-        Number of series.
-    raw, expected_raw
-        By least squares, and the value that these estimate if F = H_V V is true, with these errors and layers.
-    value, low, high
-        Corrected, and its 95 % interval, NaN with one series.
+    n: number of series.
+    raw, expected_raw: by least squares, and the value that these estimate if F = H_V V is true, with these errors and
+        layers.
+    value, low, high: corrected, and its 95 % interval, NaN with one series.
     """
 
     n: int

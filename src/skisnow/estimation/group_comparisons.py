@@ -52,19 +52,13 @@ _OBSERVER: Final = ("observer", "operator")
 class GroupComparison:
     """Ratio of the geometric means of two groups (a over b).
 
-    Attributes
-    ----------
-    quantity, by
-        ``H_V`` or ``S_f``; ``site``, ``tool``, ``observer`` or ``day``.
-    n_a, n_b
-        Used experiments of each group.
-    ratio, interval, p
-        With 95 % interval and test against 1, of this pair; NaN where the scatter is unknown.
-    p_holm, n_pairs
-        p corrected for the number of pairs of this quantity and kind of group (Holm 1979, Scand. J. Stat. 6, 65-70).
-    n_needed
-        Experiments in each group that would detect the difference of the analysis with a power of 80 % at 5 %, given
-        the pooled scatter; None where the scatter is unknown.
+    quantity, by: ``H_V`` or ``S_f``; ``site``, ``tool``, ``observer`` or ``day``.
+    n_a, n_b: used experiments of each group.
+    ratio, interval, p: with 95 % interval and test against 1, of this pair; NaN where the scatter is unknown.
+    p_holm, n_pairs: p corrected for the number of pairs of this quantity and kind of group (Holm 1979, Scand. J. Stat.
+        6, 65-70).
+    n_needed: experiments in each group that would detect the difference of the analysis with a power of 80 % at 5 %,
+        given the pooled scatter; None where the scatter is unknown.
     """
 
     quantity: str
@@ -119,14 +113,9 @@ def group_labels(tests: PenetrationTests | ShearTests, tool: tuple[str, ...]) ->
 def compare_groups(data: Measured, by: str, difference: float = DIFFERENCE) -> tuple[GroupComparison, ...]:
     """Compare every pair of groups, in alphabetical order; groups other than sites at their common sites.
 
-    Parameters
-    ----------
-    data
-        The values.
-    by
-        Kind of group: a key of ``data.labels``.
-    difference
-        Relative difference that ``n_needed`` is for, > 0.
+    data: the values.
+    by: kind of group: a key of ``data.labels``.
+    difference: relative difference that ``n_needed`` is for, > 0.
     """
     labelled = np.flatnonzero([bool(label) for label in data.labels[by]])
     if labelled.size == 0:

@@ -37,16 +37,10 @@ if TYPE_CHECKING:
 class HardnessDefinition:
     """One way to define hardness.
 
-    Attributes
-    ----------
-    symbol
-        H_e, H_A or H_V.
-    unit, unit_key, si
-        Its unit in the paper as printed, as in keys and file headers, and as a factor to SI.
-    measure
-        M of each reading (SI).
-    growth
-        dM/de of each reading (SI).
+    symbol: H_e, H_A or H_V.
+    unit, unit_key, si: its unit in the paper as printed, as in keys and file headers, and as a factor to SI.
+    measure: M of each reading (SI).
+    growth: dM/de of each reading (SI).
     """
 
     symbol: str
@@ -80,12 +74,8 @@ DEFINITIONS: Final = {
 class Hardness(ShownFields):
     """Hardness of m series by one definition, in SI; NaN where it does not exist.
 
-    Attributes
-    ----------
-    value
-        H.
-    interval
-        (m, 2), 95 %; contains gauge, load, seating and scatter. NaN with fewer than two readings in contact.
+    value: H.
+    interval: (m, 2), 95 %; contains gauge, load, seating and scatter. NaN with fewer than two readings in contact.
     """
 
     value: FloatArray
@@ -259,13 +249,9 @@ def shear_stress(campaign: Campaign, tests: ShearTests) -> ShearStress:
 class ShearDisplacement(ShownFields):
     """u_y of m shear tests; NaN where a test has no rising part.
 
-    Attributes
-    ----------
-    n_readings
-        Readings of the rising part, one number per test.
-    value, interval
-        u_y (m), and its 95 % interval (m, 2) from the scatter about the line and the stated uncertainties of moment and
-        lever arm: NaN with fewer than three readings.
+    n_readings: readings of the rising part, one number per test.
+    value, interval: u_y (m), and its 95 % interval (m, 2) from the scatter about the line and the stated uncertainties
+        of moment and lever arm: NaN with fewer than three readings.
     """
 
     n_readings: IntArray

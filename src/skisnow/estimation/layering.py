@@ -56,12 +56,8 @@ _LIMITS: Final = (-0.9, 20.0)
 class Layering:
     """Estimates of m series with layering allowed; NaN where the fit found no solution.
 
-    Attributes
-    ----------
-    load_exponent, load_exponent_error
-        g of V ~ F^g, 1 for even snow, and its standard error; κ = 2/g - 2.
-    degrees_of_freedom
-        Degrees of freedom of the standard error.
+    load_exponent, load_exponent_error: g of V ~ F^g, 1 for even snow, and its standard error; κ = 2/g - 2.
+    degrees_of_freedom: degrees of freedom of the standard error.
     """
 
     load_exponent: FloatArray
@@ -194,12 +190,9 @@ def inverse_of_each(normal: FloatArray) -> FloatArray:
 class GrowingHardness(ShownFields):
     """Results of m series; NaN with fewer than five readings or where the fit did not converge.
 
-    Attributes
-    ----------
-    surface_hardness
-        H_0 (N/m³).
-    growth, growth_interval
-        γ and its 95 % interval (m, 2), which is one of ln(1 + γ): there the errors hardly depend on γ.
+    surface_hardness: H_0 (N/m³).
+    growth, growth_interval: γ and its 95 % interval (m, 2), which is one of ln(1 + γ): there the errors hardly depend
+        on γ.
     """
 
     surface_hardness: FloatArray

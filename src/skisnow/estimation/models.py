@@ -103,19 +103,13 @@ NESTED_PAIRS: Final = tuple((full, reduced) for full in MODELS for reduced in MO
 class ModelFit(ShownFields):
     """A fitted row, in SI (a and b such that F in N from A in m², V in m³, H in SI, ϑ in rad).
 
-    Attributes
-    ----------
-    a0, a1, b0, b1
-        Coefficients; a1, b1 are NaN where the edge angle does not vary.
-    n, n_series, n_parameters
-        Readings, series, nominal fitted parameters (where the edge angle does not vary: the rank of the design).
-    rmse, rmse_dof, rmse_free
-        Over n; over n - n_parameters; without each series' defining reading, over n - n_series (N). NaN where
-        undefined.
-    at_bound
-        Which coefficients sit on their bound, at which end of the data's angles.
-    sse
-        Sum of squared residuals (N²).
+    a0, a1, b0, b1: coefficients; a1, b1 are NaN where the edge angle does not vary.
+    n, n_series, n_parameters: readings, series, nominal fitted parameters (where the edge angle does not vary: the rank
+        of the design).
+    rmse, rmse_dof, rmse_free: over n; over n - n_parameters; without each series' defining reading, over n - n_series
+        (N). NaN where undefined.
+    at_bound: which coefficients sit on their bound, at which end of the data's angles.
+    sse: sum of squared residuals (N²).
     """
 
     model: Model

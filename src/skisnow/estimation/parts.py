@@ -113,12 +113,10 @@ def used_of(screened: Screened) -> str:
 class Seating(ShownFields):
     """Depth zero of m series: the tool touched at gauge reading ``offset``; true depth = reading - offset.
 
-    Attributes
-    ----------
-    offset, interval
-        δ (m) and its 95 % interval (m, 2), from `campaign_model`; NaN with fewer than two readings in contact.
-    hardness_change
-        Relative change of the largest-load H_V when δ is subtracted from its depth; NaN where no depth remains.
+    offset, interval: δ (m) and its 95 % interval (m, 2), from `campaign_model`; NaN with fewer than two readings in
+        contact.
+    hardness_change: relative change of the largest-load H_V when δ is subtracted from its depth; NaN where no depth
+        remains.
     """
 
     offset: FloatArray

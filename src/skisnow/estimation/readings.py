@@ -35,20 +35,13 @@ class ReadingUncertainty:
 class Readings(ShownFields):
     """n readings of m series in SI, series after series, each in the order of loading.
 
-    Attributes
-    ----------
-    load, penetration_depth
-        F (N) and e (m), one per reading.
-    edge_angle
-        ϑ (rad), one per series.
-    first
-        m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to series i.
-    largest
-        Index of the reading under the largest load, one per series: the paper's seventh, which defines the hardness.
-    tool
-        The tool of each series, as an index into ``tools``.
-    tools
-        The geometries, in the chosen form.
+    load, penetration_depth: F (N) and e (m), one per reading.
+    edge_angle: ϑ (rad), one per series.
+    first: m + 1 offsets: readings ``first[i]:first[i + 1]`` belong to series i.
+    largest: index of the reading under the largest load, one per series: the paper's seventh, which defines the
+        hardness.
+    tool: the tool of each series, as an index into ``tools``.
+    tools: the geometries, in the chosen form.
     """
 
     load: FloatArray

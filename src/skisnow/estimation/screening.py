@@ -158,14 +158,9 @@ def series_estimates(
 ) -> SeriesEstimates:
     """Estimates of all series.
 
-    Parameters
-    ----------
-    campaign, tests, readings
-        The campaign, its penetration tests, and their readings.
-    counts
-        Mask of the series that the spreads are estimated from (default: all).
-    not_falling
-        Mask of the series whose unloading is omitted (default: none).
+    campaign, tests, readings: the campaign, its penetration tests, and their readings.
+    counts: mask of the series that the spreads are estimated from (default: all).
+    not_falling: mask of the series whose unloading is omitted (default: none).
     """
     priors = DEFAULT_PRIORS if campaign.seating is None else replace(DEFAULT_PRIORS, seating=campaign.seating)
     model = fit_in_groups(

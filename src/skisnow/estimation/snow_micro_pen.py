@@ -40,14 +40,9 @@ Json: TypeAlias = dict[str, Any]
 class WindowMeans:
     """Medians of the shot noise of the windows between the two depths, means of density and surface area.
 
-    Attributes
-    ----------
-    rupture_force, deflection, element_size
-        f₀ (N), δ (m), L (m): medians.
-    snow_density, specific_surface_area
-        Means (kg/m³, m²/kg); NaN if the relation gives no value.
-    n
-        Windows.
+    rupture_force, deflection, element_size: f₀ (N), δ (m), L (m): medians.
+    snow_density, specific_surface_area: means (kg/m³, m²/kg); NaN if the relation gives no value.
+    n: windows.
     """
 
     rupture_force: float
@@ -62,23 +57,14 @@ class WindowMeans:
 class EvaluatedRecording:
     """One recording; NaN where it has no such number.
 
-    Attributes
-    ----------
-    flags
-        Codes of `FLAGS`; a recording without flags is used.
-    surface
-        Depth of the snow surface from where the recording began (m).
-    reach
-        How deep below the surface it ends (m).
-    air_force
-        In the air before the surface (N).
-    mean_force, median_force
-        Between the two depths (N).
-    resistance
-        Penetration resistance: the mean force over the cross-section of the tip (Pa). It is the hardness of the
+    flags: codes of `FLAGS`; a recording without flags is used.
+    surface: depth of the snow surface from where the recording began (m).
+    reach: how deep below the surface it ends (m).
+    air_force: in the air before the surface (N).
+    mean_force, median_force: between the two depths (N).
+    resistance: penetration resistance: the mean force over the cross-section of the tip (Pa). It is the hardness of the
         international classification of seasonal snow (Fierz and others 2009), not H_V.
-    windows
-        By the name of each published relation.
+    windows: by the name of each published relation.
     """
 
     flags: tuple[str, ...]
@@ -164,20 +150,12 @@ def evaluate_profile(
 ) -> EvaluatedRecording:
     """Mean force, shot noise, density and surface area of one recording.
 
-    Parameters
-    ----------
-    profile
-        Force against depth.
-    settings
-        Between which depths, by which relation, how the surface is estimated.
-    surface
-        Where the snow begins (m from the first sample); NaN: it is estimated.
-    is_cancelled
-        True if the row states it.
+    profile: force against depth.
+    settings: between which depths, by which relation, how the surface is estimated.
+    surface: where the snow begins (m from the first sample); NaN: it is estimated.
+    is_cancelled: True if the row states it.
 
-    References
-    ----------
-    The page docs/methods/snow-micro-pen.md.
+    Source: The page docs/methods/snow-micro-pen.md.
     """
     top = _surface(profile, settings, surface)
     flags = [CANCELLED] if is_cancelled else []
@@ -216,14 +194,9 @@ def _nothing(flags: tuple[str, ...], surface: SnowSurface | None = None, reach: 
 class DepthProfile:
     """Force, density and surface area over the depth below the snow surface, at the middle of each window.
 
-    Attributes
-    ----------
-    depth
-        m, downwards.
-    force
-        Median (N).
-    snow_density, specific_surface_area
-        kg/m³ and m²/kg, NaN where the relation gives no value.
+    depth: m, downwards.
+    force: median (N).
+    snow_density, specific_surface_area: kg/m³ and m²/kg, NaN where the relation gives no value.
     """
 
     depth: FloatArray

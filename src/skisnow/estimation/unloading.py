@@ -58,22 +58,16 @@ _LARGEST_SHARE: Final = 0.9
 class Unloading(ShownFields):
     """Unloading of m series; NaN where a series has none.
 
-    Attributes
-    ----------
-    n_readings
-        Readings of the unloading branch, one number per series.
-    rebound_ratio, rebound_ratio_error, rebound_ratio_interval
-        s = H_V/k_u, 0 for rigid-plastic and 1 for elastic snow, its standard error and 95 % interval
-        (m, 2); the last two need two readings.
-    unloading_ratio, unloading_ratio_interval
-        k_u/H_V and its 95 % interval (m, 2); the interval is NaN where that of s reaches 0.
-    unloading_stiffness, unloading_stiffness_interval
-        k_u (N/m³) with H_V of Eqn 1, and its 95 % interval (m, 2).
-    below_step
-        Mask of the series that rebounded by less than one step of the gauge. Rounding is not an independent error
-        there, so the interval of s is the bound that one step allows, and k_u/H_V has no upper end.
-    rebound_scatter, rebound_freedom
-        r, the relative scatter of the rebound, and its degrees of freedom, by group of the model; NaN if not unloaded.
+    n_readings: readings of the unloading branch, one number per series.
+    rebound_ratio, rebound_ratio_error, rebound_ratio_interval: s = H_V/k_u, 0 for rigid-plastic and 1 for elastic snow,
+        its standard error and 95 % interval (m, 2); the last two need two readings.
+    unloading_ratio, unloading_ratio_interval: k_u/H_V and its 95 % interval (m, 2); the interval is NaN where that of s
+        reaches 0.
+    unloading_stiffness, unloading_stiffness_interval: k_u (N/m³) with H_V of Eqn 1, and its 95 % interval (m, 2).
+    below_step: mask of the series that rebounded by less than one step of the gauge. Rounding is not an independent
+        error there, so the interval of s is the bound that one step allows, and k_u/H_V has no upper end.
+    rebound_scatter, rebound_freedom: r, the relative scatter of the rebound, and its degrees of freedom, by group of
+        the model; NaN if not unloaded.
     """
 
     n_readings: IntArray
@@ -98,15 +92,12 @@ class Unloading(ShownFields):
 class SiteUnloading:
     """The unloading of the n used series of a site (None: of all sites together, taken for draws from one snow).
 
-    Attributes
-    ----------
-    ratio, low, high
-        k_u/H_V, the harmonic mean over the series, which keeps the mean rebound, and its 95 % interval, NaN where the
-        rebound could be 0 or one series leaves it open; the ratio is NaN where nothing came back on average.
-    low_rebound, high_rebound
-        95 % interval of the mean of H_V/k_u.
-    stiffness, stiffness_low, stiffness_high
-        k_u (N/m³), the geometric mean over the series whose tool rebounded, and its 95 % interval from their scatter.
+    ratio, low, high: k_u/H_V, the harmonic mean over the series, which keeps the mean rebound, and its 95 % interval,
+        NaN where the rebound could be 0 or one series leaves it open; the ratio is NaN where nothing came back on
+        average.
+    low_rebound, high_rebound: 95 % interval of the mean of H_V/k_u.
+    stiffness, stiffness_low, stiffness_high: k_u (N/m³), the geometric mean over the series whose tool rebounded, and
+        its 95 % interval from their scatter.
     """
 
     site: str | None
@@ -131,19 +122,12 @@ def unloading(
 ) -> Unloading:
     """Fit the unloading of every series.
 
-    Parameters
-    ----------
-    tests
-        The experiments.
-    readings
-        Their readings under rising loads; ``tests.unloading`` follows the one under the largest load, or begins with
-        another reading under it.
-    hardness
-        H_V of each series.
-    model
-        Model of the campaign, for the depth zeros.
-    bad
-        Mask over the series: those that are omitted, because their loads do not fall.
+    tests: the experiments.
+    readings: their readings under rising loads; ``tests.unloading`` follows the one under the largest load, or begins
+        with another reading under it.
+    hardness: H_V of each series.
+    model: model of the campaign, for the depth zeros.
+    bad: mask over the series: those that are omitted, because their loads do not fall.
     """
     m, back = len(tests), tests.unloading
     chosen = np.zeros(m, dtype=np.bool_) if back is None else (back.count > 0) & ~bad & np.isfinite(model.offset)

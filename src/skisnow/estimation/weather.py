@@ -61,13 +61,9 @@ class WeatherAtTests(Shown):
 def weather_at_tests(campaign: Campaign) -> WeatherAtTests | None:
     """Interpolate the station's readings to the time of each experiment; None where the campaign has no weather.
 
-    Notes
-    -----
     An experiment has weather if the column ``time`` of one of its rows contains a day and a time of day.
 
-    References
-    ----------
-    The page docs/files/campaign.md.
+    Source: The page docs/files/campaign.md.
     """
     weather = campaign.weather
     if weather is None:

@@ -13,22 +13,13 @@ def cutting_stress(
 ) -> FloatArray:
     """Tangential stress F_t/(L e) = 2 S cot((ϑ - β)/2), β = arctan μ_t (Eqn 10 of Mössner and others 2013).
 
-    Parameters
-    ----------
-    dynamic_shear_strength
-        S (N/m²).
-    edge_angle
-        ϑ (rad), β < ϑ ≤ π/2. At and below β the theory has no shear plane: NaN.
-    transverse_friction
-        μ_t ≥ 0, the dynamic friction transverse to the ski.
+    dynamic_shear_strength: S (N/m²).
+    edge_angle: ϑ (rad), β < ϑ ≤ π/2. At and below β the theory has no shear plane: NaN.
+    transverse_friction: μ_t ≥ 0, the dynamic friction transverse to the ski.
 
-    Notes
-    -----
     Merchant's theory with the shear plane at φ = (ϑ - β)/2 to the snow surface. A vertical blade without friction has
     F_t/(L e) = 2 S. The paper did not find this dependence in the failure shear stress of groomed snow.
 
-    Examples
-    --------
     >>> import math
     >>> round(float(cutting_stress(0.0172, math.pi / 2, transverse_friction=0.0)), 4)
     0.0344

@@ -16,20 +16,12 @@ from .parameter_checks import require_above_zero, require_not_below_zero
 class AirDrag:
     """F = -½ ρ C_dA w w⃗, with w⃗ the velocity relative to the air and w its size.
 
-    Attributes
-    ----------
-    drag_area
-        C_dA (m²), ≥ 0; 0 is drag switched off.
-    air_density
-        ρ (kg/m³): about 1.3 at 0 °C at sea level, 1.0 at 2,000 m.
+    drag_area: C_dA (m²), ≥ 0; 0 is drag switched off.
+    air_density: ρ (kg/m³): about 1.3 at 0 °C at sea level, 1.0 at 2,000 m.
 
-    Notes
-    -----
     Range: 0.23 m² (tuck) to 0.66 m² (upright), Supej and others (2022), Appl. Sci. 12, 902. The size of the velocity
     goes over all components: the force on the components taken one by one would depend on the frame.
 
-    Examples
-    --------
     ½·1.2·0.5·20 = 6 kg/s; at 12 m/s along x and 16 m/s along y it takes 72 and 96 N.
 
     >>> drag = AirDrag(drag_area=0.5, air_density=1.2)
@@ -49,17 +41,9 @@ class AirDrag:
     def force(self, velocity: npt.ArrayLike, *, wind: npt.ArrayLike = 0.0) -> FloatArray:
         """Force (N) of the air on a body with this velocity over the ground.
 
-        Parameters
-        ----------
-        velocity
-            m/s, shape (..., d) with d components.
-        wind
-            Velocity of the air (m/s) in the same components (default: still air).
-
-        Returns
-        -------
-        array
-            Shape (..., d).
+        velocity: m/s, shape (..., d) with d components.
+        wind: velocity of the air (m/s) in the same components (default: still air).
+        Returns: shape (..., d).
         """
         relative = np.asarray(velocity, float) - np.asarray(wind, float)
         speed = np.linalg.norm(relative, axis=-1, keepdims=True)

@@ -12,14 +12,9 @@ from .._support.arrays import FloatArray
 def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:
     """Axes of a boot, ahead, left and off the base as rows, (3, 3).
 
-    Parameters
-    ----------
-    edge_angle
-        About the ski, the left edge down for positive ones (rad): the last rotation.
-    pitch
-        The tip up for positive ones (rad).
-    heading
-        To the left for positive ones (rad): the first rotation.
+    edge_angle: about the ski, the left edge down for positive ones (rad): the last rotation.
+    pitch: the tip up for positive ones (rad).
+    heading: to the left for positive ones (rad): the first rotation.
     """
     (sh, ch), (sp, cp), (se, ce) = ((math.sin(a), math.cos(a)) for a in (heading, pitch, edge_angle))
     ahead = np.array([ch * cp, sh * cp, sp])
@@ -31,8 +26,6 @@ def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:
 def angles_of(axes: FloatArray) -> FloatArray:
     """Edge angle, pitch and heading (rad) of axes, (…, 3, 3) to (…, 3): the inverse of `axes_of`.
 
-    Examples
-    --------
     >>> [round(float(angle), 12) for angle in angles_of(axes_of(0.7, 0.1, -0.3))]
     [0.7, 0.1, -0.3]
     """

@@ -26,22 +26,12 @@ class Plane:
 class Grid(ShownFields):
     """Values over evenly spaced places, joined by smooth patches.
 
-    Attributes
-    ----------
-    x, y
-        Places (m), (n,) and (m,), evenly spaced and rising; one place in x or y: the same at every x or y.
-    values
-        (n, m): height (m), or another quantity over the place in its unit.
+    x, y: places (m), (n,) and (m,), evenly spaced and rising; one place in x or y: the same at every x or y.
+    values: (n, m): height (m), or another quantity over the place in its unit.
+    Raises ParameterError: places are not evenly spaced and rising, shapes do not fit, or a number is not finite.
 
-    Notes
-    -----
     Ferguson's bicubic patches with slopes from central differences: value and slope are continuous, a plane is exact.
     Beyond the border a height continues along its slope, another quantity with its last value.
-
-    Raises
-    ------
-    ParameterError
-        Places are not evenly spaced and rising, shapes do not fit, or a number is not finite.
     """
 
     x: FloatArray
@@ -151,20 +141,12 @@ class _Weights(NamedTuple):
 def patched(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
     """Values (n, m) between their places.
 
-    Parameters
-    ----------
-    values
-        (n, m) at the places 0 to n - 1 and 0 to m - 1.
-    u, v
-        Places (k,) in steps of the grid, inside it.
+    values: (n, m) at the places 0 to n - 1 and 0 to m - 1.
+    u, v: places (k,) in steps of the grid, inside it.
 
-    Notes
-    -----
     Cubic Hermite in both directions without a twist at the corners; slopes at the places are central differences, at a
     border those of the parabola through three values.
 
-    Examples
-    --------
     A parabola comes back: 1.5² = 2.25, with the slope 3.
 
     >>> found = patched(np.arange(4.0)[:, None] ** 2, np.array([1.5]), np.zeros(1))
@@ -229,23 +211,14 @@ HALVING: Final = math.sqrt(math.log(2.0) / math.pi)
 def smoothed(values: FloatArray, steps: tuple[float, float], *, cutoff: float) -> FloatArray:
     """Values over a grid without structures shorter than a length.
 
-    Parameters
-    ----------
-    values
-        (n, m) at evenly spaced places.
-    steps
-        Between the places along both axes (m), > 0.
-    cutoff
-        Length λ_c ≥ 0 (m) of the wave that keeps half of its height; one of twice the length keeps 84 %, one of half
-        the length 6 %. 0: nothing is smoothed.
+    values: (n, m) at evenly spaced places.
+    steps: between the places along both axes (m), > 0.
+    cutoff: length λ_c ≥ 0 (m) of the wave that keeps half of its height; one of twice the length keeps 84 %, one of
+        half the length 6 %. 0: nothing is smoothed.
 
-    Notes
-    -----
     Weights w(t) = exp(-π (t/(α λ_c))²), α = √(ln 2/π), up to |t| = λ_c, along one axis after the other (ISO 16610-21).
     Near a border the value of the straight line through the weighted values: a plane stays a plane everywhere.
 
-    Examples
-    --------
     >>> plane = np.add.outer(np.arange(3.0), 2.0 * np.arange(4.0))
     >>> bool(np.allclose(smoothed(plane, (1.0, 1.0), cutoff=5.0), plane))
     True

@@ -54,10 +54,8 @@ def read_data(path: str | Path) -> Data:
     A table with time, x and y, or time, latitude and longitude, is a track, whatever else it has: a run's own track.csv
     has the column ``turn_radius_m``, as measured grooves do.
 
-    Raises
-    ------
-    ParameterError, FieldDataError
-        The file cannot be read, or something in it is wrong; place and value are named.
+    Raises ParameterError or FieldDataError: the file cannot be read, or something in it is wrong; place and value are
+        named.
     """
     path = Path(path)
     if not is_file(path):
@@ -129,20 +127,12 @@ def fingerprint(scenario_input: ScenarioInput, tracks: Sequence[TrackPoints]) ->
 class IdentificationData:
     """The data of an identification by kind; names of runs are unique.
 
-    Attributes
-    ----------
-    tracks, cells, grooves
-        Measured data.
-    starts
-        Values of keys for single runs, by run, from ``[identify.runs."NAME"]``.
-    fixed
-        Values of keys in every simulated run.
-    first_motions
-        If there are several runs: values of the start keys, by track, estimated from its first points.
-    descriptions
-        Name and recognised kind of each datum.
-    warnings, methods
-        Warnings about the data, and sentences on how they were transformed.
+    tracks, cells, grooves: measured data.
+    starts: values of keys for single runs, by run, from ``[identify.runs."NAME"]``.
+    fixed: values of keys in every simulated run.
+    first_motions: if there are several runs: values of the start keys, by track, estimated from its first points.
+    descriptions: name and recognised kind of each datum.
+    warnings, methods: warnings about the data, and sentences on how they were transformed.
     """
 
     tracks: tuple[TrackPoints, ...]
@@ -166,10 +156,8 @@ def collect_data(
 ) -> IdentificationData:
     """Read the files, move tracks into the slope's frame, and check the data against the scenario.
 
-    Raises
-    ------
-    ParameterError, FieldDataError
-        A file cannot be used; a track is from another place; the scenario names an unknown run.
+    Raises ParameterError or FieldDataError: a file cannot be used; a track is from another place; the scenario names an
+        unknown run.
     """
     if not data:
         raise ParameterError("there are no data: name one or several files", code="no_data")
@@ -328,24 +316,10 @@ FARTHEST: Final = 50_000.0
 def move_to_scenario_frame(track: Track, scenario: ScenarioFile, site: object) -> tuple[Track, list[str]]:
     """Move a track to the slope's frame (x down the fall line, y to the left).
 
-    Parameters
-    ----------
-    track
-        Track in any frame; a track in local metres is assumed to be in the slope's frame already.
-    scenario
-        The scenario.
-    site
-        Table ``[identify.site]`` with the place of the slope (optional).
-
-    Returns
-    -------
-    tuple
-        The moved track, and sentences on the method.
-
-    Raises
-    ------
-    ParameterError
-        The track is in east, north, up and `site` is missing; or the track is from another place.
+    track: track in any frame; a track in local metres is assumed to be in the slope's frame already.
+    site: table ``[identify.site]`` with the place of the slope (optional).
+    Returns: the moved track, and sentences on the method.
+    Raises ParameterError: the track is in east, north, up and `site` is missing; or the track is from another place.
     """
     if track.axes != "east_north_up":
         return track, []

@@ -46,18 +46,11 @@ _MEASURED: Final = {
 class TableFile:
     """Cells of a table as text.
 
-    Attributes
-    ----------
-    name
-        Name of the file, for messages.
-    columns
-        Names in the header.
-    rows
-        Line number and cells of each line that is not blank.
-    header_row
-        Line number of the header.
-    mark
-        Decimal point or comma.
+    name: name of the file, for messages.
+    columns: names in the header.
+    rows: line number and cells of each line that is not blank.
+    header_row: line number of the header.
+    mark: decimal point or comma.
     """
 
     name: str

@@ -36,15 +36,11 @@ class SlopeLine:
     between the middles the gradient changes linearly (modelling assumption). The bend is then distributed between two
     middles and never has the wrong sign, as it would with cubics through the points.
 
-    Attributes
-    ----------
-    arc_length
-        (n + 1,) m: the beginnings of the pieces, the first at 0, and the end of the last one; infinite for a plane.
-    x
-        (n + 1,) m: the horizontal distances of these places.
-    gradient
-        (2, n): dz/dx at the beginning of each piece, and d²z/dx² (1/m); of planes one column for each body, or one for
-        all.
+    arc_length: (n + 1,) m: the beginnings of the pieces, the first at 0, and the end of the last one; infinite for a
+        plane.
+    x: (n + 1,) m: the horizontal distances of these places.
+    gradient: (2, n): dz/dx at the beginning of each piece, and d²z/dx² (1/m); of planes one column for each body, or
+        one for all.
     """
 
     arc_length: FloatArray
@@ -115,16 +111,10 @@ def _lengths(line: SlopeLine) -> FloatArray:
 class Glide:
     """Parameters of k gliding bodies, (k,) each.
 
-    Attributes
-    ----------
-    friction, friction_by_speed
-        μ_0, and μ_1 (s/m).
-    drag_per_mass
-        ½ ρ C_dA / m (1/m).
-    speed
-        Speed at the start (m/s).
-    gravity
-        Gravity (m/s²).
+    friction, friction_by_speed: μ_0, and μ_1 (s/m).
+    drag_per_mass: ½ ρ C_dA / m (1/m).
+    speed: speed at the start (m/s).
+    gravity: gravity (m/s²).
     """
 
     friction: FloatArray
@@ -144,25 +134,13 @@ class Glide:
 def passage_times(line: SlopeLine, glide: Glide, station: FloatArray, longest: float) -> FloatArray:
     """Times at which each body passes each cell.
 
-    Parameters
-    ----------
-    line
-        The slope along the path.
-    glide
-        k bodies.
-    station
-        (n,) or (k, n) m, rising, at least 0.
-    longest
-        Approximate duration of the runs (s); it sets the time step, and `LONGEST_WAIT` times it is simulated.
-
-    Returns
-    -------
-    array
-        (k, n) s. For a cell that a body has not reached in the longest time, the body is assumed to continue at
+    line: the slope along the path.
+    glide: k bodies.
+    station: (n,) or (k, n) m, rising, at least 0.
+    longest: approximate duration of the runs (s); it sets the time step, and `LONGEST_WAIT` times it is simulated.
+    Returns: (k, n) s. For a cell that a body has not reached in the longest time, the body is assumed to continue at
         0.1 m/s: the time is later than any time of a cell that was reached, and grows with the missing distance.
 
-    Notes
-    -----
     Runge-Kutta method of fourth order in time, which also works for a start from rest, unlike ∫ ds/v. The curvature of
     a profile jumps between its pieces, so a step ends at each jump. Passages between steps are interpolated by a cubic
     through places and speeds.

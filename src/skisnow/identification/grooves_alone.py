@@ -28,8 +28,6 @@ def identify_from_grooves(
 ) -> Identification:
     """Identify from measured grooves.
 
-    Notes
-    -----
     If S_f is free, the grooves are first compared with those of a ski whose edge holds, which do not depend on S_f. If
     they agree, the turn gives only a lower bound of S_f. If the measured radius is significantly larger (1 %) than the
     radius of the carving ski, the edge slid, and S_f follows from the side force.

@@ -38,8 +38,6 @@ _SMALL_BALL: Final = 0.5
 def add_profile_intervals(identification: Identification, solution: Solution, progress: Progress) -> Identification:
     """Add profile-likelihood intervals: fix each parameter at several values and refit all others.
 
-    Notes
-    -----
     The interval ends where the rise is the square of the factor of the interval by curvature: 3.84 with stated noise.
     """
     uncertainty = solution.uncertainty()
@@ -155,10 +153,7 @@ def add_posterior_intervals(
 def require_emcee() -> Any:
     """Import emcee, the package that samples the posterior.
 
-    Raises
-    ------
-    ParameterError
-        It is not installed.
+    Raises ParameterError: it is not installed.
     """
     return needed("emcee", extra="posterior", what=Message("A posterior"))
 
@@ -168,8 +163,6 @@ def posterior_places(
 ) -> tuple[FloatArray | None, str]:
     """About `samples` samples (N, p) on the scale of the search, and a sentence on the method.
 
-    Notes
-    -----
     Noise is normal with the stated or estimated standard deviation. Parameters without a prior have a flat one inside
     the bounds (in the logarithm for logarithmic parameters).
     """
@@ -254,10 +247,7 @@ class _Resample:
 def require_bootstrap(resamples: int, by: str) -> None:
     """Validate the options of the bootstrap.
 
-    Raises
-    ------
-    ParameterError
-        Between 1 and `FEWEST` resamples, or an unknown method.
+    Raises ParameterError: between 1 and `FEWEST` resamples, or an unknown method.
     """
     if by not in ("refit", "linear"):
         raise ParameterError(
@@ -283,8 +273,6 @@ def add_bootstrap_intervals(
 ) -> Identification:
     """Add bootstrap intervals: resample blocks of residuals and refit each resample.
 
-    Notes
-    -----
     The length of a block is the cube root of that of its series, at least 3, so correlated noise stays correlated.
     A resample's search begins at the minimum of the linearised model and continues with Gauss-Newton steps and
     separate simulations; derivatives are those of the best place, with their change along each parameter. With

@@ -190,19 +190,10 @@ def parameter_table(
 ) -> tuple[Parameter, ...]:
     """The free parameters in the order of their keys.
 
-    Parameters
-    ----------
-    keys
-        Full names, or ``KEY@RUN`` for a separate value of a run.
-    values
-        Start values by the same names or by those without ``@RUN``; `tables` override them.
-    tables
-        Entries of the tables ``[identify."KEY"]``, from `given_parameters`.
-
-    Raises
-    ------
-    ParameterError
-        A key has no start value, or an entry is not valid for a `Parameter`.
+    keys: full names, or ``KEY@RUN`` for a separate value of a run.
+    values: start values by the same names or by those without ``@RUN``; `tables` override them.
+    tables: entries of the tables ``[identify."KEY"]``, from `given_parameters`.
+    Raises ParameterError: a key has no start value, or an entry is not valid for a `Parameter`.
     """
     return tuple(_parameter(key, values, tables) for key in keys)
 

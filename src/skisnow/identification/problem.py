@@ -125,16 +125,12 @@ def unweighted_problem(parameters: tuple[Parameter, ...], observations: tuple[Ob
 class Fit(ShownFields):
     """Measured and fitted values of one run.
 
-    Attributes
-    ----------
-    name, kind
-        Name of the run, and kind of its data.
-    along : (n,)
-        Abscissa of the points: time (s) of a track, distance (m) of photo cells, number of a place of a groove.
-    labels
-        Names of the k quantities, with units.
-    measured, fitted, sd : (n, k)
-        Values and the standard deviations that divide the residuals; NaN if a quantity was not measured.
+    name, kind: name of the run, and kind of its data.
+    along: (n,), abscissa of the points: time (s) of a track, distance (m) of photo cells, number of a place of a
+        groove.
+    labels: names of the k quantities, with units.
+    measured, fitted, sd: (n, k), values and the standard deviations that divide the residuals; NaN if a quantity was
+        not measured.
     """
 
     name: str
@@ -197,13 +193,8 @@ class Observations(Protocol):
 def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
     """The free keys; with several runs, keys of the start and keys with ``@each`` are repeated for each run.
 
-    Raises
-    ------
-    ParameterError
-        A run is unknown, or a key is free twice in one run.
+    Raises ParameterError: a run is unknown, or a key is free twice in one run.
 
-    Examples
-    --------
     >>> expand_keys(["friction.mu_0", "start.speed_m_per_s"], ["a", "b"])
     ('friction.mu_0', 'start.speed_m_per_s@a', 'start.speed_m_per_s@b')
     >>> expand_keys(["drag.drag_area_m2@each", "friction.mu_0@b"], ["a", "b"])

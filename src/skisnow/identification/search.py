@@ -34,29 +34,18 @@ _AT_BOUND: Final = 1e-9
 class SearchOptions:
     """Step sizes and stopping rules of a search; lengths are in parameters' sizes.
 
-    Attributes
-    ----------
-    smallest_step, largest_step
-        Limits of the finite-difference step; between them it is the parameter's current standard error.
-    tolerance
-        The search converged if a full step moves the residuals by fewer standard deviations of one residual.
-    worth
-        Smallest fall of the sum of squares, in squared standard deviations, for which the search continues.
-    rough
-        Numerical roughness of the residuals in standard deviations: the search also converged if no step improves and
-        the remaining gain is smaller.
-    keeps_jacobian
-        Distance from its place up to which a Jacobian is used again; 0: it is always computed again.
-    longest_move
-        Longest step of a parameter.
-    smallest_move
-        The search converged if a full step is shorter (for data without noise).
-    most_rounds
-        Maximum number of Jacobians.
-    candidates
-        Number of trial steps in one batch.
-    accuracy_is_stated
-        True if residuals have a standard deviation of 1; otherwise it is estimated from them.
+    smallest_step, largest_step: limits of the finite-difference step; between them it is the parameter's current
+        standard error.
+    tolerance: the search converged if a full step moves the residuals by fewer standard deviations of one residual.
+    worth: smallest fall of the sum of squares, in squared standard deviations, for which the search continues.
+    rough: numerical roughness of the residuals in standard deviations: the search also converged if no step improves
+        and the remaining gain is smaller.
+    keeps_jacobian: distance from its place up to which a Jacobian is used again; 0: it is always computed again.
+    longest_move: longest step of a parameter.
+    smallest_move: the search converged if a full step is shorter (for data without noise).
+    most_rounds: maximum number of Jacobians.
+    candidates: number of trial steps in one batch.
+    accuracy_is_stated: True if residuals have a standard deviation of 1; otherwise it is estimated from them.
     """
 
     smallest_step: float = 0.01
@@ -90,19 +79,13 @@ CLOSED_FORM_SEARCH: Final = SearchOptions(
 class SearchState:
     """Current or final place of a search.
 
-    Attributes
-    ----------
-    place
-        (p,) in sizes from the start.
-    residuals, jacobian, second
-        Residuals (n,), their derivatives (n, p), and second differences along each parameter (n, p); None if not
-        computed yet.
-    state
-        Outcome of the search.
-    rounds
-        Number of Jacobians computed by central differences.
-    differentiated_at, is_central, is_trusted
-        Place of the derivatives; True if they are central differences; True if they predicted the last step well.
+    place: (p,) in sizes from the start.
+    residuals, jacobian, second: residuals (n,), their derivatives (n, p), and second differences along each parameter
+        (n, p); None if not computed yet.
+    state: outcome of the search.
+    rounds: number of Jacobians computed by central differences.
+    differentiated_at, is_central, is_trusted: place of the derivatives; True if they are central differences; True if
+        they predicted the last step well.
     """
 
     place: FloatArray

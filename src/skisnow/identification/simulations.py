@@ -37,20 +37,12 @@ _SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 class Simulations:
     """Simulates batches of tasks in parallel; each different task is simulated once.
 
-    Attributes
-    ----------
-    simulate
-        Simulates one task.
-    stored
-        Storage of finished rows.
-    workers
-        Number of processes (default: the number of cores available to this process); 1: this process itself.
-    progress
-        Called with the number of runs computed so far.
-    executor
-        Executor of the simulations (default: processes of this computer).
-    computed, restored
-        Number of runs computed here, and of runs restored from `stored`.
+    simulate: simulates one task.
+    stored: storage of finished rows.
+    workers: number of processes (default: the number of cores available to this process); 1: this process itself.
+    progress: called with the number of runs computed so far.
+    executor: executor of the simulations (default: processes of this computer).
+    computed, restored: number of runs computed here, and of runs restored from `stored`.
     """
 
     simulate: RunSimulation
@@ -71,10 +63,7 @@ class Simulations:
     def __call__(self, tasks: Sequence[RunTask]) -> list[Row]:
         """Rows of all tasks, in their order.
 
-        Raises
-        ------
-        SkisnowError
-            A process ended unexpectedly; finished rows stay stored.
+        Raises SkisnowError: a process ended unexpectedly; finished rows stay stored.
         """
         numbers = [task_number(task) for task in tasks]
         missing = {number: task for number, task in zip(numbers, tasks, strict=True) if number not in self.stored}
@@ -110,14 +99,9 @@ def task_number(task: RunTask) -> int:
 class RunTask:
     """Input of one simulated run.
 
-    Attributes
-    ----------
-    values
-        By the scenario's keys.
-    run
-        Number of the track.
-    final
-        True to use the scenario's solver, with the accuracy of the result.
+    values: by the scenario's keys.
+    run: number of the track.
+    final: True to use the scenario's solver, with the accuracy of the result.
     """
 
     values: Mapping[str, float]
@@ -129,12 +113,7 @@ class RunTask:
 class RunSimulation:
     """Simulates a run that tracks are compared with; instances can be sent to other processes.
 
-    Attributes
-    ----------
-    scenario_input
-        The scenario.
-    times
-        Output times (s) for each track, rising, from the start.
+    times: output times (s) for each track, rising, from the start.
     """
 
     scenario_input: ScenarioInput
@@ -186,12 +165,8 @@ def _row(run: Run, times: FloatArray) -> Row:
 def perturbed_tasks(task: RunTask, values: Mapping[str, float]) -> dict[str, tuple[RunTask, ...]]:
     """Tasks of fast runs with each input increased and decreased by 0.1 %, by key.
 
-    Parameters
-    ----------
-    task
-        Task of the run with the best values.
-    values
-        Values of the scenario for keys that the task does not have. A value of 0 is not changed.
+    task: task of the run with the best values.
+    values: values of the scenario for keys that the task does not have. A value of 0 is not changed.
     """
     base = {**{key: values[key] for key in _SNOW}, **task.values}  # numbers replace a published snow
     tasks: dict[str, tuple[RunTask, ...]] = {}

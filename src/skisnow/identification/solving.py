@@ -40,22 +40,13 @@ _STEPS_APART: Final = 3.0
 class SearchRequest:
     """Options of an identification; see `identify`.
 
-    Attributes
-    ----------
-    title
-        Title of the scenario.
-    starts
-        Number of searches.
-    profile, bootstrap, posterior
-        Requested intervals, with the numbers of resamples and samples.
-    bootstrap_by
-        Method of the bootstrap.
-    rng
-        Source of random numbers.
-    progress
-        Called with the current step.
-    warnings, methods
-        Warnings and sentences on methods from before the search.
+    title: title of the scenario.
+    starts: number of searches.
+    profile, bootstrap, posterior: requested intervals, with the numbers of resamples and samples.
+    bootstrap_by: method of the bootstrap.
+    rng: source of random numbers.
+    progress: called with the current step.
+    warnings, methods: warnings and sentences on methods from before the search.
     """
 
     title: str
@@ -73,10 +64,7 @@ class SearchRequest:
 def solve(problem: Problem, plan: SearchRequest) -> Identification:
     """Search from every start and compute the result at the best place.
 
-    Raises
-    ------
-    FitError
-        Nothing can be computed at any start.
+    Raises FitError: nothing can be computed at any start.
     """
     if plan.starts < 1:
         raise ParameterError("starts is {starts}; at least 1 is needed", code="out_of_range", starts=plan.starts)

@@ -37,20 +37,12 @@ _OUTLIER: Final = 5.0
 class TrackPoints:
     """The usable points of a track.
 
-    Attributes
-    ----------
-    name
-        Name of the track.
-    time, place, sd
-        Times (m,) in s from the first point, places (m, 2) in m, and their standard deviations (m).
-    speed, speed_sd
-        Speeds along the path (m,) in m/s; NaN if recorded without accuracy, or only over the ground.
-    stated
-        True if the receiver states all of `sd`.
-    left_out
-        Number of points that are not used.
-    inexact
-        Warning if some points are less accurate than most (optional).
+    name: name of the track.
+    time, place, sd: times (m,) in s from the first point, places (m, 2) in m, and their standard deviations (m).
+    speed, speed_sd: speeds along the path (m,) in m/s; NaN if recorded without accuracy, or only over the ground.
+    stated: True if the receiver states all of `sd`.
+    left_out: number of points that are not used.
+    inexact: warning if some points are less accurate than most (optional).
     """
 
     name: str
@@ -78,10 +70,7 @@ _NO_POINT: Final = {
 def track_points(track: Track) -> TrackPoints:
     """Select the usable points of a track in the slope's frame.
 
-    Raises
-    ------
-    ParameterError
-        The track has no usable point.
+    Raises ParameterError: the track has no usable point.
     """
     use = track.usable
     if not use.any():
@@ -141,18 +130,12 @@ def first_motion(track: TrackPoints) -> dict[str, float]:
 class TrackPositions:
     """Measured tracks and their simulation.
 
-    Attributes
-    ----------
-    tracks
-        Measured data.
-    simulate
-        Simulates tasks; returns their rows in order.
-    fixed
-        Values of keys in every run, such as both numbers of the snow if one of them is free.
-    starts
-        Values of ``start.…`` keys for single runs, by run.
-    scenario_values
-        Values of the scenario, used to check whether the result is near the limit of grip (default: no check).
+    tracks: measured data.
+    simulate: simulates tasks; returns their rows in order.
+    fixed: values of keys in every run, such as both numbers of the snow if one of them is free.
+    starts: values of ``start.…`` keys for single runs, by run.
+    scenario_values: values of the scenario, used to check whether the result is near the limit of grip (default: no
+        check).
     """
 
     tracks: tuple[TrackPoints, ...]
@@ -310,10 +293,7 @@ def _result_warnings(track: TrackPoints, row: Row) -> list[str]:
 def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_free: bool) -> str | None:
     """Check the distance between a track's first point and the start; return a warning if the fixed start is off.
 
-    Raises
-    ------
-    ParameterError
-        The track begins farther from the start than it is long: it is from another place.
+    Raises ParameterError: the track begins farther from the start than it is long: it is from another place.
     """
     away = math.hypot(track.place[0, 0] - start[0], track.place[0, 1] - start[1])
     if away > max(FARTHEST_START, track.length):

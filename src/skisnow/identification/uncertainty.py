@@ -84,20 +84,12 @@ _COMMON: Final = Message("fix one of them, give it a prior from elsewhere, or ad
 class Uncertainty:
     """Uncertainty of p parameters, in their sizes.
 
-    Attributes
-    ----------
-    covariance
-        (p, p); infinite on the diagonal for undetermined parameters.
-    correlation
-        (p, p); NaN for undetermined parameters.
-    factor
-        Half-width of a 95 % interval over the standard error.
-    unknown
-        (p,) True if the data do not determine the parameter.
-    groups
-        Numbers of the parameters of which only a combination is determined; a single one has no effect on the data.
-    alone
-        (p,) standard errors if all other parameters were known; infinite without effect.
+    covariance: (p, p); infinite on the diagonal for undetermined parameters.
+    correlation: (p, p); NaN for undetermined parameters.
+    factor: Half-width of a 95 % interval over the standard error.
+    unknown: (p,) True if the data do not determine the parameter.
+    groups: numbers of the parameters of which only a combination is determined; a single one has no effect on the data.
+    alone: (p,) standard errors if all other parameters were known; infinite without effect.
     """
 
     covariance: FloatArray
@@ -120,15 +112,9 @@ class Uncertainty:
 def linear_uncertainty(jacobian: FloatArray, *, degrees_of_freedom: float | None) -> Uncertainty:
     """Uncertainty by linearisation, from the derivatives of residuals divided by their standard deviations.
 
-    Parameters
-    ----------
-    jacobian
-        (n, p), with respect to parameters in their sizes.
-    degrees_of_freedom
-        Degrees of freedom of the estimate of the noise, for Student's t; None if the noise is stated.
+    jacobian: (n, p), with respect to parameters in their sizes.
+    degrees_of_freedom: degrees of freedom of the estimate of the noise, for Student's t; None if the noise is stated.
 
-    Examples
-    --------
     Two readings of one number, each with standard deviation 1: its standard error is 1/√2.
 
     >>> estimate = linear_uncertainty(np.ones((2, 1)), degrees_of_freedom=None)

@@ -51,17 +51,9 @@ def write_campaign_netcdf(campaign: Campaign, path: str | Path) -> None:
 
     Cancelled experiments are included, with the reason. Recordings of a SnowMicroPen and the weather are not.
 
-    Parameters
-    ----------
-    campaign
-        From `skisnow.read_campaign`.
-    path
-        Path of the file; an existing file is replaced.
-
-    Raises
-    ------
-    OutputError
-        The file cannot be written.
+    campaign: from `skisnow.read_campaign`.
+    path: Path of the file; an existing file is replaced.
+    Raises OutputError: the file cannot be written.
     """
     memory = io.BytesIO()
     file = netcdf_file(memory, "w", version=2)

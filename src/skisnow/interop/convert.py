@@ -55,20 +55,13 @@ ENDINGS: Final[Mapping[str, str]] = {
 class ConvertOptions:
     """Values that the formats do not contain.
 
-    Attributes
-    ----------
-    site
-        Site of a campaign; None if it has a single one.
-    snow_height
-        Height of the snow on the ground (m), if the source does not state it.
-    time
-        ISO 8601, if the source does not state it.
-    forces
-        A .mot or .sto file; its columns are written to the .c3d file together with the markers.
-    layers_to
-        Depth (m) to which a recording becomes layers of a run (``snow.layers_file``); None: it becomes a force table.
-    report
-        Called with each note about the source, such as the points of a .c3d file that were omitted.
+    site: site of a campaign; None if it has a single one.
+    snow_height: height of the snow on the ground (m), if the source does not state it.
+    time: ISO 8601, if the source does not state it.
+    forces: a .mot or .sto file; its columns are written to the .c3d file together with the markers.
+    layers_to: depth (m) to which a recording becomes layers of a run (``snow.layers_file``); None: it becomes a force
+        table.
+    report: called with each note about the source, such as the points of a .c3d file that were omitted.
     """
 
     site: str | None = None

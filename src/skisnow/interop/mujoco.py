@@ -35,26 +35,13 @@ def ski_mjcf(
 ) -> str:
     """The text of a model of a ski.
 
-    Parameters
-    ----------
-    ski
-        Its shape, EI, GJ and mass are taken.
-    segments
-        Number of segments of the chains before and behind the binding together, ≥ 4.
-    clamp_length
-        Length that the binding keeps straight (m), > 0.
-    damping
-        Damping of each hinge over its stiffness (s).
-    free
-        Whether the middle is free in space, or fixed to it.
+    ski: its shape, EI, GJ and mass are taken.
+    segments: number of segments of the chains before and behind the binding together, ≥ 4.
+    clamp_length: length that the binding keeps straight (m), > 0.
+    damping: damping of each hinge over its stiffness (s).
+    free: whether the middle is free in space, or fixed to it.
+    Raises ParameterError: a number is out of its range.
 
-    Raises
-    ------
-    ParameterError
-        A number is out of its range.
-
-    Notes
-    -----
     Axes: x ahead, y left, z up; the site ``boot`` is on the base. Each hinge has the compliance of the ski between
     the middles of the segments that it joins. The free shape (camber, shovel) has no stress. Boxes are to be seen
     alone: they collide with nothing.
@@ -101,12 +88,8 @@ def ski_mjcf(
 def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> Path:
     """Write `ski_mjcf` of a ski as a file that MuJoCo opens.
 
-    Raises
-    ------
-    ParameterError
-        The name does not end in .xml, or the number is out of its range.
-    OutputError
-        The place cannot be written.
+    Raises ParameterError: the name does not end in .xml, or the number is out of its range.
+    Raises OutputError: the place cannot be written.
     """
     if Path(path).suffix.lower() != ".xml":
         raise ParameterError("{path} does not end in .xml, as MJCF does; name it so", code="wrong_ending", path=path)
@@ -184,23 +167,12 @@ def _quoted(name: str) -> str:
 class SnowForces:
     """Forces of the snow on sites of a MuJoCo model, as its global callback ``mjcb_passive``.
 
-    Parameters
-    ----------
-    model
-        An ``mujoco.MjModel`` whose world axes are those of the slope.
-    contact
-        Its runners are rigid. The callback takes it over.
-    sites
-        Name of a site for each runner: at its boot, x ahead, y left across the base, z off the base.
+    model: an ``mujoco.MjModel`` whose world axes are those of the slope.
+    contact: its runners are rigid. The callback takes it over.
+    sites: name of a site for each runner: at its boot, x ahead, y left across the base, z off the base.
+    Raises ParameterError: MuJoCo is not installed, there is not one site for each runner, a site is not in the model, a
+        runner bends, or the model's integrator evaluates forces between steps (RK4).
 
-    Raises
-    ------
-    ParameterError
-        MuJoCo is not installed, there is not one site for each runner, a site is not in the model, a runner bends, or
-        the model's integrator evaluates forces between steps (RK4).
-
-    Notes
-    -----
     Explicit: the force at the beginning of a step acts over the whole step, and MuJoCo's Euler method applies it to the
     new velocity at once. docs/how-to/other-programs.md gives the largest step. Other models of the process are not
     affected. A reset of the time restores the snow to the state at construction.

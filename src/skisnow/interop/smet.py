@@ -23,12 +23,8 @@ NO_DATA: Final = -999.0
 def write_smet(series: StationSeries, path: str | Path) -> Path:
     """Write all fields in SI, with the times in the file's own time zone.
 
-    Raises
-    ------
-    ParameterError
-        A value is exactly -999, which means none.
-    OutputError
-        The file cannot be written.
+    Raises ParameterError: a value is exactly -999, which means none.
+    Raises OutputError: the file cannot be written.
     """
     write_file(path, smet_text(series))
     return Path(path)
@@ -37,12 +33,8 @@ def write_smet(series: StationSeries, path: str | Path) -> Path:
 def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     """Write the station's columns that a campaign uses: time with its zone, temperatures in °C, humidity in percent.
 
-    Raises
-    ------
-    ParameterError
-        The station has no such quantity.
-    OutputError
-        The file cannot be written.
+    Raises ParameterError: the station has no such quantity.
+    Raises OutputError: the file cannot be written.
     """
     available = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
     if not available:

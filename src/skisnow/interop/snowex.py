@@ -79,10 +79,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
 def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
     """Write a recording of a SnowMicroPen as depth and force, from the first sample on.
 
-    Raises
-    ------
-    OutputError
-        The file cannot be written.
+    Raises OutputError: the file cannot be written.
     """
     depth, force = (profile.depth / MM).tolist(), profile.force.tolist()
     rows = ((f"{where:.6f}", f"{newtons:.6f}") for where, newtons in zip(depth, force, strict=True))
@@ -157,10 +154,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     are put at the surface, as the comment states. Forces are those of the used recordings of a SnowMicroPen, from the
     surface down.
 
-    Raises
-    ------
-    ParameterError
-        The campaign has no such site; the message names those that it has.
+    Raises ParameterError: the campaign has no such site; the message names those that it has.
     """
     campaign = analysis.campaign
     sites = {name for table in _density_tables(campaign) for name in table[0]}

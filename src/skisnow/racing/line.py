@@ -182,10 +182,7 @@ def ways(course: Course, start: tuple[float, float]) -> list[float]:
 def course_of(scenario: Scenario) -> Course:
     """Its course.
 
-    Raises
-    ------
-    ParameterError
-        The scenario has no such part.
+    Raises ParameterError: the scenario has no such part.
     """
     if scenario.course is None:
         raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =", code="no_data")
@@ -195,10 +192,7 @@ def course_of(scenario: Scenario) -> Course:
 def skier_of(scenario: Scenario) -> Skier:
     """Its skier.
 
-    Raises
-    ------
-    ParameterError
-        The scenario has no such part.
+    Raises ParameterError: the scenario has no such part.
     """
     if scenario.skier is None:
         raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"', code="no_data")

@@ -170,12 +170,8 @@ RacerModel: TypeAlias = Literal["skier", "point"]
 class LineSkier:
     """Moves the boots of a run as a balanced skier that steers by a line.
 
-    Parameters
-    ----------
-    scenario
-        With a skier.
-    line
-        Through its course.
+    scenario: with a skier.
+    line: through its course.
     """
 
     def __init__(self, scenario: Scenario, line: RacingLine) -> None:
@@ -195,14 +191,9 @@ class LineSkier:
 def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None = None) -> Run:
     """The run of a scenario's skier on a line, through the line's gates.
 
-    Parameters
-    ----------
-    scenario
-        With a skier; its course is ignored.
-    line
-        Steered by.
-    progress
-        As of `skisnow.simulate`.
+    scenario: with a skier; its course is ignored.
+    line: steered by.
+    progress: as of `skisnow.simulate`.
     """
     through = replace(scenario, course=line.course)
     return simulate(through, boots=LineSkier(through, line), progress=progress)
@@ -211,10 +202,7 @@ def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None 
 def run_score(run: Run) -> Score:
     """Score of a run; an interrupted one has no score.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        The run was interrupted, so it has no score.
+    Raises KeyboardInterrupt: the run was interrupted, so it has no score.
     """
     if run.outcome == "interrupted":
         raise KeyboardInterrupt
@@ -227,14 +215,9 @@ def run_score(run: Run) -> Score:
 class Racer:
     """Gives the score of a line's numbers, as a row.
 
-    Attributes
-    ----------
-    scenario
-        With course and skier.
-    model
-        "skier": a whole simulated run; "point": a mass on the line.
-    room
-        Distance (m) from each pole, below which a gate counts as not passed.
+    scenario: with course and skier.
+    model: "skier": a whole simulated run; "point": a mass on the line.
+    room: distance (m) from each pole, below which a gate counts as not passed.
     """
 
     scenario: Scenario

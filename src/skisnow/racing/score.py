@@ -50,16 +50,10 @@ class Score(ShownFields):
 def score_of(result: CourseResult | None, end: tuple[float, float], *, finished: bool, words: str) -> Score:
     """Score from the passage of the gates.
 
-    Parameters
-    ----------
-    result
-        None: there are not even two places.
-    end
-        x, y (m) where it ended.
-    finished
-        Whether it came through, by its own account.
-    words
-        How it ended.
+    result: None: there are not even two places.
+    end: x, y (m) where it ended.
+    finished: whether it came through, by its own account.
+    words: how it ended.
     """
     if result is None:
         return Score(value=float("inf"), time=None, passed=0, words=words)

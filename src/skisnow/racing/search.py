@@ -26,14 +26,9 @@ FAILED: Final = 1e6
 class Evaluated:
     """One evaluation.
 
-    Attributes
-    ----------
-    number
-        In the order of the search, 0 or more.
-    place
-        In the unit cube (n,).
-    row
-        Result of the function; `value` is minimised.
+    number: in the order of the search, 0 or more.
+    place: in the unit cube (n,).
+    row: result of the function; `value` is minimised.
     """
 
     number: int
@@ -50,14 +45,9 @@ class Evaluated:
 class Evaluations:
     """Evaluates batches of points in several processes, and keeps finished ones.
 
-    Attributes
-    ----------
-    pool
-        Computes rows of points (frozen numbers, place).
-    kept
-        Finished rows; each contains its point.
-    done
-        All evaluations, in their order.
+    pool: computes rows of points (frozen numbers, place).
+    kept: finished rows; each contains its point.
+    done: all evaluations, in their order.
     """
 
     pool: Pool
@@ -88,16 +78,10 @@ class Evaluations:
 class Batches:
     """The evaluations of one search among all, batch by batch.
 
-    Attributes
-    ----------
-    evaluations
-        Where they are made.
-    point_of
-        Input of the function for a point.
-    told
-        Called as evaluations come.
-    first
-        Number of the search's first evaluation.
+    evaluations: where they are made.
+    point_of: input of the function for a point.
+    told: called as evaluations come.
+    first: number of the search's first evaluation.
     """
 
     evaluations: Evaluations
@@ -124,10 +108,7 @@ class Batches:
 def require_cmaes() -> Any:
     """The package of the search.
 
-    Raises
-    ------
-    ParameterError
-        It is not installed.
+    Raises ParameterError: it is not installed.
     """
     return needed("cmaes", extra="racing", what=Message("A race"))
 
@@ -144,25 +125,14 @@ def least_of(
 ) -> Evaluated:
     """Minimise over the unit cube with about `count` evaluations, the first of them at the start.
 
-    Parameters
-    ----------
-    batches
-        Where they are made.
-    start
-        (n,) where it begins.
-    count
-        Evaluations after which no new batch begins.
-    population
-        Size of a batch; None: 4 + 3 ln n.
-    spread
-        Standard deviation of the first batch, in shares of each range.
-    seed
-        Number, 0 or more.
-    settled
-        Ends the search before, where all values of a batch lie within so much.
+    batches: where they are made.
+    start: (n,) where it begins.
+    count: evaluations after which no new batch begins.
+    population: size of a batch; None: 4 + 3 ln n.
+    spread: standard deviation of the first batch, in shares of each range.
+    seed: number, 0 or more.
+    settled: ends the search before, where all values of a batch lie within so much.
 
-    References
-    ----------
     * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary
       Computation 9(2), 159-195, doi 10.1162/106365601750190398.
     """

@@ -33,19 +33,11 @@ _UNIT: Final = 0.5 * math.log(2.0 * math.pi)
 class Surrogate:
     """A Gaussian process of Matérn's kernel 5/2.
 
-    Attributes
-    ----------
-    places
-        (n, d) in the unit cube.
-    lengths
-        (d,) of the kernel.
-    level, scale
-        Mean and deviation of the values: of one kind, or (q,) of kinds that have lengths and noise together.
-    noise
-        Deviation of one value, over `scale`.
+    places: (n, d) in the unit cube.
+    lengths: (d,) of the kernel.
+    level, scale: mean and deviation of the values: of one kind, or (q,) of kinds that have lengths and noise together.
+    noise: deviation of one value, over `scale`.
 
-    References
-    ----------
     * Jones, Schonlau and Welch (1998), "Efficient global optimization of expensive black-box functions", Journal of
       Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.
     """
@@ -62,14 +54,9 @@ class Surrogate:
     def of(cls, places: FloatArray, values: FloatArray, kinds: int) -> Surrogate:
         """Surrogate of maximum likelihood, whose length scales are equal for each `kinds`-th number.
 
-        Parameters
-        ----------
-        places
-            (n, d), n 2 or more.
-        values
-            (n,) or (n, q), finite.
-        kinds
-            Divides d.
+        places: (n, d), n 2 or more.
+        values: (n,) or (n, q), finite.
+        kinds: divides d.
         """
         level, scale = values.mean(axis=0), np.asarray(values.std(axis=0))
         scale = np.where(scale > 0.0, scale, 1.0)
@@ -140,15 +127,9 @@ def _kernel(first: FloatArray, second: FloatArray, lengths: FloatArray) -> Float
 class Prospects:
     """Two processes: of the time at the last gate, failures among them, and of the margins that all have to be above 0.
 
-    Attributes
-    ----------
-    time, margins
-        `margins` is None if no failure is known.
-    least
-        Distribution of the times that the process expects where a race came through (s).
+    time, margins: `margins` is None if no failure is known.
+    least: distribution of the times that the process expects where a race came through (s).
 
-    References
-    ----------
     * Gardner and others (2014), "Bayesian optimization with inequality constraints", Proceedings of Machine Learning
       Research 32(2), 937-945.
     * Eriksson and Poloczek (2021), "Scalable constrained Bayesian optimization", Proceedings of Machine Learning

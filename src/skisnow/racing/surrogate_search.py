@@ -31,14 +31,9 @@ ALIKE: Final = 0.25
 class Daring:
     """Choice of a point of a batch.
 
-    Attributes
-    ----------
-    curiosity
-        Times the deviation of a time, by which it may come out other than expected.
-    caution
-        Power of the probability of coming through: with 1 most races fail by millimetres in the end.
-    held
-        Share of the directions that stay at the centre, at random: without it the points of a batch would be close
+    curiosity: times the deviation of a time, by which it may come out other than expected.
+    caution: power of the probability of coming through: with 1 most races fail by millimetres in the end.
+    held: share of the directions that stay at the centre, at random: without it the points of a batch would be close
         together.
     """
 
@@ -55,20 +50,12 @@ BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0
 class SurrogateSearch:
     """Settings of the search.
 
-    Attributes
-    ----------
-    batches
-        Where they are made.
-    count
-        Evaluations after which no new batch begins.
-    kinds
-        Numbers of a turn.
-    spread
-        Size of the first evaluations: half of the box about the start is twice as much.
-    seed
-        Number, 0 or more.
-    settled
-        Above 0: the search ends when three batches in a row have not lowered the minimum by this much.
+    batches: where they are made.
+    count: evaluations after which no new batch begins.
+    kinds: numbers of a turn.
+    spread: size of the first evaluations: half of the box about the start is twice as much.
+    seed: number, 0 or more.
+    settled: above 0: the search ends when three batches in a row have not lowered the minimum by this much.
     """
 
     batches: Batches
@@ -81,8 +68,6 @@ class SurrogateSearch:
     def least(self, start: FloatArray, *, alike: bool = True) -> Evaluated:
         """Minimum; if all turns begin `alike`, first with equal turns, then for each turn separately.
 
-        References
-        ----------
         * Jones, Schonlau and Welch (1998), "Efficient global optimization of expensive black-box functions", Journal of
           Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.
         * Eriksson and others (2019), "Scalable global optimization via local Bayesian optimization", Advances in Neural

@@ -42,14 +42,9 @@ class How:
 class Windows:
     """A search over a course.
 
-    Attributes
-    ----------
-    made
-        Where evaluations are made.
-    how
-        Each window is searched.
-    window, step, ahead
-        See `quickest_line`.
+    made: where evaluations are made.
+    how: each window is searched.
+    window, step, ahead: see `quickest_line`.
     """
 
     made: Evaluations

@@ -50,20 +50,12 @@ _MOST_PLACES: Final = 40_000
 class Setting:
     """Slope, ski and sizes of a run.
 
-    Attributes
-    ----------
-    slope, ski
-        As in the scenario.
-    line_spacing
-        Distance of the snow's lines along the path (m).
-    edge_angle, stance_width, centre_of_mass_height
-        Sizes of the sledge (rad, m, m).
-    course
-        Course in the scenario's axes, for its gates.
-    skier_height
-        Height of the skier's body (m) (default: a sledge).
-    facts
-        Lines of name and value for the reader.
+    slope, ski: as in the scenario.
+    line_spacing: distance of the snow's lines along the path (m).
+    edge_angle, stance_width, centre_of_mass_height: sizes of the sledge (rad, m, m).
+    course: course in the scenario's axes, for its gates.
+    skier_height: height of the skier's body (m) (default: a sledge).
+    facts: lines of name and value for the reader.
     """
 
     slope: Slope

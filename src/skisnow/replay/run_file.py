@@ -238,10 +238,7 @@ _ORTHOGONAL: Final = 1e-6
 def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
     """Check a run's arrays, named as in run.nc with vectors in one.
 
-    Raises
-    ------
-    ParameterError
-        A number is not finite or too large, times do not rise, or an attitude is not a rotation.
+    Raises ParameterError: a number is not finite or too large, times do not rise, or an attitude is not a rotation.
     """
     require_finite(arrays)
     if np.any(np.diff(arrays["time"]) < _SHORTEST_STEP):
@@ -273,10 +270,7 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
 def scenario_value(values: Mapping[str, Any], name: str) -> Any:
     """A value of the run's scenario by its full name; None if the scenario lacks it.
 
-    Raises
-    ------
-    ParameterError
-        The value is outside the range of its key.
+    Raises ParameterError: the value is outside the range of its key.
     """
     value = values.get(name)
     if value is None:

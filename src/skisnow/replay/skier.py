@@ -57,16 +57,10 @@ def replay_skier(
 ) -> ReplaySkier:
     """Drawn skier of a run.
 
-    Parameters
-    ----------
-    height
-        Height of the body (m).
-    place, attitude
-        Origin (n, 3) (m) and axes as columns (n, 3, 3) of the frame of the joints.
-    boots
-        Places (n, 2, 3) (m) and axes as rows (n, 2, 3, 3) of the boots: ahead, left across the base, off it.
-    centre
-        Centre of mass (n, 3) (m).
+    height: height of the body (m).
+    place, attitude: origin (n, 3) (m) and axes as columns (n, 3, 3) of the frame of the joints.
+    boots: places (n, 2, 3) (m) and axes as rows (n, 2, 3, 3) of the boots: ahead, left across the base, off it.
+    centre: centre of mass (n, 3) (m).
     """
     body = np.moveaxis(attitude, -1, 0)
     ankle = boots[0] + (STAND_HEIGHT + FOOT.length * height) * boots[1][:, :, 2] - ANKLE_BEHIND * boots[1][:, :, 0]
@@ -183,15 +177,10 @@ Ring: TypeAlias = tuple[float, float, float, float]
 class Part:
     """A part of the skier.
 
-    Attributes
-    ----------
-    name
-        Name, such as "left thigh".
-    start, end
-        Joints at its origin and in the direction of its z axis; its y axis is to the left. A boot has "left boot" or
-        "right boot" and the axes of the boot.
-    mesh
-        Mesh in these axes (m), with colours in linear light.
+    name: name, such as "left thigh".
+    start, end: joints at its origin and in the direction of its z axis; its y axis is to the left. A boot has "left
+        boot" or "right boot" and the axes of the boot.
+    mesh: mesh in these axes (m), with colours in linear light.
     """
 
     name: str

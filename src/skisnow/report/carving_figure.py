@@ -37,10 +37,7 @@ _LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1
 def carved_skis(contents: Json) -> Figure:
     """Draw the answers of `skisnow carve`, one colour and line style for each ski.
 
-    Parameters
-    ----------
-    contents
-        JSON of `skisnow.carving.answer.answers_dict`.
+    contents: JSON of `skisnow.carving.answer.answers_dict`.
     """
     answers = answers_of(contents)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=150.0)
@@ -159,20 +156,10 @@ def contact_ends(answer: Json) -> tuple[float, float]:
 def arc_through(station: FloatArray, line: FloatArray, rear: float, front: float) -> tuple[FloatArray, FloatArray]:
     """Arc through an edge line at three places: rear, boot (0) and front.
 
-    Parameters
-    ----------
-    station, line
-        Line (m) with rising stations.
-    rear, front
-        Stations of the ends of the arc (m).
+    station, line: line (m) with rising stations.
+    rear, front: stations of the ends of the arc (m).
+    Returns: points of the arc (m) from rear to front.
 
-    Returns
-    -------
-    x, y
-        Points of the arc (m) from rear to front.
-
-    Examples
-    --------
     The parabola x²/20 through 0 and ±1 is a circle of (1 + 0.05²)/(2 × 0.05) = 10.025 m:
 
     >>> along = np.linspace(-1.0, 1.0, 2001)

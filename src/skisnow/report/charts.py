@@ -95,16 +95,11 @@ def _laws(
 class SkiDrawing:
     """Tables along a ski from tip to tail.
 
-    Attributes
-    ----------
-    name, source
-        As in `skisnow.ski.Ski`.
-    station_m
-        Distance from the boot, positive forward.
-    half_width_mm, base_height_mm, EI_N_m2, GJ_N_m2
-        Half of the width from edge to edge, height of the unloaded base, bending and torsional stiffness.
-    facts
-        Key data of the ski as texts with units, by name.
+    name, source: as in `skisnow.ski.Ski`.
+    station_m: distance from the boot, positive forward.
+    half_width_mm, base_height_mm, EI_N_m2, GJ_N_m2: half of the width from edge to edge, height of the unloaded base,
+        bending and torsional stiffness.
+    facts: key data of the ski as texts with units, by name.
     """
 
     name: str

@@ -49,26 +49,13 @@ def write_identify_report(
 ) -> Path:
     """Write identification.json, fits.csv, figures/ and report.html; returns the page's path.
 
-    Parameters
-    ----------
-    result
-        The identification.
-    contents
-        Contents of identification.json, from `identification_dict`.
-    folder
-        Output folder, created if necessary. Figures of an earlier identification are replaced or removed; other files
-        stay.
-    language
-        Language of the page and the figures (en, de).
-    progress
-        Callback for progress messages.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
-    ParameterError
-        The language is unknown.
+    contents: contents of identification.json, from `identification_dict`.
+    folder: output folder, created if necessary. Figures of an earlier identification are replaced or removed; other
+        files stay.
+    language: language of the page and the figures (en, de).
+    progress: callback for progress messages.
+    Raises OutputError: a file cannot be written.
+    Raises ParameterError: the language is unknown.
     """
     require_language(language)
     folder = Path(folder)

@@ -26,16 +26,10 @@ if TYPE_CHECKING:
 class Header:
     """Head of a report.
 
-    Attributes
-    ----------
-    eyebrow, title
-        Kind of report, and its title.
-    facts
-        Names with texts.
-    synthetic
-        Sentence that the numbers were not measured (default: none).
-    headline
-        Key result as a sentence with one number and its uncertainty (default: none).
+    eyebrow, title: kind of report, and its title.
+    facts: names with texts.
+    synthetic: sentence that the numbers were not measured (default: none).
+    headline: key result as a sentence with one number and its uncertainty (default: none).
     """
 
     eyebrow: str
@@ -151,10 +145,7 @@ def cited_text() -> str:
 def bibtex(campaign: Mapping[str, Any] | None = None) -> str:
     """BibTeX of the program and its papers, and of a campaign with the SHA-256 of its files.
 
-    Parameters
-    ----------
-    campaign
-        ``campaign`` of results.json.
+    campaign: ``campaign`` of results.json.
     """
     own = _BIBTEX.format(version=version("skisnow"))
     if campaign is None:

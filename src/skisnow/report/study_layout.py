@@ -38,16 +38,10 @@ _LETTERS: Final = 105
 class MapLayout:
     """Names of inputs by their place in a map.
 
-    Attributes
-    ----------
-    x
-        Input along the axis.
-    second
-        Input of the lines of the radius map and of the ordinate of the grip map; None if nothing else varies.
-    panels
-        The other inputs; of a sample only names and switches.
-    sampled
-        True if the points are a sample instead of a grid.
+    x: input along the axis.
+    second: input of the lines of the radius map and of the ordinate of the grip map; None if nothing else varies.
+    panels: the other inputs; of a sample only names and switches.
+    sampled: True if the points are a sample instead of a grid.
     """
 
     x: str
@@ -59,10 +53,7 @@ class MapLayout:
 def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     """Choose the edge angle for the axis and the load as second input if they vary, otherwise the next number.
 
-    Raises
-    ------
-    ParameterError
-        No number varies, or there would be too many panels.
+    Raises ParameterError: no number varies, or there would be too many panels.
     """
     varied = [name for name in table.varied if len(_distinct(table, name)) > 1]
     numbers = [name for name in varied if all(_is_number(row[name]) for row in table.rows)]
@@ -96,10 +87,7 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
 def drawn_table(table: StudyTable) -> StudyTable:
     """Rows with an answer; each ski has its own name if the names are unique.
 
-    Raises
-    ------
-    ParameterError
-        No row has an answer.
+    Raises ParameterError: no row has an answer.
     """
     rows = table.answers()
     if not rows:

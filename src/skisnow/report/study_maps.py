@@ -62,10 +62,7 @@ _LEAST: Final = 1e-3  # a flat ski draws no side force; its logarithm must exist
 def grip_map(table: StudyTable) -> Figure:
     """Draw the grip utilisation, and the line at which the edge loses grip.
 
-    Raises
-    ------
-    ParameterError
-        No number of the table varies, or the map would have too many panels.
+    Raises ParameterError: no number of the table varies, or the map would have too many panels.
     """
     layout = map_layout(table, second_is_number=True)
     table = drawn_table(table)
@@ -210,10 +207,7 @@ RADIUS: Final = "turn_radius_boot_m"
 def radius_map(table: StudyTable) -> Figure:
     """Draw the radius of the circle at the boot; filled symbols: the edge holds, open: it slips.
 
-    Raises
-    ------
-    ParameterError
-        No number of the table varies, or the map would have too many panels.
+    Raises ParameterError: no number of the table varies, or the map would have too many panels.
     """
     layout = map_layout(table, second_is_number=False)
     table = drawn_table(table)

@@ -35,10 +35,7 @@ def ski_titles(answers: list[Json]) -> list[str]:
 def carve_summary(contents: Json) -> str:
     """Inputs, choices of the model, and a table with one column for each ski.
 
-    Parameters
-    ----------
-    contents
-        JSON of `skisnow.carving.answer.answers_dict`.
+    contents: JSON of `skisnow.carving.answer.answers_dict`.
     """
     return "\n".join(_carve_lines(answers_of(contents)))
 
@@ -242,12 +239,8 @@ def _correlations(result: Identification) -> Iterator[str]:
 def simulate_summary(summary: Json, *, title: str) -> str:
     """Outcome of a run with its numbers.
 
-    Parameters
-    ----------
-    summary
-        Contents of `skisnow.simulation.run_summary.summary_dict`.
-    title
-        Title of the scenario.
+    summary: contents of `skisnow.simulation.run_summary.summary_dict`.
+    title: title of the scenario.
     """
     lines = [f"{title}: {summary['outcome'].replace('_', ' ')}"]
     if summary["remedy"]:

@@ -39,18 +39,11 @@ ROWS_IN_LATEX: Final = 2000
 class Column:
     """One column.
 
-    Attributes
-    ----------
-    key
-        Name in CSV, including the unit; a key of the records.
-    header, unit
-        Texts in HTML and LaTeX, with symbols as ``H_V``.
-    kind
-        Kind of the cells.
-    digits
-        Significant digits in HTML and LaTeX; CSV has all digits.
-    interval
-        Key of the 95 % interval of an estimate.
+    key: name in CSV, including the unit; a key of the records.
+    header, unit: texts in HTML and LaTeX, with symbols as ``H_V``.
+    kind: kind of the cells.
+    digits: significant digits in HTML and LaTeX; CSV has all digits.
+    interval: key of the 95 % interval of an estimate.
     """
 
     key: str

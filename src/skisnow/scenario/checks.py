@@ -30,10 +30,7 @@ def require_sound(
 ) -> None:
     """Refuse parts that do not go together.
 
-    Raises
-    ------
-    ParameterError
-        The first error: problem, allowed values, fix.
+    Raises ParameterError: the first error: problem, allowed values, fix.
     """
     for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
         raise ParameterError(complaint, code="contradiction")
@@ -42,10 +39,8 @@ def require_sound(
 def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
     """Raise an error for a skier that contradicts the rest of the scenario.
 
-    Raises
-    ------
-    ParameterError
-        The boots are edged or moved by a table, there are no gates to pass, or the legs are too short.
+    Raises ParameterError: the boots are edged or moved by a table, there are no gates to pass, or the legs are too
+        short.
     """
     if skier is None:
         return

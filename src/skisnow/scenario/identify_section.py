@@ -52,10 +52,7 @@ CLOCKS: Final = ("start", "free")
 def require_known(section: Mapping[str, Any]) -> None:
     """Reject keys without effect: a misspelt one, or one that belongs into another section.
 
-    Raises
-    ------
-    ParameterError
-        The nearest name, or where the key belongs, is named.
+    Raises ParameterError: the nearest name, or where the key belongs, is named.
     """
     given_parameters(section)
     clock = section.get("clock", "start")
@@ -86,10 +83,7 @@ def require_known(section: Mapping[str, Any]) -> None:
 def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     """The tables ``[identify."KEY"]`` by full key.
 
-    Raises
-    ------
-    ParameterError
-        A key or a word is unknown (near ones are named), or a value is not a finite number.
+    Raises ParameterError: a key or a word is unknown (near ones are named), or a value is not a finite number.
     """
     parameters: dict[str, dict[str, float]] = {}
     for word, table in section.items():
@@ -143,16 +137,10 @@ def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 class Prior:
     """A key of a scenario with a range of values, each as likely as any other of the same order of size.
 
-    Attributes
-    ----------
-    key
-        Full name.
-    low, high
-        Ends in the key's unit, 0 < low ≤ high; equal ones: it is known. The logarithm is even between them.
-    about
-        Whether the ends are multiplied with the scenario's own value.
-    origin
-        Where the range comes from.
+    key: full name.
+    low, high: ends in the key's unit, 0 < low ≤ high; equal ones: it is known. The logarithm is even between them.
+    about: whether the ends are multiplied with the scenario's own value.
+    origin: where the range comes from.
     """
 
     key: str
@@ -189,13 +177,8 @@ class Prior:
 def prior_of(word: str) -> Prior:
     """A prior as the command line takes it.
 
-    Raises
-    ------
-    ParameterError
-        It is not ``KEY=LOW:HIGH``, or the key or the ends cannot be.
+    Raises ParameterError: it is not ``KEY=LOW:HIGH``, or the key or the ends cannot be.
 
-    Examples
-    --------
     >>> prior_of("unloading_ratio=5:20")
     Prior(key='snow.unloading_ratio', low=5.0, high=20.0, origin='given', about=False)
     """

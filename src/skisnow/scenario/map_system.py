@@ -46,18 +46,11 @@ _MERCATOR: Final = re.compile(r'PROJECTION\s*\[\s*"(?:popular[_ ]visualisation[_
 class MapSystem:
     """Units of a map system.
 
-    Attributes
-    ----------
-    text
-        Its description as WKT.
-    in_degrees
-        True for longitude and latitude.
-    unit : m
-        Length of one unit of x and y.
-    height_unit : m or None
-        Length of one unit of the heights; None if the system has no heights.
-    downwards
-        True if its heights count downwards, as depths do.
+    text: its description as WKT.
+    in_degrees: True for longitude and latitude.
+    unit: m, length of one unit of x and y.
+    height_unit: m or None, length of one unit of the heights; None if the system has no heights.
+    downwards: True if its heights count downwards, as depths do.
     """
 
     text: str
@@ -126,15 +119,9 @@ def _height_unit(text: str, heights: str) -> float | None:
 def require_true_lengths(path: object, system: MapSystem, x: float, y: float) -> None:
     """Reject a map on which lengths differ from the ground, such as one in the Mercator projection.
 
-    Parameters
-    ----------
-    x, y
-        Middle of the grid, in the system's units.
-
-    Raises
-    ------
-    ParameterError
-        A metre on the ground is longer or shorter than a metre on the map by more than `TRUE_LENGTHS`.
+    x, y: middle of the grid, in the system's units.
+    Raises ParameterError: a metre on the ground is longer or shorter than a metre on the map by more than
+        `TRUE_LENGTHS`.
     """
     true_scale = _scale(system, x, y)
     if true_scale is None:

@@ -124,13 +124,7 @@ def _outside_ranges(scenario: Scenario) -> list[str]:
 
 
 def model_limits(ski: Ski) -> dict[str, Message]:
-    """Warnings by code: `edge_radius_unmeasured`, `side_edge_without_radius`.
-
-    Parameters
-    ----------
-    ski
-        The ski.
-    """
+    """Warnings by code: `edge_radius_unmeasured`, `side_edge_without_radius`."""
     limits = {}
     if ski.edge_radius > 0.0:
         limits["edge_radius_unmeasured"] = Message(

@@ -51,12 +51,8 @@ LIMITS: Final[Mapping[str, Limits]] = {
 class PlacedValues:
     """Columns over evenly spaced places.
 
-    Attributes
-    ----------
-    x, y
-        Places (m), (n,) and (m,), rising.
-    columns
-        Values (n, m) by the name of their column.
+    x, y: places (m), (n,) and (m,), rising.
+    columns: values (n, m) by the name of their column.
     """
 
     x: FloatArray
@@ -68,20 +64,12 @@ class PlacedValues:
 class Raster:
     """A grid of heights as its file gives it.
 
-    Attributes
-    ----------
-    path
-        The file.
-    values
-        Heights (rows, columns) in units of `height_unit`, NaN in a hole.
-    first, step
-        Middle of the first cell and distance to the next, in x and in y, in the map system's units.
-    height_unit : m
-        Length of one unit of the heights.
-    system
-        Map system; None if the file states none: metres.
-    where
-        Words for the place of a cell in the file, from its row and column (0 or more).
+    path: the file.
+    values: heights (rows, columns) in units of `height_unit`, NaN in a hole.
+    first, step: middle of the first cell and distance to the next, in x and in y, in the map system's units.
+    height_unit: m, length of one unit of the heights.
+    system: map system; None if the file states none: metres.
+    where: words for the place of a cell in the file, from its row and column (0 or more).
     """
 
     path: str | Path
@@ -96,10 +84,7 @@ class Raster:
 def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> float:
     """Number in a cell of a table.
 
-    Raises
-    ------
-    ParameterError
-        The cell is not a finite number, or outside the limits of its column.
+    Raises ParameterError: the cell is not a finite number, or outside the limits of its column.
     """
     value = row.number(column)
     allowed = limits or LIMITS[column]
@@ -127,10 +112,7 @@ def profile_limits(columns: tuple[str, str]) -> dict[str, Limits]:
 def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
     """Reject a grid that is too small for a surface or too large for the memory.
 
-    Raises
-    ------
-    ParameterError
-        A count is not a whole number of 2 or more, or there are more than `MOST_CELLS` cells.
+    Raises ParameterError: a count is not a whole number of 2 or more, or there are more than `MOST_CELLS` cells.
     """
     for name, count in (("ncols", n_columns), ("nrows", n_rows)):
         if not 2 <= count <= MOST_CELLS or count != int(count):
@@ -156,10 +138,7 @@ def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
 def require_places(path: str | Path, first: tuple[float, float], step: tuple[float, float], n: tuple[int, int]) -> None:
     """Reject places that are not finite or look like degrees, and cells of impossible size.
 
-    Raises
-    ------
-    ParameterError
-        A coordinate is beyond `LIMITS`, or a cell smaller than `FINEST` or larger than `COARSEST`.
+    Raises ParameterError: a coordinate is beyond `LIMITS`, or a cell smaller than `FINEST` or larger than `COARSEST`.
     """
     ends = []
     for axis, start, size, count in zip("xy", first, step, n, strict=True):
@@ -205,10 +184,8 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
 def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
     """Heights over places that rise, in m.
 
-    Raises
-    ------
-    ParameterError
-        The grid is in degrees, on a map that stretches lengths, has a hole, or violates another rule of this module.
+    Raises ParameterError: the grid is in degrees, on a map that stretches lengths, has a hole, or violates another rule
+        of this module.
     """
     path, system, (n_rows, n_columns) = raster.path, raster.system, raster.values.shape
     require_size(path, n_columns, n_rows)

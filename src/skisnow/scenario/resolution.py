@@ -55,10 +55,7 @@ Provider: TypeAlias = tuple[int, str]
 class ContradictionError(ParameterError):
     """Two keys of one layer give the same quantity, or a key needs another value of a second key.
 
-    Attributes
-    ----------
-    keys
-        The two keys.
+    keys: the two keys.
     """
 
     def __init__(self, keys: tuple[str, str], message: Message) -> None:
@@ -81,18 +78,11 @@ class Layer:
 class ScenarioInput(ShownFields):
     """A scenario as given, before resolution.
 
-    Attributes
-    ----------
-    title
-        Name of a built-in scenario, or path of the file.
-    file
-        Path of the file, None for a built-in scenario.
-    layers
-        Values of the file and of each change.
-    identify
-        Contents of the section ``[identify]``.
-    base
-        Scenario object to which the layers are changes, if the scenario was not read.
+    title: name of a built-in scenario, or path of the file.
+    file: Path of the file, None for a built-in scenario.
+    layers: values of the file and of each change.
+    identify: contents of the section ``[identify]``.
+    base: scenario object to which the layers are changes, if the scenario was not read.
     """
 
     title: str
@@ -128,16 +118,10 @@ class ScenarioInput(ShownFields):
 class Resolution:
     """The values that count.
 
-    Attributes
-    ----------
-    values
-        By full name, in the units of the keys.
-    files
-        Paths of the files that the values name, by key.
-    snow
-        The named snow, None if H_V and S_f are numbers.
-    snow_map
-        The snow map, None without one.
+    values: by full name, in the units of the keys.
+    files: paths of the files that the values name, by key.
+    snow: the named snow, None if H_V and S_f are numbers.
+    snow_map: the snow map, None without one.
     """
 
     values: Mapping[str, InputValue]
@@ -149,12 +133,8 @@ class Resolution:
 def resolve(scenario_input: ScenarioInput, sources: Sources) -> Resolution:
     """Decide which values count, by the two rules of this module.
 
-    Raises
-    ------
-    ContradictionError
-        Two keys of one layer give the same quantity, or a key does not go with another one.
-    ParameterError
-        A named snow or a snow map cannot be read.
+    Raises ContradictionError: two keys of one layer give the same quantity, or a key does not go with another one.
+    Raises ParameterError: a named snow or a snow map cannot be read.
     """
     providers: dict[str, Provider] = {}
     latest: dict[str, int] = {}

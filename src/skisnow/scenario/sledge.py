@@ -189,20 +189,13 @@ UPRIGHT: Final = 2.0
 class Shear:
     """The law of the shear strength, in SI; a value of None is derived from the snow.
 
-    Attributes
-    ----------
-    law
-        S_f as it is; S_f (1 - k ϑ); S_f of a density; or cutting with its thrust.
-    relative_decrease
-        k (1/rad) of ``by-angle``.
-    snow_density
-        ρ (kg/m³) of ``by-density``.
-    dynamic_shear_strength, transverse_friction, least_shear_plane
-        S (N/m²), μ_t and the lower limit of (ϑ - β)/2 (rad) of ``machining``.
-    residual_ratio, slip_weakening
-        Share of the strength that slip leaves, and the slip (m) over which it is reached.
-    bearing
-        Height by which an edge resists an inward motion.
+    law: S_f as it is; S_f (1 - k ϑ); S_f of a density; or cutting with its thrust.
+    relative_decrease: k (1/rad) of ``by-angle``.
+    snow_density: ρ (kg/m³) of ``by-density``.
+    dynamic_shear_strength, transverse_friction, least_shear_plane: S (N/m²), μ_t and the lower limit of (ϑ - β)/2 (rad)
+        of ``machining``.
+    residual_ratio, slip_weakening: share of the strength that slip leaves, and the slip (m) over which it is reached.
+    bearing: height by which an edge resists an inward motion.
     """
 
     law: Annotated[

@@ -182,16 +182,10 @@ class TableControl:
 class BootHistory(Shown):
     """Index 0 the time (n), 1 the boot (0 left, 1 right).
 
-    Attributes
-    ----------
-    place
-        (n, 2, 3) in the slope's axes (m).
-    axes
-        (n, 2, 3, 3): ahead, left across the base, off the base, as rows in the slope's axes.
-    own_force, own_moment
-        (n, 2, 3) of the ski on its boot, about it, in the boot's axes (N, N m).
-    centre_of_mass
-        (n, 3) of the body that they carry, without the skis (m).
+    place: (n, 2, 3) in the slope's axes (m).
+    axes: (n, 2, 3, 3): ahead, left across the base, off the base, as rows in the slope's axes.
+    own_force, own_moment: (n, 2, 3) of the ski on its boot, about it, in the boot's axes (N, N m).
+    centre_of_mass: (n, 3) of the body that they carry, without the skis (m).
     """
 
     place: FloatArray

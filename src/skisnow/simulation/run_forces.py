@@ -27,15 +27,8 @@ LEAST_LOAD: Final = 50.0
 def balance_of(run: Run) -> BalanceHistory:
     """Lean of the body.
 
-    Parameters
-    ----------
-    run
-        Result of `skisnow.simulate`.
-
-    Raises
-    ------
-    ParameterError
-        The run has no record of its boots.
+    run: result of `skisnow.simulate`.
+    Raises ParameterError: the run has no record of its boots.
     """
     boots = run.boots
     if boots is None:
@@ -110,31 +103,17 @@ def _rolling(run: Run) -> FloatArray:
 class BalanceHistory(Shown):
     """Over time, (n,) each, in axes along the skis, to their left and out of the snow; leans are positive to the left.
 
-    Attributes
-    ----------
-    lean
-        Angle of the line from the middle of the boots to the centre of mass, from the snow's normal (rad).
-    pressure_lean
-        Angle of the line from the centre of pressure to it (rad); NaN where the skis do not bear.
-    balanced_lean
-        Lean of a body in balance with speed v and path radius R of the centre of mass:
-        tan Ψ = v²/(R g cos α) - tan α cos χ, χ from the horizontal (rad); NaN at both ends of a run.
-    rolling_lean
-        The same, corrected for the body's roll and the rise of its centre of mass: tan Ψ = (a_l + I φ''/(m z))/(a_n),
-        a_l and a_n the accelerations to the left and off the snow without gravity's share, φ the body's roll, z the
-        height of the centre of mass (rad); NaN at both ends.
-    angulation
-        Mean edge angle less the lean (rad).
-    leg
-        From the middle of the boots to the centre of mass (m).
-    pressure
-        Centre of pressure from the middle of the boots, to the left (m); NaN where the skis do not bear.
-    load
-        (n, 2) force of each ski on its boot along the snow's normal (N).
-
-    See Also
-    --------
-    skisnow.simulate
+    lean: angle of the line from the middle of the boots to the centre of mass, from the snow's normal (rad).
+    pressure_lean: angle of the line from the centre of pressure to it (rad); NaN where the skis do not bear.
+    balanced_lean: lean of a body in balance with speed v and path radius R of the centre of mass: tan Ψ = v²/(R g cos
+        α) - tan α cos χ, χ from the horizontal (rad); NaN at both ends of a run.
+    rolling_lean: the same, corrected for the body's roll and the rise of its centre of mass: tan Ψ = (a_l + I φ''/(m
+        z))/(a_n), a_l and a_n the accelerations to the left and off the snow without gravity's share, φ the body's
+        roll, z the height of the centre of mass (rad); NaN at both ends.
+    angulation: mean edge angle less the lean (rad).
+    leg: from the middle of the boots to the centre of mass (m).
+    pressure: centre of pressure from the middle of the boots, to the left (m); NaN where the skis do not bear.
+    load: (n, 2) force of each ski on its boot along the snow's normal (N).
     """
 
     lean: FloatArray
@@ -159,17 +138,11 @@ _LEAST_DEPTH = 1e-9
 class AlongEdge:
     """Histories along both skis, (n, 2, m), from which their total force follows.
 
-    Attributes
-    ----------
-    station
-        Positions along the ski, tip to tail, positive before the boot (m), (m,).
-    depth, force, shear
-        Edge depth (m); force along the snow's normal and shear per length (N/m).
-    bending, twist
-        Deflection of the base (m), growth of the edge angle (rad).
-    push
-        Forces on each ski along the edge, forward positive: friction and compaction resistance; of friction across the
-        edge, to the left; of friction off the surface (N), (n, 2, 3).
+    station: positions along the ski, tip to tail, positive before the boot (m), (m,).
+    depth, force, shear: edge depth (m); force along the snow's normal and shear per length (N/m).
+    bending, twist: deflection of the base (m), growth of the edge angle (rad).
+    push: forces on each ski along the edge, forward positive: friction and compaction resistance; of friction across
+        the edge, to the left; of friction off the surface (N), (n, 2, 3).
     """
 
     station: FloatArray
@@ -184,17 +157,10 @@ class AlongEdge:
 def snow_forces(along: AlongEdge, boots: BootHistory, *, normal: FloatArray, ski: Ski) -> FloatArray:
     """Total force of the snow on each ski in the slope's axes (N), (n, 2, 3).
 
-    Parameters
-    ----------
-    along, boots
-        Histories of the run.
-    normal
-        Unit normal of the snow at each boot, (n, 2, 3).
-    ski
-        Width and base of both skis.
+    along, boots: histories of the run.
+    normal: unit normal of the snow at each boot, (n, 2, 3).
+    ski: width and base of both skis.
 
-    Notes
-    -----
     At each station the shear is perpendicular to the edge line of the bent ski; the push is along it, and across it as
     the load is. Both are in the snow's surface, but for the friction of a tilted base across the ski. The three parts
     are summed over the stations with the lengths of the nodes.
@@ -216,12 +182,8 @@ def thrust_per_length(
 ) -> FloatArray:
     """Force along the normal that comes with the shear, per length (N/m), (n, 2, m): in the law's proportion of both.
 
-    Parameters
-    ----------
-    along, boots, normal
-        As in `snow_forces`.
-    shear
-        Law of the shear; None: a law without thrust.
+    along, boots, normal: as in `snow_forces`.
+    shear: law of the shear; None: a law without thrust.
     """
     if shear is None or type(shear).thrust_force is ShearLaw.thrust_force:
         return np.zeros_like(along.shear)

@@ -27,12 +27,8 @@ _OUTCOMES: Final[dict[Ended, Outcome]] = {Ended.STEP_TOO_SMALL: "step_too_small"
 class Moment(NamedTuple):
     """Values of one output time, SI.
 
-    Attributes
-    ----------
-    place, attitude, velocity
-        Motion of the boots' middle, in space: (3,), (3, 3), (3,).
-    row
-        All of the sledge and its skis, see `Dynamics.moment`.
+    place, attitude, velocity: motion of the boots' middle, in space: (3,), (3, 3), (3,).
+    row: all of the sledge and its skis, see `Dynamics.moment`.
     """
 
     place: FloatArray

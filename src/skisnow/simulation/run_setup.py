@@ -85,14 +85,9 @@ class Setup:
         Drives are called at their own times. An output between these leaves no trace: the steps after it begin at the
         state before it, so that the outputs do not change the run.
 
-        Parameters
-        ----------
-        until
-            Time to reach.
-        distance
-            Distance run so far (m).
-        is_over
-            Called at each time at which a drive is due; True: stop there.
+        until: time to reach.
+        distance: distance run so far (m).
+        is_over: called at each time at which a drive is due; True: stop there.
         """
         drives = self.drives
         if not drives:

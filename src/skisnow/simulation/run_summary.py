@@ -43,18 +43,10 @@ def summary_dict(
 ) -> dict[str, Any]:
     """The contents of summary.json; its JSON Schema is that of ``skisnow schema summary``.
 
-    Parameters
-    ----------
-    run
-        The run.
-    values
-        Every key of the scenario as `ScenarioFile.values` has it; default: taken from the run's scenario.
-    files
-        Files of the scenario, for their SHA-256.
-    warnings
-        About the scenario, in words.
-    verification
-        Result of `verification_dict`, if the run was repeated.
+    values: every key of the scenario as `ScenarioFile.values` has it; default: taken from the run's scenario.
+    files: files of the scenario, for their SHA-256.
+    warnings: about the scenario, in words.
+    verification: result of `verification_dict`, if the run was repeated.
     """
     checked = {} if verification is None else {"verification": dict(verification)}
     return {

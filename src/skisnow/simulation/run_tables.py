@@ -69,10 +69,7 @@ def track_csv(run: Run) -> str:
 def write_track(run: Run, path: str | Path) -> None:
     """Write track.csv in one piece.
 
-    Raises
-    ------
-    OutputError
-        The place cannot be written.
+    Raises OutputError: the place cannot be written.
     """
     write_file(path, track_csv(run))
 
@@ -86,10 +83,7 @@ _TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0
 def boots_columns(run: Run) -> dict[str, FloatArray]:
     """Columns by name, (n,) each: time, and of each boot pose, forces and moments in the slope's and its own axes.
 
-    Raises
-    ------
-    ParameterError
-        The run has no record of its boots.
+    Raises ParameterError: the run has no record of its boots.
     """
     boots = _boots(run)
     columns = {"time_s": run.time}
@@ -155,12 +149,8 @@ def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
 def write_boots(run: Run, path: str | Path) -> None:
     """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again.
 
-    Raises
-    ------
-    ParameterError
-        The name ends otherwise, or the run has no record of its boots.
-    OutputError
-        The place cannot be written.
+    Raises ParameterError: the name ends otherwise, or the run has no record of its boots.
+    Raises OutputError: the place cannot be written.
     """
     path = Path(path)
     require_ending(path)

@@ -171,10 +171,7 @@ def _run_once(
 ) -> tuple[Run, Setup]:
     """The run, and its setup at its end.
 
-    Raises
-    ------
-    SolverError
-        The sledge finds no equilibrium to start from.
+    Raises SolverError: the sledge finds no equilibrium to start from.
     """
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)

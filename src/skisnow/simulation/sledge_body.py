@@ -55,18 +55,11 @@ def rotation(quaternion: npt.ArrayLike) -> FloatArray:
 class SledgeInertia:
     """Mass matrix in blocks: rigid body, coupling, skis.
 
-    Attributes
-    ----------
-    rigid
-        (6, 6): velocity of the origin and angular velocity, in the sledge's frame.
-    coupling
-        (skis, size, 6): contributions of the unknowns of the left and the right ski.
-    mass
-        Of sledge and skis (kg).
-    first_moment
-        (3,) mass times the place of the common centre of mass (kg m).
-    ski
-        (6, 6) of one undeformed ski about its boot, in its own axes.
+    rigid: (6, 6): velocity of the origin and angular velocity, in the sledge's frame.
+    coupling: (skis, size, 6): contributions of the unknowns of the left and the right ski.
+    mass: of sledge and skis (kg).
+    first_moment: (3,) mass times the place of the common centre of mass (kg m).
+    ski: (6, 6) of one undeformed ski about its boot, in its own axes.
     """
 
     rigid: FloatArray
@@ -132,19 +125,12 @@ def sledge_body(
 ) -> Body:
     """A sledge on two of these skis, its origin between the boots on the level of the bases.
 
-    Parameters
-    ----------
-    sledge, ski
-        The rigid part, and the ski of both sides.
-    damping_ratio
-        Damping ratio of the clamped ski's first bending mode, ≥ 0: damping in proportion to the stiffness.
-    gravity
-        In space (m/s²), (3,).
-    drag, drag_height
-        ½ ρ C_d A (kg/m), height of the centre of pressure (m).
-    asides
-        Places of the boots to the left (m), one for each ski: one of 0 is a sledge on one ski, or on a monoski. Left
-        out: two, with the stance width between them.
+    sledge, ski: the rigid part, and the ski of both sides.
+    damping_ratio: damping ratio of the clamped ski's first bending mode, ≥ 0: damping in proportion to the stiffness.
+    gravity: in space (m/s²), (3,).
+    drag, drag_height: ½ ρ C_d A (kg/m), height of the centre of pressure (m).
+    asides: places of the boots to the left (m), one for each ski: one of 0 is a sledge on one ski, or on a monoski.
+        Left out: two, with the stance width between them.
     """
     sides = (sledge.stance_width / 2.0, -sledge.stance_width / 2.0) if asides is None else asides
     inertia = sledge_inertia(sledge, ski, sides)

@@ -28,20 +28,13 @@ _SAME_PLACE = 1e-9  # m
 class SkiParts:
     """Known properties of a ski along its stations, each as a function of station (m) in SI.
 
-    Attributes
-    ----------
-    name, source, layout, base_bevel, edge_width, side_edge, edge_radius, keys
-        As in `Ski` and `Layout`.
-    width, bending_stiffness, torsional_stiffness
-        As in `Ski`.
-    base
-        Its shape, or its height, which may have any value at the boot.
-    mass_per_length
-        As in `Ski`; None: proportional to the width (modelling assumption), with ``mass``.
-    mass
-        Mass of the ski (kg); used only without ``mass_per_length``.
-    stations
-        Requested stations (m), tip to tail; those of layout and boot are added and gaps above 2.5 mm divided evenly.
+    name, source, layout, base_bevel, edge_width, side_edge, edge_radius, keys: as in `Ski` and `Layout`.
+    width, bending_stiffness, torsional_stiffness: as in `Ski`.
+    base: its shape, or its height, which may have any value at the boot.
+    mass_per_length: as in `Ski`; None: proportional to the width (modelling assumption), with ``mass``.
+    mass: mass of the ski (kg); used only without ``mass_per_length``.
+    stations: requested stations (m), tip to tail; those of layout and boot are added and gaps above 2.5 mm divided
+        evenly.
     """
 
     name: str
@@ -63,16 +56,9 @@ class SkiParts:
     def assembled(self, *, like: Ski | None = None) -> Ski:
         """Tabulate the parts densely.
 
-        Parameters
-        ----------
-        like
-            A ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest points:
-            tables with the same number of rows, which differ smoothly; None: own stations.
-
-        Raises
-        ------
-        ParameterError
-            The result breaks a rule of `Ski`.
+        like: a ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest
+            points: tables with the same number of rows, which differ smoothly; None: own stations.
+        Raises ParameterError: the result breaks a rule of `Ski`.
         """
         station = self._grid() if like is None else self._moved_grid(like)
         width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
@@ -185,10 +171,7 @@ def arc_ski(
 def stiffness_table(values: npt.ArrayLike, station: npt.ArrayLike | None, layout: Layout) -> StationTable:
     """Table of a stiffness, at its stations (m) or evenly spaced over the running length, tip to tail.
 
-    Raises
-    ------
-    ParameterError
-        The stations do not fall, or their number differs from that of the values.
+    Raises ParameterError: the stations do not fall, or their number differs from that of the values.
     """
     if station is None:
         return evenly_spread(values, *layout.contact_points)

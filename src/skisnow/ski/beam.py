@@ -74,12 +74,8 @@ def stiffness_matrices(
 ) -> FloatArray:
     """Stiffness matrices of the elements: (n, 6, 6).
 
-    Parameters
-    ----------
-    length
-        (n,) m, > 0.
-    bending_stiffness, torsional_stiffness
-        (n, 4) EI and GJ (N m²) at the `GAUSS_POINTS` of each element.
+    length: (n,) m, > 0.
+    bending_stiffness, torsional_stiffness: (n, 4) EI and GJ (N m²) at the `GAUSS_POINTS` of each element.
     """
     curvature, weight = curvature_shape(GAUSS_POINTS[None, :], length[:, None]), GAUSS_WEIGHTS * length[:, None]
     moment = (weight * bending_stiffness)[:, :, None] * curvature
@@ -97,12 +93,8 @@ def mass_matrices(
 ) -> FloatArray:
     """Consistent mass matrices of the elements: (n, 6, 6).
 
-    Parameters
-    ----------
-    length
-        (n,) m, > 0.
-    mass_per_length, torsional_inertia_per_length
-        (n, 4) kg/m and kg m at the `GAUSS_POINTS` of each element.
+    length: (n,) m, > 0.
+    mass_per_length, torsional_inertia_per_length: (n, 4) kg/m and kg m at the `GAUSS_POINTS` of each element.
     """
     deflection = deflection_shape(GAUSS_POINTS[None, :], length[:, None])
     twist = twist_shape(GAUSS_POINTS)
@@ -145,12 +137,8 @@ def dense(matrix: FloatArray) -> FloatArray:
 def lowest_eigenvalue(stiffness: FloatArray, mass: FloatArray, start: FloatArray) -> float:
     """Smallest λ of K x = λ M x in the span of the start, by subspace iteration.
 
-    Parameters
-    ----------
-    stiffness, mass
-        K and M (size, 11), symmetric and positive definite.
-    start
-        Where the iteration begins (size, k); it converges as (λ of the first over λ of the k + 1st)².
+    stiffness, mass: K and M (size, 11), symmetric and positive definite.
+    start: where the iteration begins (size, k); it converges as (λ of the first over λ of the k + 1st)².
     """
     from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
 
@@ -209,20 +197,13 @@ class Stations:
 class ClampedSki:
     """Finite-element model of a ski whose clamped length is rigid, or on an elastic bed, and moves with the boot.
 
-    Attributes
-    ----------
-    ski, clamp_length
-        The ski and the length (m) that boot and binding keep straight, centred at the boot; 0: held at one section.
-    node
-        Positions of the nodes (m), tip to tail; the ends of the clamp are nodes.
-    dof
-        (elements, 6) numbers of the unknowns, -1 where held.
-    size
-        Number of unknowns.
-    stiffness
-        Banded matrix (size, 11), relative to the boot.
-    stations
-        See `Stations`.
+    ski, clamp_length: the ski and the length (m) that boot and binding keep straight, centred at the boot; 0: held at
+        one section.
+    node: positions of the nodes (m), tip to tail; the ends of the clamp are nodes.
+    dof: (elements, 6) numbers of the unknowns, -1 where held.
+    size: number of unknowns.
+    stiffness: banded matrix (size, 11), relative to the boot.
+    stations: see `Stations`.
     """
 
     ski: Ski
@@ -246,17 +227,11 @@ class ClampedSki:
 def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: float | None = None) -> ClampedSki:
     """Divide a ski into about that many elements of equal length and clamp it at the boot.
 
-    Parameters
-    ----------
-    ski
-        The ski; its boot is at station 0.
-    clamp_length
-        0 ≤ length (m); it must lie within the ski.
-    elements
-        ≥ 4, number of elements over the whole ski.
-    footprint_stiffness
-        > 0, of boot and binding between the boot and each metre of the clamped length (N/m²): the ski is then held at
-        the boot's middle and bedded on it over that length, with k W²/12 against twist; None: rigid.
+    ski: the ski; its boot is at station 0.
+    clamp_length: 0 ≤ length (m); it must lie within the ski.
+    elements: ≥ 4, number of elements over the whole ski.
+    footprint_stiffness: > 0, of boot and binding between the boot and each metre of the clamped length (N/m²): the ski
+        is then held at the boot's middle and bedded on it over that length, with k W²/12 against twist; None: rigid.
     """
     front, rear = float(ski.station[0]), float(ski.station[-1])
     if not 0.0 <= clamp_length / 2.0 < min(front, -rear):

@@ -40,10 +40,7 @@ _CORRECT: Final = Message("Correct it")
 def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None:
     """Check that stations (m) are between tip and tail, the ends of the ski's own.
 
-    Raises
-    ------
-    ParameterError
-        One is not, or is not a number.
+    Raises ParameterError: one is not, or is not a number.
     """
     off = ~((station >= stations[-1] - _ROUNDING) & (station <= stations[0] + _ROUNDING))
     if np.any(off):
@@ -59,10 +56,7 @@ def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None
 def require_tables(name: str, tables: SkiSections) -> None:
     """Check that a ski has a name, and tables that are equally long, finite, falling from tip to tail and above 0.
 
-    Raises
-    ------
-    ParameterError
-        The first rule broken.
+    Raises ParameterError: the first rule broken.
     """
     if not (isinstance(name, str) and name.strip()):  # type: ignore[redundant-expr] # callers without types
         _refuse(name, Message("its name is blank"), Message("Give it one"))
@@ -124,10 +118,7 @@ def _require_positive(name: str, tables: SkiSections) -> None:
 def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: float, middle: float) -> None:
     """Check that the tables reach over running length and sidecut length (m), and over the boot.
 
-    Raises
-    ------
-    ParameterError
-        They do not, or a length is not valid.
+    Raises ParameterError: they do not, or a length is not valid.
     """
     tip, tail = tables.station[0], tables.station[-1]
     for which, length in (("running_length", running), ("sidecut_length", sidecut)):
@@ -161,10 +152,7 @@ class EdgeShape(NamedTuple):
 def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
     """Check how an edge is ground, its width against the waist (m).
 
-    Raises
-    ------
-    ParameterError
-        A number is out of range.
+    Raises ParameterError: a number is out of range.
     """
     bevel, width, side, radius = edge
     if not 0.0 <= bevel <= GREATEST_BEVEL:
@@ -196,10 +184,7 @@ def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
 def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
     """Check that the waist is the smallest of the widths of tip, waist and tail (m).
 
-    Raises
-    ------
-    ParameterError
-        It is not.
+    Raises ParameterError: it is not.
     """
     front, middle, rear = widths
     if middle > front + _ROUNDING:
@@ -219,10 +204,7 @@ def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
 def require_base_at_boot(name: str, base_height: float) -> None:
     """Check that heights of the base (m) count from the boot.
 
-    Raises
-    ------
-    ParameterError
-        The height there is not 0.
+    Raises ParameterError: the height there is not 0.
     """
     if abs(base_height) > _ZERO_AT_BOOT:
         problem = Message("base_height is {height:.6g} m at the boot; it must be 0 there", height=base_height)

@@ -47,14 +47,9 @@ _END: Final = 0.005  # m between two stations at least (modelling assumption)
 class SkiEdit:
     """Changes of a ski.
 
-    Attributes
-    ----------
-    station
-        Places (m from the boot, falling) at which values may be given. Shape (k,).
-    factors
-        By column of `EDITED_COLUMNS`, for ``mass_per_length_kg_per_m``, and for `SIDECUT`; default: 1.
-    values
-        By column, in SI, shape (k,): the value wanted there; NaN: as it is but for the factor.
+    station: places (m from the boot, falling) at which values may be given. Shape (k,).
+    factors: by column of `EDITED_COLUMNS`, for ``mass_per_length_kg_per_m``, and for `SIDECUT`; default: 1.
+    values: by column, in SI, shape (k,): the value wanted there; NaN: as it is but for the factor.
     """
 
     station: FloatArray
@@ -95,27 +90,16 @@ def _plain(station: FloatArray) -> FloatArray:
 def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
     """The ski with an edit.
 
-    Parameters
-    ----------
-    ski
-        To begin with; it is not changed.
-    edit
-        Factors act on the whole of a curve. That of the sidecut's depth leaves the narrowest place as wide as it is;
+    ski: to begin with; it is not changed.
+    edit: factors act on the whole of a curve. That of the sidecut's depth leaves the narrowest place as wide as it is;
         the radius of the side line is divided by it. Beyond the widest places tip and tail are widened like these.
-        Where a value is given the curve passes through it: width and stiffness
-        are multiplied by the ratio of new to old value, to the base's height the difference is added. Between
-        stations ratio and difference follow a shape-preserving cubic (`StationTable`), so that where nothing is given
-        at two neighbouring stations nothing changes between them. Mass changes only by its factor.
-    name, source
-        Name of the edited ski.
+        Where a value is given the curve passes through it: width and stiffness are multiplied by the ratio of new to
+        old value, to the base's height the difference is added. Between stations ratio and difference follow a
+        shape-preserving cubic (`StationTable`), so that where nothing is given at two neighbouring stations nothing
+        changes between them. Mass changes only by its factor.
+    name, source: name of the edited ski.
+    Raises ParameterError: a factor or value is not allowed, or the ski breaks a rule of `Ski`.
 
-    Raises
-    ------
-    ParameterError
-        A factor or value is not allowed, or the ski breaks a rule of `Ski`.
-
-    Examples
-    --------
     >>> from skisnow.ski import ski_named
     >>> slalom = ski_named("slalom")
     >>> stiffer = edited_ski(slalom, SkiEdit(edit_stations(slalom), {"EI_N_m2": 1.2}), name="stiffer", source="1.2 EI")
@@ -216,10 +200,7 @@ def shape_parameters(ski: Ski) -> tuple[str, ...]:
 def shape_value(ski: Ski, name: str) -> float:
     """Value of a parameter, in the unit of the file; 1 of a factor.
 
-    Raises
-    ------
-    ParameterError
-        The ski has no such parameter; the nearest is named.
+    Raises ParameterError: the ski has no such parameter; the nearest is named.
     """
     allowed = shape_parameters(ski)
     if name not in allowed:
@@ -268,12 +249,8 @@ def is_linear(keys: Mapping[str, Any], key: str) -> bool:
 class TableGrowth:
     """Growth of a ski with a parameter, SI per its unit, on rows that move with it.
 
-    Attributes
-    ----------
-    tables
-        Of station, width, base height, EI and GJ, shape (5, rows).
-    numbers
-        Of running length, base bevel, edge width.
+    tables: of station, width, base height, EI and GJ, shape (5, rows).
+    numbers: of running length, base bevel, edge width.
     """
 
     tables: FloatArray

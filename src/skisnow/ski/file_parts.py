@@ -40,12 +40,8 @@ _TABLE_TOO_LONG: Final = template(
 class FileParts:
     """A ski file, parsed.
 
-    Attributes
-    ----------
-    values
-        Its keys.
-    table
-        The columns of its table by name, empty without one.
+    values: its keys.
+    table: the columns of its table by name, empty without one.
     """
 
     values: FileValues

@@ -36,14 +36,9 @@ _OTHER_UNITS: Final = {
 class FileValues:
     """The keys and values of one ski file.
 
-    Attributes
-    ----------
-    file
-        Its path.
-    values
-        As parsed.
-    said
-        The same, checked, in SI.
+    file: its path.
+    values: as parsed.
+    said: the same, checked, in SI.
     """
 
     file: Path
@@ -117,10 +112,7 @@ def refuse(file: Path, place: str, value: object, allowed: str, action: Message)
 def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
     """Give a value of a file, in the file's unit; its place is the quantity's name.
 
-    Raises
-    ------
-    ParameterError
-        It is of another kind, or outside its range; a likely mistake of unit is named.
+    Raises ParameterError: it is of another kind, or outside its range; a likely mistake of unit is named.
     """
     try:
         return quantity.in_range(value)
@@ -182,10 +174,8 @@ def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity)
 def file_values(path: Path) -> FileValues:
     """Parse a ski file and check its keys.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, is not TOML, or has an unknown key; the message names the nearest key.
+    Raises ParameterError: the file cannot be read, is not TOML, or has an unknown key; the message names the nearest
+        key.
     """
     return values_of_keys(read_toml(path), path)
 

@@ -33,14 +33,9 @@ class ArcOutline:
     - In front of the sidecut length the outline closes with a quarter ellipse, cut off at ``end_width``.
     - Behind the sidecut length it runs straight.
 
-    Attributes
-    ----------
-    layout
-        Layout of the ski.
-    tip_width, waist_width, tail_width
-        At the front end, the middle and the rear end of the sidecut length.
-    end_width
-        At the very tip; None: 20 % of the tip width.
+    layout: layout of the ski.
+    tip_width, waist_width, tail_width: at the front end, the middle and the rear end of the sidecut length.
+    end_width: at the very tip; None: 20 % of the tip width.
     """
 
     layout: Layout
@@ -95,10 +90,7 @@ def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
     assumption). Three rows give the side line of three widths; a cubic through the widths themselves would be flat at
     the widest and at the narrowest row, unlike any ski.
 
-    Raises
-    ------
-    ParameterError
-        There are too few rows within the sidecut length, or they lie together.
+    Raises ParameterError: there are too few rows within the sidecut length, or they lie together.
     """
     if np.max(-np.diff(table.station), initial=0.0) <= GREATEST_SPACING + 1e-9:
         return table.at
@@ -144,25 +136,14 @@ def _parabola(table: StationTable, layout: Layout) -> _Parabola:
 def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> float:
     """Radius of the circle with the smallest sum of squared distances to points of a plane (m).
 
-    Parameters
-    ----------
-    along, across
-        Coordinates of the points (m). Shape (n,), n ≥ 3.
+    along, across: coordinates of the points (m). Shape (n,), n ≥ 3.
+    Returns: above 0, in m; infinite where the points lie on a straight line to a tenth of a micrometre.
 
-    Returns
-    -------
-    float
-        Above 0, in m; infinite where the points lie on a straight line to a tenth of a micrometre.
-
-    Notes
-    -----
     Pratt's form A (x² + y²) + B x + C y + D = 0 with B² + C² - 4 A D = 1 (Pratt 1987, Computer Graphics 21:145). It
     minimises Σ (d + d²/2R)², d the distance of a point from the circle. The edge of a ski is within 0.1 mm of its
     circle and R is metres, so it is the circle of least squares to 5 digits beyond the first. Unlike the centre
     and radius themselves it stays well posed as the line becomes straight.
 
-    Examples
-    --------
     >>> turn = np.linspace(-0.05, 0.05, 41)
     >>> round(radius_of_least_squares_circle(13.0 * np.sin(turn), 0.034 + 13.0 * (1.0 - np.cos(turn))), 9)
     13.0

@@ -150,19 +150,10 @@ MADE_OF_KEYS: Final = weakref.WeakSet[Ski]()
 def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like: Ski | None = None) -> Ski:
     """Ski of the keys of a ski file without a table.
 
-    Parameters
-    ----------
-    keys
-        As in the file, in its units.
-    path
-        File that errors name.
-    like
-        See `SkiParts.assembled`.
-
-    Raises
-    ------
-    ParameterError
-        As `read_ski`.
+    keys: as in the file, in its units.
+    path: file that errors name.
+    like: see `SkiParts.assembled`.
+    Raises ParameterError: as `read_ski`.
     """
     values = values_of_keys(dict(keys), path)
     try:
@@ -258,10 +249,7 @@ def _plain(value: float) -> float:
 class Sources:
     """Skis and snows by the words that name them, each read once.
 
-    Attributes
-    ----------
-    folder
-        Where relative paths start; None: the current folder.
+    folder: where relative paths start; None: the current folder.
     """
 
     folder: Path | None = None

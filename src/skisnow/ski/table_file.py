@@ -162,8 +162,6 @@ class StationTable:
     the range of its neighbours, so a positive table stays positive. Beyond the first and the last station their values
     continue. A single value applies everywhere.
 
-    Examples
-    --------
     >>> table = StationTable(np.array([0.7, 0.0, -0.7]), np.array([100.0, 440.0, 100.0]))
     >>> [round(float(value), 6) for value in table.at(np.array([0.9, 0.7, 0.0, -0.8]))]
     [100.0, 100.0, 440.0, 100.0]

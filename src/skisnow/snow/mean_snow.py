@@ -30,19 +30,11 @@ def mean_snow(
     With two experiments or more each mean has its 95 % interval by Student's t, both on logarithms: for the mean m of
     S_f with the half-width h, m exp(± h/m) (delta method), so that no end is below 0, as in `site_means`.
 
-    Parameters
-    ----------
-    hardness_N_per_mm3, stress_N_per_mm2
-        Values of the used experiments, as results.json has them: both ways to a snow give the same bits.
-    source
-        Where the numbers come from, for `SnowProperties.source`.
-    where
-        The same for messages.
-
-    Raises
-    ------
-    ParameterError
-        A value cannot be that of a snow.
+    hardness_N_per_mm3, stress_N_per_mm2: values of the used experiments, as results.json has them: both ways to a snow
+        give the same bits.
+    source: where the numbers come from, for `SnowProperties.source`.
+    where: the same for messages.
+    Raises ParameterError: a value cannot be that of a snow.
     """
     hardness, stress = hardness_N_per_mm3, stress_N_per_mm2
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
@@ -144,20 +136,10 @@ def _mean(values: FloatArray) -> tuple[float, Interval | None]:
 def drawn_snows(snow: SnowProperties, shares: FloatArray) -> list[SnowProperties]:
     """Snows with log-normal H_V and S_f, each with the 95 % interval of a measured snow.
 
-    Parameters
-    ----------
-    snow
-        With both values and both intervals, as `snow_from_results` gives it for two experiments or more of each kind.
-    shares
-        Shape (count, 2), between 0 and 1 and independent: quantiles of H_V and S_f of each snow.
+    snow: with both values and both intervals, as `snow_from_results` gives it for two experiments or more of each kind.
+    shares: shape (count, 2), between 0 and 1 and independent: quantiles of H_V and S_f of each snow.
+    Raises ParameterError: a value or an interval is not known, or the lower end of the interval of S_f is not above 0.
 
-    Raises
-    ------
-    ParameterError
-        A value or an interval is not known, or the lower end of the interval of S_f is not above 0.
-
-    Notes
-    -----
     The middle of each distribution is that of the interval on logarithms. The intervals are those of means, so the
     snows show how well the mean is known, not how much the snow of a slope changes from place to place. H_V and S_f are
     drawn independently (modelling assumption).
@@ -171,10 +153,7 @@ def drawn_snows(snow: SnowProperties, shares: FloatArray) -> list[SnowProperties
 def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
     """The intervals of H_V and S_f.
 
-    Raises
-    ------
-    ParameterError
-        One is not known, or that of S_f does not begin above 0.
+    Raises ParameterError: one is not known, or that of S_f does not begin above 0.
     """
     hardness, stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     if hardness is None or stress is None:

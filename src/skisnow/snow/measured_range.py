@@ -124,16 +124,10 @@ def without_range_warnings() -> Iterator[None]:
 class PenetrometerRelation:
     """Density, and where there is one the surface area, from median force F (N) and element size L (m) of windows.
 
-    Attributes
-    ----------
-    source
-        The publication in short.
-    window
-        Length of the windows that it was fitted with (m).
-    snow_density
-        ρ (kg/m³) of F and L.
-    specific_surface_area
-        SSA (m²/kg) of F and L, or None.
+    source: the publication in short.
+    window: length of the windows that it was fitted with (m).
+    snow_density: ρ (kg/m³) of F and L.
+    specific_surface_area: SSA (m²/kg) of F and L, or None.
     """
 
     source: str

@@ -153,10 +153,7 @@ def _with_interval(value: float | None, interval: Interval | None, size: float, 
 def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves: bool) -> None:
     """Refuse a named snow that has no S_f where one is needed, or one that has S_f next to a given one.
 
-    Raises
-    ------
-    ParameterError
-        S_f comes from both sides, or from none although the ski carves.
+    Raises ParameterError: S_f comes from both sides, or from none although the ski carves.
     """
     if S_f_N_per_mm2 is not None and snow.failure_shear_stress is not None:
         raise ParameterError(

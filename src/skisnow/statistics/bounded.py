@@ -41,16 +41,10 @@ class Solved(NamedTuple):
 class Condensed:
     """A design of p columns and a response as least squares see them: of their n rows no more than p + 1 are left.
 
-    Attributes
-    ----------
-    design
-        Shape (m, p), columns of length one or zero.
-    response
-        Shape (m,).
-    scale
-        Shape (p,): divisors of the columns.
-    n
-        Rows that were condensed.
+    design: shape (m, p), columns of length one or zero.
+    response: shape (m,).
+    scale: shape (p,): divisors of the columns.
+    n: rows that were condensed.
     """
 
     design: FloatArray
@@ -83,22 +77,11 @@ class Condensed:
 def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.ArrayLike | None = None) -> Condensed:
     """Factorise a design once for many fits of Σ w (response - design β)² to the same response.
 
-    Parameters
-    ----------
-    design
-        Shape (n, p) or (n,), 1 ≤ p ≤ 6; no column is added.
-    response
-        Shape (n,).
-    weights
-        w ≥ 0, shape (n,), or None for all one.
+    design: shape (n, p) or (n,), 1 ≤ p ≤ 6; no column is added.
+    response: shape (n,).
+    weights: w ≥ 0, shape (n,), or None for all one.
+    Raises ParameterError: shapes do not fit, values are not finite, or a weight is below zero.
 
-    Raises
-    ------
-    ParameterError
-        Shapes do not fit, values are not finite, or a weight is below zero.
-
-    Examples
-    --------
     The free fit of y = b1 x + b2 would be b1 = 2, b2 = -1; with b2 held at 0, b1 = (1·1 + 2·3 + 3·5)/(1 + 4 + 9).
 
     >>> few = condensed([[1, 1], [2, 1], [3, 1]], [1, 3, 5])

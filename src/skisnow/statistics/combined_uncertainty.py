@@ -124,8 +124,6 @@ class RandomEffectsMean(NamedTuple):
 def random_effects_mean(estimates: npt.ArrayLike, standard_errors: npt.ArrayLike) -> RandomEffectsMean:
     """Mean of n ≥ 1 estimates with their standard errors (n,), in their unit.
 
-    Examples
-    --------
     Two estimates of one standard error weigh alike: the mean ± t₁ s/√2 with s = √2 of 1 and 3, t₁ = 12.706.
 
     >>> found = random_effects_mean([1.0, 3.0], [0.1, 0.1])

@@ -193,8 +193,6 @@ def holm_corrected(p: npt.ArrayLike) -> FloatArray:
 
     NaN stays NaN and does not count.
 
-    Examples
-    --------
     The smallest of three times 3, the next times 2, and none below the one before it.
 
     >>> holm_corrected([0.01, 0.04, 0.03]).round(4).tolist()
@@ -212,18 +210,9 @@ def holm_corrected(p: npt.ArrayLike) -> FloatArray:
 def compact_letters(differ: npt.ArrayLike) -> list[str]:
     """Letters of n groups of which two share one exactly where their pair does not differ (Piepho 2004).
 
-    Parameters
-    ----------
-    differ
-        Symmetric (n, n) mask of the pairs that differ.
+    differ: symmetric (n, n) mask of the pairs that differ.
+    Returns: letters of each group, by insertion and absorption (J. Comput. Graph. Stat. 13, 456-466).
 
-    Returns
-    -------
-    list of str
-        Letters of each group, by insertion and absorption (J. Comput. Graph. Stat. 13, 456-466).
-
-    Examples
-    --------
     The first and the last differ, the middle one from neither.
 
     >>> compact_letters([[0, 0, 1], [0, 0, 0], [1, 0, 0]])

@@ -48,12 +48,8 @@ class Columns:
 class Factorisation:
     """Full-rank design: β = loadings Qᵀy, so that the covariance of β is σ² loadings loadingsᵀ.
 
-    Attributes
-    ----------
-    orthogonal
-        Q, shape (n, p), with orthonormal columns.
-    loadings
-        Shape (p, p).
+    orthogonal: Q, shape (n, p), with orthonormal columns.
+    loadings: shape (p, p).
     """
 
     orthogonal: FloatArray
@@ -162,10 +158,7 @@ def independent_columns(scaled: FloatArray) -> list[int]:
 def factorise(columns: Columns) -> Factorisation:
     """Factorise a design of full rank.
 
-    Raises
-    ------
-    FitError
-        If there are fewer rows than columns, or one column follows from the others.
+    Raises FitError: if there are fewer rows than columns, or one column follows from the others.
     """
     n, p = columns.scaled.shape
     if n < p:

@@ -306,14 +306,9 @@ def coarse_jacobian(values: Values, b: FloatArray, scale: FloatArray) -> FloatAr
 def jacobian(values: Values, b: FloatArray, scale: FloatArray) -> Jacobian:
     """All but the last digits, at up to 20 evaluations for each parameter.
 
-    Parameters
-    ----------
-    values
-        Function of the parameters that returns the n values of the model.
-    b
-        The parameters, shape (p,).
-    scale
-        Above 0, shape (p,): the size of a parameter at 0.
+    values: function of the parameters that returns the n values of the model.
+    b: the parameters, shape (p,).
+    scale: above 0, shape (p,): the size of a parameter at 0.
     """
     here = float(np.linalg.norm(values(b)))
     coarse = np.linalg.norm(coarse_jacobian(values, b, scale), axis=0)

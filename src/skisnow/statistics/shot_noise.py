@@ -22,14 +22,9 @@ from .._support.arrays import FloatArray
 class ShotNoise:
     """Parameters of each window; NaN where its force does not vary or its mean is not above 0.
 
-    Attributes
-    ----------
-    rupture_force
-        f₀ in N.
-    deflection
-        δ at rupture in m.
-    intensity
-        λ, ruptures on a metre.
+    rupture_force: f₀ in N.
+    deflection: δ at rupture in m.
+    intensity: λ, ruptures on a metre.
     """
 
     rupture_force: FloatArray
@@ -40,22 +35,14 @@ class ShotNoise:
 def shot_noise(force: FloatArray, sample_distance: float) -> ShotNoise:
     """δ = -(3/2) C(0)/C'(0), f₀ = (3/2) κ₂/κ₁, λ = (4/3) κ₁²/(κ₂ δ); κ₁ and κ₂ are mean and variance.
 
-    Parameters
-    ----------
-    force
-        (..., n) N, a window in each row of n samples, n ≥ 3.
-    sample_distance
-        From sample to sample (m), above 0. C'(0) is the difference of the covariance over it.
+    force: (..., n) N, a window in each row of n samples, n ≥ 3.
+    sample_distance: from sample to sample (m), above 0. C'(0) is the difference of the covariance over it.
 
-    References
-    ----------
     * Löwe and van Herwijnen (2012), "A Poisson shot noise model for micro-penetration of snow", Cold Reg. Sci. Technol.
       70, 62-70, doi 10.1016/j.coldregions.2011.09.001.
     * Proksch, Löwe and Schneebeli (2015), "Density, specific surface area, and correlation length of snow measured by
       high-resolution penetrometry", J. Geophys. Res. Earth Surf. 120, 346-362, doi 10.1002/2014JF003266.
 
-    Examples
-    --------
     Mean 2, variance 1; about their straight line (slope -0.4) the squares sum to 3.2, neighbours' products to -2.4.
 
     >>> found = shot_noise(np.array([3.0, 1.0, 3.0, 1.0]), 1e-3)

@@ -98,12 +98,8 @@ class ListedPoints(Points):
 class GridPoints(Points):
     """Every combination of the values of some axes; the last axis varies fastest.
 
-    Attributes
-    ----------
-    fixed
-        Values of the inputs that all points share.
-    axes
-        Values by name; none of the names is fixed.
+    fixed: values of the inputs that all points share.
+    axes: values by name; none of the names is fixed.
     """
 
     fixed: Mapping[str, Any]
@@ -143,12 +139,8 @@ class GridPoints(Points):
 class Column:
     """The values of one input over a sample, in a few bytes each.
 
-    Attributes
-    ----------
-    numbers
-        The values, or indices into `listed` if it is not empty (n,).
-    listed
-        The values that the places name.
+    numbers: the values, or indices into `listed` if it is not empty (n,).
+    listed: the values that the places name.
     """
 
     numbers: npt.NDArray[Any]
@@ -168,14 +160,9 @@ class Column:
 class SampledPoints(Points):
     """A value of every column for each point.
 
-    Attributes
-    ----------
-    fixed
-        Values of the inputs that all points share.
-    columns
-        By name; none of the names is fixed.
-    n
-        The number of points.
+    fixed: values of the inputs that all points share.
+    columns: by name; none of the names is fixed.
+    n: the number of points.
     """
 
     fixed: Mapping[str, Any]
@@ -233,18 +220,11 @@ class Range:
 class Axis:
     """Values of one input: a list, or a range with ends.
 
-    Attributes
-    ----------
-    key
-        The input.
-    values
-        The list; empty for a range.
-    ends
-        From and to, for a range.
-    n
-        Number of values of a range on a grid; None where a sample does not need it.
-    log
-        Whether the range is even in the logarithm.
+    key: the input.
+    values: the list; empty for a range.
+    ends: from and to, for a range.
+    n: number of values of a range on a grid; None where a sample does not need it.
+    log: whether the range is even in the logarithm.
     """
 
     key: Quantity
@@ -257,10 +237,7 @@ class Axis:
     def of(cls, key: Quantity, value: object) -> Self:
         """Parse the value of a key: one value, a list of values, or {from, to, n, log}.
 
-        Raises
-        ------
-        ParameterError
-            It has another form; the message names the key.
+        Raises ParameterError: it has another form; the message names the key.
         """
         if isinstance(value, dict):
             return cls._of_range(key, value)

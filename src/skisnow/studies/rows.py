@@ -60,18 +60,11 @@ class StoredRows(LazySequence):
 class CsvRows(StoredRows):
     """Rows of a CSV file in UTF-8.
 
-    Parameters
-    ----------
-    path
-        For messages.
-    file
-        It stays open.
-    columns, readers
-        Names of the columns, and the function from cells to values.
-    begins
-        Where each block of rows begins (bytes), and where the last one ends.
-    count
-        How many rows there are.
+    path: for messages.
+    file: it stays open.
+    columns, readers: names of the columns, and the function from cells to values.
+    begins: where each block of rows begins (bytes), and where the last one ends.
+    count: how many rows there are.
     """
 
     def __init__(
@@ -99,10 +92,7 @@ class CsvRows(StoredRows):
 def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence[Reader], before: int) -> list[Row]:
     """The rows of some lines of a CSV file.
 
-    Raises
-    ------
-    ParameterError
-        A row is damaged; the message names it.
+    Raises ParameterError: a row is damaged; the message names it.
     """
     first = before + 2  # behind the names; right as long as no text has a line end
     try:
@@ -121,10 +111,7 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
 class DatabaseRows(StoredRows):
     """Rows of the table `study` of an SQLite file, in the order of their rowid.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be opened, is damaged, or is not a study's table.
+    Raises ParameterError: the file cannot be opened, is damaged, or is not a study's table.
     """
 
     def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
@@ -238,10 +225,7 @@ def _group_begins(metadata: Any) -> list[tuple[int, int]]:
 def require_pyarrow() -> Any:
     """The library of Parquet files.
 
-    Raises
-    ------
-    ParameterError
-        It is not installed.
+    Raises ParameterError: it is not installed.
     """
     pyarrow, _ = (
         needed(module, extra="parquet", what=Message("A table in Parquet")) for module in ("pyarrow", "pyarrow.parquet")
@@ -284,10 +268,7 @@ def readers(columns: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> 
 def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Sequence[Reader]) -> Row:
     """A row by the names of its columns.
 
-    Raises
-    ------
-    ParameterError
-        It has another number of cells, or one is not a number; the message begins with the place.
+    Raises ParameterError: it has another number of cells, or one is not a number; the message begins with the place.
     """
     if len(cells) != len(columns):
         raise ParameterError(
@@ -328,10 +309,7 @@ def is_text(name: str, keys: Mapping[str, Quantity]) -> bool:
 def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
     """Check the values of a row from a database; `texts` marks the columns of texts.
 
-    Raises
-    ------
-    ParameterError
-        A value is of another kind than its column; the message begins with the place.
+    Raises ParameterError: a value is of another kind than its column; the message begins with the place.
     """
     for (name, value), text in zip(row.items(), texts, strict=True):
         if value is None or (isinstance(value, str) if text else _is_number(value)):

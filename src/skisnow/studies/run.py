@@ -50,10 +50,7 @@ def table_state(
 ) -> tuple[StudyState, StudyTable | None]:
     """State of the file at the path of a table, and the table where it is one.
 
-    Raises
-    ------
-    ParameterError
-        As of `study_state`.
+    Raises ParameterError: as of `study_state`.
     """
     if not out.exists():
         return StudyState.NEW, None
@@ -173,23 +170,11 @@ def written(
 ) -> StudyTable:
     """The table of all rows; it is not written if no point could be computed.
 
-    Parameters
-    ----------
-    out
-        Its place.
-    finished_rows
-        The rows.
-    fingerprint
-        For the column `study`.
-    keys
-        The study's inputs.
-    previous
-        Where a table in its place goes; None: no table is there.
-
-    Raises
-    ------
-    OutputError
-        Its place cannot be written.
+    out: its place.
+    fingerprint: for the column `study`.
+    keys: the study's inputs.
+    previous: where a table in its place goes; None: no table is there.
+    Raises OutputError: its place cannot be written.
     """
     columns = (*(finished_rows.columns or ()), "study")
     rows = _Rows(finished_rows, columns, fingerprint)
@@ -251,14 +236,9 @@ def _move(table: Path, place: Path) -> None:
 class StudyRows:
     """From a point to the values of its row.
 
-    Attributes
-    ----------
-    subject
-        Model that computes the values of a point.
-    columns
-        Columns of the table without the fingerprint of the study.
-    files
-        Files that the points read, with the hash of each.
+    subject: model that computes the values of a point.
+    columns: columns of the table without the fingerprint of the study.
+    files: files that the points read, with the hash of each.
     """
 
     subject: StudyModel
@@ -279,10 +259,7 @@ class StudyRows:
     def require_files(self) -> None:
         """Refuse a worker on which a file is another one or is missing.
 
-        Raises
-        ------
-        SkisnowError
-            It names computer and file.
+        Raises SkisnowError: it names computer and file.
         """
         for path, wanted in self.files:
             if _hash(path) != wanted:

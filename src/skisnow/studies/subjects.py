@@ -166,12 +166,8 @@ def _failure(point: Point, reason: str) -> Row:
 class ScenarioModel(ShownFields):
     """Runs a scenario with the values of each point. Relative paths start at `folder`.
 
-    Attributes
-    ----------
-    folder
-        Name of the study's file.
-    scenario
-        A built-in name, or the path of a file.
+    folder: name of the study's file.
+    scenario: a built-in name, or the path of a file.
     """
 
     folder: Path

@@ -138,16 +138,10 @@ def large_csv(
 ) -> tuple[tuple[str, ...], StoredRows] | None:
     """Columns and rows of a CSV file as `write_csv` writes it; None of any other, which is closed.
 
-    Parameters
-    ----------
-    path
-        For messages.
-    file
-        Open for reading.
-    keys
-        The study's inputs.
-    begins
-        As `write_csv` returned it; None: searched for.
+    path: for messages.
+    file: open for reading.
+    keys: the study's inputs.
+    begins: as `write_csv` returned it; None: searched for.
     """
     try:
         rows = _large_csv(path, file, keys, begins)
@@ -234,16 +228,11 @@ def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
 class Tally:
     """Counts of rows.
 
-    Attributes
-    ----------
-    outcomes
-        How many rows have each.
-    warned
-        How many carry warnings.
-    first_failed, first_warned
-        Number, 1 or more, and text of the first row that could not be computed, and of the first with warnings.
-    studies
-        Fingerprints of the studies of the rows.
+    outcomes: how many rows have each.
+    warned: how many carry warnings.
+    first_failed, first_warned: number, 1 or more, and text of the first row that could not be computed, and of the
+        first with warnings.
+    studies: fingerprints of the studies of the rows.
     """
 
     outcomes: Counter[str] = field(default_factory=Counter)

@@ -35,26 +35,12 @@ _DATABASE_TYPES: Final[tuple[tuple[frozenset[type], str], ...]] = (
 def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[int] | None:
     """Write a table; it has its name when it is complete, and else nowhere.
 
-    Parameters
-    ----------
-    path
-        Ends in .csv, .sqlite or .parquet.
-    columns
-        Names.
-    rows
-        Values in the order of the columns; read twice for SQLite and Parquet, whose columns have types.
-
-    Returns
-    -------
-    array of int, or None
-        Offsets in a CSV file at which each block of rows begins.
-
-    Raises
-    ------
-    ParameterError
-        Another ending, or pyarrow is missing.
-    OutputError
-        The place cannot be written.
+    path: ends in .csv, .sqlite or .parquet.
+    columns: names.
+    rows: values in the order of the columns; read twice for SQLite and Parquet, whose columns have types.
+    Returns: offsets in a CSV file at which each block of rows begins.
+    Raises ParameterError: another ending, or pyarrow is missing.
+    Raises OutputError: the place cannot be written.
     """
     return writer_of(path)(path, columns, rows)
 
@@ -62,10 +48,7 @@ def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[in
 def writer_of(path: Path) -> Writer:
     """Writer for the suffix of a file name.
 
-    Raises
-    ------
-    ParameterError
-        Another ending, or pyarrow is missing.
+    Raises ParameterError: another ending, or pyarrow is missing.
     """
     ending = path.suffix.lower()
     if ending not in WRITERS:

@@ -31,26 +31,17 @@ INTERVAL_FACTOR: Final = float(norm.ppf(0.5 + CONFIDENCE / 2.0))
 class TrackMotion(ShownFields):
     """A track's motion at each of its points, seen along the third axis of its frame.
 
-    Attributes
-    ----------
-    time : (n,) s
-        Times of the points.
-    arc_length : (n,) m
-        Length of the track from its first point.
-    speed : (n,) m/s
-        Recorded speed, otherwise the speed of the estimated path.
-    heading, heading_sd : (n,) rad
-        Angle from the frame's first axis, positive towards the second, without jumps; NaN at rest.
-    curvature, curvature_sd : (n,) 1/m
-        Positive to the left.
-    turn_radius, turn_radius_sd : (n,) m
-        1 / curvature with its sign; the standard error is that of small errors, infinite where the curvature is 0.
-    smoothed
-        Smoothed places, velocities and accelerations, with noise and resolution.
-    speed_source, arc_length_source
-        Source of most of the speeds, and of the arc length.
-    path
-        Estimate of speed and length from places, for a track without recorded speeds; otherwise None.
+    time: (n,) s, times of the points.
+    arc_length: (n,) m, length of the track from its first point.
+    speed: (n,) m/s, recorded speed, otherwise the speed of the estimated path.
+    heading, heading_sd: (n,) rad, angle from the frame's first axis, positive towards the second, without jumps; NaN at
+        rest.
+    curvature, curvature_sd: (n,) 1/m, positive to the left.
+    turn_radius, turn_radius_sd: (n,) m, 1 / curvature with its sign; the standard error is that of small errors,
+        infinite where the curvature is 0.
+    smoothed: smoothed places, velocities and accelerations, with noise and resolution.
+    speed_source, arc_length_source: source of most of the speeds, and of the arc length.
+    path: estimate of speed and length from places, for a track without recorded speeds; otherwise None.
     """
 
     time: FloatArray
@@ -84,18 +75,9 @@ class TrackMotion(ShownFields):
 def track_motion(track: Track, *, window: float | None = None, place_noise: float | None = None) -> TrackMotion:
     """Smooth a track and compute its motion.
 
-    Parameters
-    ----------
-    track, window, place_noise
-        As in `skisnow.track.smoothing.smooth_track`.
+    track, window, place_noise: as in `skisnow.track.smoothing.smooth_track`.
+    Raises ParameterError: too few points, or a window or a noise that is not above 0.
 
-    Raises
-    ------
-    ParameterError
-        Too few points, or a window or a noise that is not above 0.
-
-    Notes
-    -----
     With x', y' and x'', y'' of the local cubics:  φ = atan2(y', x'),  κ = (x' y'' − y' x'') / (x'² + y'²)^(3/2).
     Errors are propagated to first order. Smoothing decreases the curvature of turns in a constant direction;
     ``smoothed.resolution`` gives by how much. The standard errors do not include this.

@@ -41,16 +41,12 @@ class WeightedValues:
 class LocalCubic:
     """Fits in all windows, in the variable τ = (t − t_i)/h about each point.
 
-    Attributes
-    ----------
-    coefficients : (n, 4, d)
-        Coefficients of τ⁰ to τ³, that of τ⁰ relative to the point's value; NaN if a window has too few points.
-    covariance : (n, 4, 4)
-        Covariance of the coefficients of one coordinate, for values with the variance 1/weight.
-    place_misfit, rate_misfit : (n,)
-        Weighted sums of squared residuals of places and of velocities, over all coordinates.
-    place_count, rate_count : (n,)
-        Number of points in the window with a weight above 0.
+    coefficients: (n, 4, d), coefficients of τ⁰ to τ³, that of τ⁰ relative to the point's value; NaN if a window has too
+        few points.
+    covariance: (n, 4, 4), covariance of the coefficients of one coordinate, for values with the variance 1/weight.
+    place_misfit, rate_misfit: (n,), weighted sums of squared residuals of places and of velocities, over all
+        coordinates.
+    place_count, rate_count: (n,), number of points in the window with a weight above 0.
     """
 
     coefficients: FloatArray
@@ -70,16 +66,10 @@ def local_cubic(
 ) -> LocalCubic:
     """Fit every window. If points are dense, neighbours within 1/40 of a window share a fit.
 
-    Parameters
-    ----------
-    time : (n,) s
-        Never falling.
-    windows : (n,), (n,)
-        First point of each window, and the one after its last.
-    half : s
-        Scale of τ, half of a window.
-    place, rate
-        Places (m), and velocities (m/s) or None.
+    time: (n,) s, never falling.
+    windows: (n,), (n,), first point of each window, and the one after its last.
+    half: s, scale of τ, half of a window.
+    place, rate: places (m), and velocities (m/s) or None.
     """
     first, last = windows
     centre_of, centres = _centres(time, windows, half)

@@ -64,18 +64,11 @@ class Interval(NamedTuple):
 class PathEstimate:
     """Samples of the speed along a track.
 
-    Attributes
-    ----------
-    time : (n,) s
-        Times of the nodes.
-    step : (n - 1,) s
-        Between nodes; 0 between parts of the track.
-    speed : (s, n) m/s
-        Horizontal speed, a row for each sample.
-    climb : (s, n) m/s or None
-        Vertical speed; None without heights.
-    across : (n - 1,) m
-        Straight path between parts of the track.
+    time: (n,) s, times of the nodes.
+    step: (n - 1,) s, between nodes; 0 between parts of the track.
+    speed: (s, n) m/s, horizontal speed, a row for each sample.
+    climb: (s, n) m/s or None, vertical speed; None without heights.
+    across: (n - 1,) m, straight path between parts of the track.
     """
 
     time: FloatArray
@@ -128,21 +121,11 @@ def estimate_path(
 ) -> PathEstimate | None:
     """Estimate the path through places.
 
-    Parameters
-    ----------
-    time : (n,) s
-        Rising.
-    place : (n, 3) m
-        Finite x and y; heights NaN if unknown.
-    part, segment : (n,)
-        Number of the part without a gap, and of the segment of the file, of each point.
-    seed
-        Seed of the samples.
-
-    Returns
-    -------
-    PathEstimate or None
-        None if no part has three points or no path can be fitted.
+    time: (n,) s, rising.
+    place: (n, 3) m, finite x and y; heights NaN if unknown.
+    part, segment: (n,), number of the part without a gap, and of the segment of the file, of each point.
+    seed: seed of the samples.
+    Returns: None if no part has three points or no path can be fitted.
     """
     rng = np.random.default_rng(seed)
     pieces = [_average_close_points(time[part == number], place[part == number]) for number in np.unique(part)]

@@ -59,18 +59,11 @@ class TimeScales(NamedTuple):
 class MotionParameters(NamedTuple):
     """Parameters of the model.
 
-    Attributes
-    ----------
-    place_noise
-        Standard deviation (m) of a coordinate, from point to point.
-    turn_rate
-        Standard deviation (rad/s) of the turn rate.
-    period
-        2π/Ω (s): of a turn to the left and one to the right.
-    acceleration
-        Standard deviation (m/s²) of the acceleration along the path.
-    drift
-        Random walk of the places (m/√s).
+    place_noise: standard deviation (m) of a coordinate, from point to point.
+    turn_rate: standard deviation (rad/s) of the turn rate.
+    period: 2π/Ω (s): of a turn to the left and one to the right.
+    acceleration: standard deviation (m/s²) of the acceleration along the path.
+    drift: random walk of the places (m/√s).
     """
 
     place_noise: float
@@ -84,14 +77,9 @@ class MotionParameters(NamedTuple):
 class PathFit:
     """The most probable path of one set of parameters.
 
-    Attributes
-    ----------
-    state : (n, 7)
-        At each node.
-    factor : (14, 7 n)
-        Lower banded Cholesky factor of the precision of the state.
-    log_evidence
-        Logarithm of the evidence of the parameters, up to a constant of the nodes.
+    state: (n, 7), at each node.
+    factor: (14, 7 n), lower banded Cholesky factor of the precision of the state.
+    log_evidence: logarithm of the evidence of the parameters, up to a constant of the nodes.
     """
 
     state: FloatArray

@@ -127,15 +127,8 @@ class _Search:
 def likely_parameters(model: PathModel) -> list[WeightedParameters]:
     """Weighted points that represent the posterior distribution of the parameters.
 
-    Parameters
-    ----------
-    model
-        A stretch with at most a few hundred points.
-
-    Returns
-    -------
-    list
-        At least one point, unless no path at all can be fitted.
+    model: a stretch with at most a few hundred points.
+    Returns: at least one point, unless no path at all can be fitted.
     """
     search, start = _best_start(model)
     if start is None:

@@ -100,8 +100,6 @@ def earth_centred(latitude_deg: FloatArray, longitude_deg: FloatArray, height: F
 def geodetic(place: FloatArray) -> FloatArray:
     """Latitude (°), longitude (°) and height (m) above the ellipsoid (…, 3) of earth-centred places (…, 3) in m.
 
-    Notes
-    -----
     Bowring's iteration on the reduced latitude β: tan φ = (Z + e'² b sin³ β)/(p − e² a cos³ β), tan β = (1 − f) tan φ.
     Below 10⁻⁸ m wherever someone skis.
     """
@@ -142,13 +140,9 @@ def east_north_up_axes(latitude_deg: FloatArray | float, longitude_deg: FloatArr
 def east_north_up(points: FloatArray, *, origin: GeodeticPoint) -> FloatArray:
     """East, north, up (n, 3) in m from the origin.
 
-    Parameters
-    ----------
-    points : (n, 3)
-        Latitude (°), longitude (°), height (m). Where the height is NaN the point is projected at the origin's height,
-        and up is NaN: 100 m of height change east and north by 16 parts in a million.
-    origin
-        Point at which the plane touches the ellipsoid.
+    points: (n, 3), latitude (°), longitude (°), height (m). Where the height is NaN the point is projected at the
+        origin's height, and up is NaN: 100 m of height change east and north by 16 parts in a million.
+    origin: point at which the plane touches the ellipsoid.
     """
     points = np.asarray(points, float)
     missing = np.isnan(points[:, 2])

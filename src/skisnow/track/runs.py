@@ -37,22 +37,13 @@ _LEVEL_SHARE: Final = 0.01
 class Stretch:
     """A run or a lift: from the point number ``first`` to ``last``, both in it.
 
-    Attributes
-    ----------
-    first, last
-        Numbers of points.
-    start, end
-        Times (s).
-    distance
-        m, along the track.
-    descent
-        Height at the start less that at the end (m), negative for a lift; None without heights.
-    max_speed
-        Highest speed (m/s); None if none is known.
-    distance_interval, max_speed_interval
-        Ends of the 95 % intervals; None for what the device recorded.
-    gaps
-        Number of gaps inside.
+    first, last: numbers of points.
+    start, end: times (s).
+    distance: m, along the track.
+    descent: height at the start less that at the end (m), negative for a lift; None without heights.
+    max_speed: highest speed (m/s); None if none is known.
+    distance_interval, max_speed_interval: ends of the 95 % intervals; None for what the device recorded.
+    gaps: number of gaps inside.
     """
 
     first: int
@@ -80,15 +71,8 @@ class Day(ShownFields):
 def split_day(track: Track, motion: TrackMotion) -> Day:
     """Find runs and lifts.
 
-    Parameters
-    ----------
-    track
-        The track; its third axis is the height unless its axes are those of a slope.
-    motion
-        Motion of the track.
+    track: the track; its third axis is the height unless its axes are those of a slope.
 
-    Notes
-    -----
     The height's running mean has tops and bottoms that differ by 15 m at least. An ascent between them is a lift,
     unless the speed at its foot would carry anyone up there, v²/(2g). Between two lifts, what descends is a run: from
     the last moment at the top at which the speed was below 1 m/s to the first such moment at the bottom; a stop in

@@ -181,12 +181,8 @@ class Inclination(NamedTuple):
 def lay_on_slope(track: Track, slope_angle: float) -> Track:
     """The track with x horizontal down the fall line, y to the left and z up.
 
-    Parameters
-    ----------
-    track
-        In the axes of a plane slope; a point without height is taken to be on the plane.
-    slope_angle : rad
-        Inclination of the slope.
+    track: in the axes of a plane slope; a point without height is taken to be on the plane.
+    slope_angle: rad, inclination of the slope.
     """
     x, y, z = track.place.T
     out = np.where(np.isnan(z), 0.0, z)
@@ -222,16 +218,10 @@ def inclination(track: Track) -> Inclination | None:
 class LaidTracks(NamedTuple):
     """Two tracks in a common horizontal map, after one of them was rotated onto it.
 
-    Attributes
-    ----------
-    simulated, measured
-        The tracks.
-    angle : rad or None
-        Inclination by which one was rotated; None if it is unknown or was not needed.
-    source
-        Source of the inclination, in words.
-    warnings
-        Sentences on inclinations that disagree, or are unknown.
+    simulated, measured: the tracks.
+    angle: rad or None, inclination by which one was rotated; None if it is unknown or was not needed.
+    source: source of the inclination, in words.
+    warnings: sentences on inclinations that disagree, or are unknown.
     """
 
     simulated: Track
@@ -246,10 +236,7 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
 
     The inclination is the one that is given, else that of the track's slope, else that of the other track's heights.
 
-    Parameters
-    ----------
-    slope_angle : rad or None
-        Inclination of the slope, if it is given.
+    slope_angle: rad or None, inclination of the slope, if it is given.
     """
     if measured.axes != "east_north_up" == simulated.axes:
         swapped = lay_for_fit(measured, simulated, slope_angle)

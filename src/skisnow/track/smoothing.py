@@ -35,22 +35,14 @@ the places from the normal equations."""
 class SmoothedTrack(ShownFields):
     """A track in the plane of its frame as locally fitted cubics, one around each point.
 
-    Attributes
-    ----------
-    place, velocity, acceleration : (n, 2)
-        m, m/s, m/s²; NaN where a window has fewer than six usable points.
-    covariance : (n, 3, 3)
-        Covariance of place, velocity and acceleration of one coordinate; both coordinates have the same one and are
-        independent.
-    part : (n,)
-        Number of the stretch without a gap of each point.
-    usable : (n,)
-        Points that were fitted.
-    place_noise, speed_noise
-        Standard deviation of a coordinate (m) and of a component of the recorded velocity (m/s) about the fits, without
-        drifts slower than the window; None if no velocities were recorded.
-    resolution
-        Length of the window, and its transfer function.
+    place, velocity, acceleration: (n, 2), m, m/s, m/s²; NaN where a window has fewer than six usable points.
+    covariance: (n, 3, 3), covariance of place, velocity and acceleration of one coordinate; both coordinates have the
+        same one and are independent.
+    part: (n,), number of the stretch without a gap of each point.
+    usable: (n,), points that were fitted.
+    place_noise, speed_noise: standard deviation of a coordinate (m) and of a component of the recorded velocity (m/s)
+        about the fits, without drifts slower than the window; None if no velocities were recorded.
+    resolution: length of the window, and its transfer function.
     """
 
     place: FloatArray
@@ -67,22 +59,11 @@ class SmoothedTrack(ShownFields):
 def smooth_track(track: Track, *, window: float | None = None, place_noise: float | None = None) -> SmoothedTrack:
     """Fit cubics to the track's places and recorded velocities.
 
-    Parameters
-    ----------
-    track
-        At least six usable points.
-    window
-        Length of the window (s). None: eight intervals between points, at least 0.8 s.
-    place_noise
-        Standard deviation of a coordinate (m). None: from the scatter about the fits.
+    track: at least six usable points.
+    window: length of the window (s). None: eight intervals between points, at least 0.8 s.
+    place_noise: standard deviation of a coordinate (m). None: from the scatter about the fits.
+    Raises ParameterError: too few points, or a window or a noise that is not above 0.
 
-    Raises
-    ------
-    ParameterError
-        Too few points, or a window or a noise that is not above 0.
-
-    Notes
-    -----
     If the track states a standard deviation for each point, it gives the weights. The size of the noise is estimated
     from the scatter, because most of the stated error is a slow drift that does not bend the path. Windows are moved
     inwards at the ends of a part, so that they keep their length.
@@ -125,13 +106,8 @@ def usable_points(track: Track) -> BoolArray:
 def parts(track: Track, usable: BoolArray) -> IntArray:
     """Number of the part of each point: a new one begins after a gap, an impossible step and with a new segment.
 
-    Parameters
-    ----------
-    track
-        The track.
-    usable
-        Points that count; the others get the number of the point before. A time without usable points that is as long
-        as a gap is a gap, too.
+    usable: points that count; the others get the number of the point before. A time without usable points that is as
+        long as a gap is a gap, too.
     """
     begins = np.zeros(len(track), dtype=bool)
     for code in ("gap", "impossible_step", "new_segment"):
@@ -274,14 +250,10 @@ def _excess(fits: LocalCubic) -> FloatArray:
 class Resolution:
     """The transfer function of local cubics on evenly spaced points, away from ends and gaps.
 
-    Attributes
-    ----------
-    window
-        Length of the window (s).
-    offsets
-        Times (s) of the points of a window from its middle.
-    place_weights, rate_weights
-        The estimate of the acceleration is the sum of these times places (1/s²) and recorded velocities (1/s).
+    window: length of the window (s).
+    offsets: times (s) of the points of a window from its middle.
+    place_weights, rate_weights: the estimate of the acceleration is the sum of these times places (1/s²) and recorded
+        velocities (1/s).
     """
 
     window: float
@@ -318,10 +290,7 @@ class Resolution:
     def period_passed(self, share: float) -> float:
         """Shortest period (s) of which this share of the amplitude passes, and of all longer ones more.
 
-        Parameters
-        ----------
-        share
-            Between 0.1 and 0.99.
+        share: between 0.1 and 0.99.
         """
         low, high = 0.4 * self.window, 0.4 * self.window
         while self.share_passed(high) < share:

@@ -210,27 +210,18 @@ def point_flags(
 ) -> dict[str, BoolArray]:
     """Flags of every code, each (n,) bool.
 
-    Parameters
-    ----------
-    time : (n,) s
-        Times that never fall.
-    place : (n, 3) m
-        Places; NaN if missing.
-    fix : (n,) bool
-        True if the receiver had a fix.
-    negative_speed : (n,) bool
-        True if the recorded speed was below zero.
-    fastest : m/s
-        Horizontal speed above which a step is impossible.
-    gap_factor
-        A time step longer than this many medians of the steps above zero is a gap; the point after it is flagged.
-    solution : (n,) or None
-        Kind of solution of each place, as in `Track`.
-    segment : (n,) or None
-        Number of the segment of each point. A segment that continues the one before, at most 1.5 usual intervals later
-        and at a possible speed, is not flagged: some programs begin a segment for each lap.
-    rounded, not_finite : (n,) bool or None
-        Points whose time stamp was rounded, and points with a cell that is not a finite number.
+    time: (n,) s, times that never fall.
+    place: (n, 3) m, places; NaN if missing.
+    fix: (n,) bool, True if the receiver had a fix.
+    negative_speed: (n,) bool, True if the recorded speed was below zero.
+    fastest: m/s, horizontal speed above which a step is impossible.
+    gap_factor: a time step longer than this many medians of the steps above zero is a gap; the point after it is
+        flagged.
+    solution: (n,) or None, kind of solution of each place, as in `Track`.
+    segment: (n,) or None, number of the segment of each point. A segment that continues the one before, at most 1.5
+        usual intervals later and at a possible speed, is not flagged: some programs begin a segment for each lap.
+    rounded, not_finite: (n,) bool or None, points whose time stamp was rounded, and points with a cell that is not a
+        finite number.
     """
     placed = fix & np.isfinite(place[:, :2]).all(axis=1)
     repeated = np.zeros(len(time), bool)

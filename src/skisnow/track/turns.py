@@ -28,27 +28,16 @@ LONGEST_STRAIGHT: Final = 2.0
 class Turn:
     """A stretch of one sense of curvature.
 
-    Attributes
-    ----------
-    start, end
-        Times (s); of the switch points where another turn comes before or after.
-    direction
-        "left" or "right" as seen along the track.
-    turned_angle, turned_angle_sd
-        Change of heading (rad), positive left, and its standard error.
-    least_radius : m
-        1 / the largest curvature of the smoothed track; above 0.
-    least_radius_interval
-        Minimum and maximum (m) of its 95 % interval due to noise.
-    least_radius_time
-        Time of the largest curvature (s).
-    mean_radius
-        Length over turned angle (m).
-    length
-        m, along the track.
-    share_passed
-        Share of the amplitude that the smoothing leaves of a curvature shaped as half a sine over the turn: the true
-        minimum radius is about ``share_passed`` times the given one.
+    start, end: times (s); of the switch points where another turn comes before or after.
+    direction: "left" or "right" as seen along the track.
+    turned_angle, turned_angle_sd: change of heading (rad), positive left, and its standard error.
+    least_radius: m, 1 / the largest curvature of the smoothed track; above 0.
+    least_radius_interval: minimum and maximum (m) of its 95 % interval due to noise.
+    least_radius_time: time of the largest curvature (s).
+    mean_radius: length over turned angle (m).
+    length: m, along the track.
+    share_passed: share of the amplitude that the smoothing leaves of a curvature shaped as half a sine over the turn:
+        the true minimum radius is about ``share_passed`` times the given one.
     """
 
     start: float
@@ -78,18 +67,10 @@ def find_turns(
 ) -> tuple[Turn, ...]:
     """Find the turns between two points.
 
-    Parameters
-    ----------
-    motion
-        Motion of the track.
-    first, last
-        Numbers of the first and the last point (default: the whole track).
-    least_angle
-        Smallest turned angle (rad) of a turn. Pieces that turn less are omitted, and two turns to the same side with
-        only such a piece between them are merged.
+    first, last: numbers of the first and the last point (default: the whole track).
+    least_angle: smallest turned angle (rad) of a turn. Pieces that turn less are omitted, and two turns to the same
+        side with only such a piece between them are merged.
 
-    Notes
-    -----
     A turn begins where the curvature is 3 standard errors and 1/(500 m) from 0, and goes on, whatever the curvature is
     in between, to the last such point before one of the other sign or a straight stretch of 2 s (two windows, if
     longer). Two turns that follow each other meet in the switch point: where the curvature, as a straight line fitted

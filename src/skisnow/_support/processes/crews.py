@@ -145,16 +145,10 @@ class ThreadCrew(Crew):
 class GivenCrew(Crew):
     """An executor of the caller, on this computer or others: each chunk carries the function.
 
-    Parameters
-    ----------
-    function
-        Pickled once.
-    executor
-        It is not shut down here.
-    size
-        How many chunks it computes at once.
-    close
-        Called at the end; None: there is nothing to close.
+    function: pickled once.
+    executor: it is not shut down here.
+    size: how many chunks it computes at once.
+    close: called at the end; None: there is nothing to close.
     """
 
     def __init__(
@@ -234,12 +228,8 @@ Numbered: TypeAlias = tuple[int, Any]
 class Done:
     """Rows of a chunk.
 
-    Attributes
-    ----------
-    rows
-        Numbers and rows.
-    seconds_per_point
-        Wall time (s).
+    rows: numbers and rows.
+    seconds_per_point: wall time (s).
     """
 
     rows: list[NumberedText]
@@ -282,21 +272,10 @@ def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
 def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
     """Rows of points by a pickled function; the worker caches the last four functions.
 
-    Parameters
-    ----------
-    packed
-        The function, pickled.
-    identity
-        Version and core of the sender's skisnow.
-    folder
-        Working folder of the sender; the worker changes to it if it exists here.
-    points
-        Numbered points.
-
-    Raises
-    ------
-    SkisnowError
-        Another skisnow is installed here, or the function's files are others here.
+    packed: the function, pickled.
+    identity: version and core of the sender's skisnow.
+    folder: working folder of the sender; the worker changes to it if it exists here.
+    Raises SkisnowError: another skisnow is installed here, or the function's files are others here.
     """
     if identity != own_identity():
         raise SkisnowError(

@@ -28,10 +28,7 @@ COUNTED_EVERY_S: Final = 1.0
 def require_scheduler(address: str) -> None:
     """Raise an error for an invalid scheduler before the work begins.
 
-    Raises
-    ------
-    ParameterError
-        It is not an address, or Dask is not installed.
+    Raises ParameterError: it is not an address, or Dask is not installed.
     """
     if "://" not in address:
         raise ParameterError(
@@ -50,12 +47,8 @@ def is_plain(address: str) -> bool:
 def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
     """Workers of a scheduler; at the end the connection is closed. Certificates are those of Dask's configuration.
 
-    Raises
-    ------
-    ParameterError
-        As of `require_scheduler`.
-    SkisnowError
-        It does not answer.
+    Raises ParameterError: as of `require_scheduler`.
+    Raises SkisnowError: it does not answer.
     """
     require_scheduler(address)
     try:

@@ -40,13 +40,9 @@ class KeptRows:
     Every row has a checksum. The schema and the pages are checked at each opening, a checksum when its row is read: a
     damaged file is an error that names it, whatever is damaged in it.
 
-    Attributes
-    ----------
-    path
-        The file, None: in memory.
-    columns
-        If columns are stated, a row is stored as the list of their values, which is half as long; other values are not
-        stored.
+    path: the file, None: in memory.
+    columns: if columns are stated, a row is stored as the list of their values, which is half as long; other values are
+        not stored.
     """
 
     def __init__(self, path: Path | None = None, *, columns: Sequence[str] | None = None) -> None:
@@ -68,23 +64,13 @@ class KeptRows:
     ) -> Self:
         """Open the file of a batch, or begin it.
 
-        Parameters
-        ----------
-        path
-            The file; its folder is made where it is missing.
-        fingerprint
-            Changes with anything that the rows follow from.
-        columns
-            As the attribute.
-        about
-            Further entries of the batch for a new file.
-
-        Raises
-        ------
-        ParameterError
-            The file belongs to another batch: its fingerprint differs. Or it is damaged, or not a file of rows.
-        OutputError
-            It cannot be written, or another run is writing it.
+        path: the file; its folder is made where it is missing.
+        fingerprint: changes with anything that the rows follow from.
+        columns: as the attribute.
+        about: further entries of the batch for a new file.
+        Raises ParameterError: the file belongs to another batch: its fingerprint differs. Or it is damaged, or not a
+            file of rows.
+        Raises OutputError: it cannot be written, or another run is writing it.
         """
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -99,12 +85,8 @@ class KeptRows:
     def read(cls, path: Path) -> Self:
         """Open the file of a batch as it is, whatever its fingerprint.
 
-        Raises
-        ------
-        ParameterError
-            The file is missing or damaged, or not a file of rows.
-        OutputError
-            It cannot be opened, or another run is writing it.
+        Raises ParameterError: the file is missing or damaged, or not a file of rows.
+        Raises OutputError: it cannot be opened, or another run is writing it.
         """
         if not path.is_file():
             raise ParameterError(
@@ -165,10 +147,7 @@ class KeptRows:
     def add(self, rows: Iterable[NumberedText]) -> int:
         """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number.
 
-        Raises
-        ------
-        OutputError
-            The file cannot be written.
+        Raises OutputError: the file cannot be written.
         """
         new = list(rows)
         with self._told():
@@ -213,10 +192,7 @@ class KeptRows:
     def texts(self) -> Iterator[NumberedText]:
         """Points with their rows as they are kept, in rising order.
 
-        Raises
-        ------
-        ParameterError
-            A row, or the file, is damaged.
+        Raises ParameterError: a row, or the file, is damaged.
         """
         return self._checked("order by number")
 

@@ -29,10 +29,7 @@ def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
 def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
     """True or False as the header states degrees or not; None without a statement.
 
-    Raises
-    ------
-    ParameterError
-        The statement is neither yes nor no.
+    Raises ParameterError: the statement is neither yes nor no.
     """
     word = _said(head).get("indegrees")
     if word is None:
@@ -50,10 +47,8 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
 def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
     """True if OpenSim reads the angles of a file in degrees; a version without a statement means radians.
 
-    Raises
-    ------
-    ParameterError
-        The header has neither a statement nor a version: OpenSim then reads degrees in .mot and radians in .sto.
+    Raises ParameterError: the header has neither a statement nor a version: OpenSim then reads degrees in .mot and
+        radians in .sto.
     """
     stated = degrees_stated(path, head)
     if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):

@@ -160,19 +160,11 @@ Place: TypeAlias = tuple[str | int, ...]
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
     """Reject values that no reader can handle.
 
-    Parameters
-    ----------
-    value
-        As TOML or JSON gave it.
-    infinite
-        Whether a number may be infinite or NaN, as TOML allows when it is written so.
-    place
-        Keys and numbers that lead to the value.
-
-    Raises
-    ------
-    GivenError
-        Nesting, a key, a text or a number is beyond the limits, or a text has a NUL character or half a letter.
+    value: as TOML or JSON gave it.
+    infinite: whether a number may be infinite or NaN, as TOML allows when it is written so.
+    place: keys and numbers that lead to the value.
+    Raises GivenError: nesting, a key, a text or a number is beyond the limits, or a text has a NUL character or half a
+        letter.
     """
     if isinstance(value, str):
         _require_text(value, place, LONGEST_TEXT)

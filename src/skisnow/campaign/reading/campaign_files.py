@@ -41,12 +41,8 @@ class CampaignFiles(Protocol):
     def read(self, name: str) -> bytes | None:
         """Bytes of a file; None for a directory, pipe or the like.
 
-        Raises
-        ------
-        FileNotFoundError
-            The file does not exist.
-        OSError
-            It cannot be read.
+        Raises FileNotFoundError: the file does not exist.
+        Raises OSError: it cannot be read.
         """
         ...
 
@@ -105,16 +101,9 @@ class FilesInMemory:
 class RawFiles:
     """Reader of the files of one campaign, with the problems so far.
 
-    Attributes
-    ----------
-    files
-        The files.
-    problems
-        Takes the problems.
-    hashes
-        SHA-256 of each file that was read.
-    absent
-        Names of missing files.
+    problems: takes the problems.
+    hashes: SHA-256 of each file that was read.
+    absent: names of missing files.
     """
 
     files: CampaignFiles

@@ -200,24 +200,14 @@ class TextCollector:
 class Table:
     """A table after reading: n rows in the order of the file, numbers in the units of the columns' names.
 
-    Attributes
-    ----------
-    form
-        Required and allowed columns.
-    row
-        File line of each row.
-    names
-        Required and interpreted optional text columns, also if the file does not have them.
-    numbers
-        All columns of numbers of the form; NaN for blank, missing and invalid cells.
-    further
-        Other columns of the file, also unknown ones, as text.
-    absent
-        Required columns that the file does not have.
-    headings
-        Headings in the file.
-    unstated
-        Headings without a unit, by their columns of numbers.
+    form: required and allowed columns.
+    row: file line of each row.
+    names: required and interpreted optional text columns, also if the file does not have them.
+    numbers: all columns of numbers of the form; NaN for blank, missing and invalid cells.
+    further: other columns of the file, also unknown ones, as text.
+    absent: required columns that the file does not have.
+    headings: headings in the file.
+    unstated: headings without a unit, by their columns of numbers.
     """
 
     form: TableForm

@@ -97,18 +97,11 @@ def header_with_status(form: TableForm, header: Header, corrections: RowCorrecti
 class Corrector:
     """Applies the corrections of one file to its records.
 
-    Parameters
-    ----------
-    form
-        Required and allowed columns.
-    header
-        Header of the file, from `header_with_status`.
-    corrections
-        Corrections of this file.
-    mark
-        Decimal mark of the file.
-    problems
-        Takes the problems.
+    form: required and allowed columns.
+    header: header of the file, from `header_with_status`.
+    corrections: corrections of this file.
+    mark: decimal mark of the file.
+    problems: takes the problems.
     """
 
     def __init__(

@@ -31,14 +31,9 @@ _NO_UNIT = {"", "-", "–", "#", "nr", "nr.", "no", "no."}
 class Header:
     """Headings of a table.
 
-    Attributes
-    ----------
-    columns
-        Names of the columns, stripped; ``""`` for an unnamed one.
-    row
-        Line of the file.
-    units
-        Units in a separate row below the names, ``""`` without a unit; empty without such a row.
+    columns: names of the columns, stripped; ``""`` for an unnamed one.
+    row: line of the file.
+    units: units in a separate row below the names, ``""`` without a unit; empty without such a row.
     """
 
     columns: tuple[str, ...]
@@ -208,12 +203,8 @@ def _unknown(form: TableForm, name: str, header: Header) -> Problem:
 class ColumnUnits:
     """Units of the columns of a table.
 
-    Attributes
-    ----------
-    conversions
-        Conversion of each column whose unit is stated.
-    unstated
-        Headings without a unit, by their columns.
+    conversions: conversion of each column whose unit is stated.
+    unstated: headings without a unit, by their columns.
     """
 
     conversions: Mapping[str, UnitConversion] = field(default_factory=dict)
@@ -223,12 +214,8 @@ class ColumnUnits:
 def column_units(form: TableForm, header: Header, headings: Headings, problems: list[Problem]) -> ColumnUnits:
     """Resolve the units of a table; a column's own name such as load_N states its unit.
 
-    Parameters
-    ----------
-    form, header, headings
-        The table, its headings in the file, and the mapping of headings in campaign.toml.
-    problems
-        List to which problems are added: a wrong unit, two units for one heading, a note on each conversion.
+    form, header, headings: the table, its headings in the file, and the mapping of headings in campaign.toml.
+    problems: list to which problems are added: a wrong unit, two units for one heading, a note on each conversion.
     """
     numbers = {column.name for column in form.numbers} - set(form.further)
     conversions: dict[str, UnitConversion] = {}

@@ -31,14 +31,9 @@ FORMS: Final = {form.file.removesuffix(".csv"): form for form in (*TABLES, CORRE
 class Headings:
     """Mapping of plain headings to columns and units.
 
-    Attributes
-    ----------
-    everywhere
-        Columns in all tables.
-    of_table
-        Columns in one table, by its file; they override `everywhere`.
-    units, units_of_table
-        Units of the numbers below headings, likewise.
+    everywhere: columns in all tables.
+    of_table: columns in one table, by its file; they override `everywhere`.
+    units, units_of_table: units of the numbers below headings, likewise.
     """
 
     everywhere: Mapping[str, str] = field(default_factory=dict)

@@ -30,24 +30,14 @@ def allowed_words(column: Quantity) -> Message:
 class TableForm:
     """The columns of one file.
 
-    Attributes
-    ----------
-    file
-        Name of the file in the campaign's folder.
-    key
-        The column that names an experiment, sample or test.
-    names
-        Required text columns that must not be blank, in order; the key is one of them.
-    numbers
-        Columns of numbers, required and optional.
-    texts
-        Required text columns that may be blank.
-    optional
-        Optional text columns that are interpreted.
-    further
-        Optional columns that are known and kept as text.
-    may_be_empty
-        True if a table with only a header is valid.
+    file: name of the file in the campaign's folder.
+    key: the column that names an experiment, sample or test.
+    names: required text columns that must not be blank, in order; the key is one of them.
+    numbers: columns of numbers, required and optional.
+    texts: required text columns that may be blank.
+    optional: optional text columns that are interpreted.
+    further: optional columns that are known and kept as text.
+    may_be_empty: True if a table with only a header is valid.
     """
 
     file: str

@@ -40,14 +40,9 @@ MOST_ERRORS: Final = 10_000
 class Cells:
     """A table in memory: its columns, and the text of each cell.
 
-    Attributes
-    ----------
-    columns
-        Names of the columns.
-    lines
-        Line of each row in the file that an export of the table writes.
-    rows
-        Cells of each row, with a decimal point.
+    columns: names of the columns.
+    lines: line of each row in the file that an export of the table writes.
+    rows: cells of each row, with a decimal point.
     """
 
     columns: tuple[str, ...]

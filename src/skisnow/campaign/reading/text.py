@@ -54,15 +54,8 @@ class UnreadableTextError(Exception):
 def decode(data: bytes) -> DecodedText:
     """Decode a text file.
 
-    Parameters
-    ----------
-    data
-        The whole file.
-
-    Raises
-    ------
-    UnreadableTextError
-        The bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
+    data: the whole file.
+    Raises UnreadableTextError: the bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
     """
     try:
         text = decoded(data)
@@ -90,16 +83,10 @@ def _binary(value: str) -> UnreadableTextError:
 class CsvText:
     """A CSV file with its encoding and separator, before it is split into records.
 
-    Attributes
-    ----------
-    data
-        Bytes of the file.
-    codec, foreign_encoding
-        As in `DecodedText`.
-    separator
-        Comma, semicolon or tab.
-    separator_line
-        True if line 1 is ``sep=;`` and the header begins below it.
+    data: bytes of the file.
+    codec, foreign_encoding: as in `DecodedText`.
+    separator: comma, semicolon or tab.
+    separator_line: True if line 1 is ``sep=;`` and the header begins below it.
     """
 
     data: bytes
@@ -113,10 +100,8 @@ class CsvText:
 
         An apostrophe that protects a text from being read as a formula is removed.
 
-        Raises
-        ------
-        UnreadableTextError
-            A quote is never closed, so that all further lines would be one cell; or a cell or row is too long.
+        Raises UnreadableTextError: a quote is never closed, so that all further lines would be one cell; or a cell or
+            row is too long.
         """
         for lines, rows in self._records():
             _require_size(lines, rows)
@@ -200,10 +185,7 @@ def inspect_csv(data: bytes) -> CsvText:
 
     The separator is the most frequent one in the header outside quotes, or that of a first line such as ``sep=;``.
 
-    Raises
-    ------
-    UnreadableTextError
-        The bytes are not text, or the first line names another separator.
+    Raises UnreadableTextError: the bytes are not text, or the first line names another separator.
     """
     text = decode(data)
     head = text.text[:_HEAD]

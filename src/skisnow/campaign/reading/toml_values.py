@@ -31,16 +31,10 @@ T = TypeVar("T")
 class TomlValues:
     """One table of a TOML file.
 
-    Attributes
-    ----------
-    file
-        The file's name.
-    values
-        The parsed table.
-    path
-        Path of the table, ``""`` at the top.
-    problems
-        Takes the problems.
+    file: the file's name.
+    values: the parsed table.
+    path: Path of the table, ``""`` at the top.
+    problems: takes the problems.
     """
 
     file: str

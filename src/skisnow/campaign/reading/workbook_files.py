@@ -35,20 +35,12 @@ _FILES: Final = {form.file.removesuffix(".csv"): form.file for form in (*TABLES,
 class UnfoldedFiles:
     """The files of a campaign, including sheets of workbooks.
 
-    Attributes
-    ----------
-    files
-        The other files.
-    of_sheets
-        Contents of the sheets, by the names of a campaign's files.
-    places
-        Name of workbook and sheet for messages, by the name of the file.
-    hashes
-        SHA-256 of each workbook that was read.
-    unread
-        Rows of the sheets with other names, by name of workbook and sheet.
-    problems
-        Problems of the workbooks.
+    files: the other files.
+    of_sheets: contents of the sheets, by the names of a campaign's files.
+    places: name of workbook and sheet for messages, by the name of the file.
+    hashes: SHA-256 of each workbook that was read.
+    unread: rows of the sheets with other names, by name of workbook and sheet.
+    problems: problems of the workbooks.
     """
 
     files: CampaignFiles
@@ -196,12 +188,9 @@ _TEXTS: Final = ("name", "shape", *(name for name, key in CAMPAIGN_KEYS.items() 
 def description_text(sheets: Mapping[str, Rows]) -> str:
     """Convert the sheets that describe the campaign to TOML.
 
-    Parameters
-    ----------
-    sheets
-        Rows by the names of `DESCRIBING`. ``campaign`` has the columns key and value, with semicolons between several
-        values; ``tools`` and ``plates`` have the keys of ``[[tool]]`` and ``[[plate]]`` as columns; ``columns`` has
-        heading, column or unit or both, and optionally table.
+    sheets: rows by the names of `DESCRIBING`. ``campaign`` has the columns key and value, with semicolons between
+        several values; ``tools`` and ``plates`` have the keys of ``[[tool]]`` and ``[[plate]]`` as columns; ``columns``
+        has heading, column or unit or both, and optionally table.
     """
     lines = [line for row in _records(sheets.get(COLUMNS, [])) for line in _column_lines(row)]
     for row in _records(sheets.get(CAMPAIGN, [])):

@@ -140,10 +140,7 @@ def rows_of_file(data: bytes, file: str, test: str) -> list[dict[str, str]]:
 def with_rows(before: bytes, file: str, columns: Sequence[str], rows: Iterable[Mapping[str, str]]) -> str:
     """Text of a table: the rows of a file as they are with all their columns, then further ones.
 
-    Raises
-    ------
-    StoreError
-        The file cannot be read.
+    Raises StoreError: the file cannot be read.
     """
     records = _records(before, file) if before.strip() else []
     header = [cell.strip() for cell in records.pop(0)] if records else []

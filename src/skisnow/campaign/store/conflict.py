@@ -241,10 +241,7 @@ class EntryIndex:
 def entry_index(connection: Connection, journal_id: str) -> EntryIndex:
     """Index of the entries of a journal in a store; empty if it does not have the journal.
 
-    Raises
-    ------
-    StoreError
-        An entry has no uid.
+    Raises StoreError: an entry has no uid.
     """
     columns, index = journal_entry.c, EntryIndex()
     query = select(columns.uid, columns.sequence, columns.file, columns.test).where(columns.journal_id == journal_id)

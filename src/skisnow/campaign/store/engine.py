@@ -162,10 +162,7 @@ def is_file(connection: Connection) -> bool:
 def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> Engine:
     """Connect to the database and bring its schema up to date.
 
-    Raises
-    ------
-    StoreError
-        It is not a store, is from a newer program, is damaged, or cannot be written if necessary.
+    Raises StoreError: it is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
     with database_errors(place, "cannot be used"):
         if isinstance(place, ServerAddress):

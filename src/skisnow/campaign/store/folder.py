@@ -77,12 +77,9 @@ def manifest_sha256(files: Iterable[StoredFile]) -> str:
 def list_files(folder: Path) -> dict[str, FileState]:
     """List every file below a folder, hidden ones too.
 
-    Raises
-    ------
-    StoreError
-        Links, pipes and the like (all are named), names that are not text, paths that cannot be exported.
-    OSError
-        A folder cannot be read.
+    Raises StoreError: links, pipes and the like (all are named), names that are not text, paths that cannot be
+        exported.
+    Raises OSError: a folder cannot be read.
     """
     files: dict[str, FileState] = {}
     refused: list[str] = []
@@ -183,12 +180,8 @@ def _printable(path: str) -> str:
 def new_folder(out: Path) -> Iterator[Path]:
     """Temporary folder to fill, which is renamed to ``out`` after success.
 
-    Raises
-    ------
-    StoreError
-        ``out`` is there already and not an empty folder.
-    OSError
-        The disk is full, read-only and so on; nothing is left behind.
+    Raises StoreError: ``out`` is there already and not an empty folder.
+    Raises OSError: the disk is full, read-only and so on; nothing is left behind.
     """
     out = out.resolve()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
@@ -213,10 +206,8 @@ def new_folder(out: Path) -> Iterator[Path]:
 def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
     """Write one file below a folder, flush it to the disk, and verify its SHA-256.
 
-    Raises
-    ------
-    StoreError
-        An unsafe path, bytes that do not have the stored SHA-256, or two paths that are one on this file system.
+    Raises StoreError: an unsafe path, bytes that do not have the stored SHA-256, or two paths that are one on this file
+        system.
     """
     _require_safe(file.path, for_windows=os.name == "nt")
     place = folder / PurePosixPath(file.path)
@@ -247,10 +238,7 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
 def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     """Bytes of a file with a verified SHA-256.
 
-    Raises
-    ------
-    StoreError
-        Bytes that do not have the stored SHA-256.
+    Raises StoreError: bytes that do not have the stored SHA-256.
     """
     data = b"".join(pieces)
     if hashlib.sha256(data).hexdigest() != file.sha256:

@@ -92,10 +92,7 @@ class JournalEntry(NewEntry):
 def parse_entry(row: RowMapping) -> JournalEntry:
     """Convert a row to an entry and verify its checksum.
 
-    Raises
-    ------
-    StoreError
-        The row is damaged.
+    Raises StoreError: the row is damaged.
     """
     entry = readable_entry(row)
     if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
@@ -188,10 +185,7 @@ def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str,
 def parse_cells(row: Mapping[str, object]) -> dict[str, str]:
     """Cells of an entry from the bytes of its row, with replacement of invalid characters.
 
-    Raises
-    ------
-    ValueError
-        The cells cannot be parsed.
+    Raises ValueError: the cells cannot be parsed.
     """
     data = as_bytes(row.get("cells")) or b""
     cells = json_value(data.decode(errors="replace"))

@@ -292,10 +292,7 @@ class Description:
 def description_text(description: Description) -> str:
     """Text of campaign.toml.
 
-    Raises
-    ------
-    FieldDataError
-        The description is invalid; the exception has the problems of reading the text.
+    Raises FieldDataError: the description is invalid; the exception has the problems of reading the text.
     """
     lines = [f"{key} = {toml_text(value)}" for key, value in description.values.items() if value not in (None, "")]
     for table, entries in (("tool", description.tools), ("plate", description.plates)):

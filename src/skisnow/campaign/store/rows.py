@@ -78,10 +78,7 @@ def all_campaigns(connection: Connection) -> tuple[StoredCampaign, ...]:
 def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
     """Find the campaign by the beginning of its hash.
 
-    Raises
-    ------
-    StoreError
-        Not hexadecimal, fewer than 4 digits, unknown, or ambiguous; the message lists candidates.
+    Raises StoreError: not hexadecimal, fewer than 4 digits, unknown, or ambiguous; the message lists candidates.
     """
     beginning = required_digits(beginning)
     begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
@@ -95,10 +92,7 @@ def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
 def required_digits(beginning: str) -> str:
     """Validated beginning of an id, in lower case.
 
-    Raises
-    ------
-    StoreError
-        It has fewer than 4 hexadecimal digits, or other characters.
+    Raises StoreError: it has fewer than 4 hexadecimal digits, or other characters.
     """
     digits = beginning.strip().lower()
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
@@ -162,10 +156,7 @@ def damage_error(what: str) -> StoreError:
 def require_whole(stored: StoredCampaign) -> None:
     """Check that a campaign's list of files is unchanged since it was added.
 
-    Raises
-    ------
-    StoreError
-        A name, a size, a hash or a file differs.
+    Raises StoreError: a name, a size, a hash or a file differs.
     """
     if manifest_sha256(stored.files) != stored.sha256:
         raise damage_error(Message("The list of files of the campaign {id}", id=stored.id))
@@ -174,10 +165,7 @@ def require_whole(stored: StoredCampaign) -> None:
 def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
     """Convert a row to a campaign.
 
-    Raises
-    ------
-    StoreError
-        The row or one of its files is damaged.
+    Raises StoreError: the row or one of its files is damaged.
     """
     try:
         return _stored_campaign(connection, row)
@@ -249,10 +237,7 @@ def is_sound(connection: Connection, sha256: str, size: int) -> bool:
 def store_content(connection: Connection, folder: Path, file: StoredFile) -> bool:
     """Store the bytes of a file unless they are stored already; True if damaged ones were repaired.
 
-    Raises
-    ------
-    StoreError
-        The file changed since it was hashed.
+    Raises StoreError: the file changed since it was hashed.
     """
     stored_size = connection.execute(select(content.c.size).where(content.c.sha256 == file.sha256)).scalar_one_or_none()
     if stored_size is None:
@@ -279,10 +264,7 @@ def copy_content(connection: Connection, file: StoredFile, pieces: Iterable[byte
 def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
     """Remove a campaign, and the contents that no other campaign has.
 
-    Raises
-    ------
-    StoreError
-        The campaign has corrections.
+    Raises StoreError: the campaign has corrections.
     """
     if connection.execute(select(journal_entry.c.sequence).where(journal_entry.c.journal_id == stored.id)).first():
         raise StoreError(

@@ -99,10 +99,8 @@ def reason(error: BaseException, address: ServerAddress) -> str:
 def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) -> Engine:
     """Connect to the database and bring its tables up to date.
 
-    Raises
-    ------
-    StoreError
-        psycopg is not installed; the database contains no store, a store of a newer program, or other tables.
+    Raises StoreError: psycopg is not installed; the database contains no store, a store of a newer program, or other
+        tables.
     """
     engine = _engine(address, busy_timeout_s)
     try:
@@ -214,10 +212,7 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
 def needs_migration(revision: str | None, place: object) -> bool:
     """True if a store with that revision needs a migration.
 
-    Raises
-    ------
-    StoreError
-        This program does not know the migration.
+    Raises StoreError: this program does not know the migration.
     """
     if revision == REVISION:
         return False  # the usual case: alembic need not even be imported

@@ -80,10 +80,7 @@ def cell_of(key: str) -> tuple[int, str]:
     >>> cell_of("12/depth_mm")
     (12, 'depth_mm')
 
-    Raises
-    ------
-    StoreError
-        The key is invalid: the entry is damaged.
+    Raises StoreError: the key is invalid: the entry is damaged.
     """
     text, _, column = key.partition("/")
     line = natural_number(text)
@@ -177,14 +174,9 @@ BETWEEN: Final = {
 class CellError(ParameterError):
     """Rejection of a typed cell: a sentence with the problem, and one with the allowed values.
 
-    Attributes
-    ----------
-    code
-        empty, not_allowed or too_long.
-    column, value
-        Name of the column, and the typed text.
-    fix
-        Sentence with the allowed values, in the unit of the text.
+    code: empty, not_allowed or too_long.
+    column, value: name of the column, and the typed text.
+    fix: sentence with the allowed values, in the unit of the text.
     """
 
     def __init__(self, code: str, column: str, value: str, fix: Message) -> None:

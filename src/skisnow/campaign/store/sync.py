@@ -266,10 +266,7 @@ def same_names(here: Names, there: Names) -> Iterator[str]:
 def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) -> None:
     """Copy a campaign with the bytes of its files.
 
-    Raises
-    ------
-    StoreError
-        It is damaged in the source.
+    Raises StoreError: it is damaged in the source.
     """
     require_whole(stored)
     for file in stored.files:
@@ -282,10 +279,7 @@ def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) ->
 def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
     """Copy the missing entries of a journal, without those of conflicts; return their number.
 
-    Raises
-    ------
-    StoreError
-        An entry is damaged.
+    Raises StoreError: an entry is damaged.
     """
     of_source, held = entry_index(source, journal_id), entry_index(to, journal_id)
     open_ = {
@@ -300,10 +294,7 @@ def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
 def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iterable[str]) -> dict[str, int]:
     """Copy entries of a journal, and the journal if it is missing; return their sequences by uid.
 
-    Raises
-    ------
-    StoreError
-        An entry is damaged, or refers to a missing one.
+    Raises StoreError: an entry is damaged, or refers to a missing one.
     """
     entries = entries_by_uid(source, journal_id, uids)
     if to.execute(select(journal.c.id).where(journal.c.id == journal_id)).first() is None:
@@ -330,10 +321,7 @@ def take_entries(source: Connection, to: Connection, journal_id: str, uids: Iter
 def settle(here: Connection, there: Connection, divergence: Divergence, side: Side, who: str) -> None:
     """Write the entries of both sides and the choice between them to this store.
 
-    Raises
-    ------
-    StoreError
-        Both cannot be kept.
+    Raises StoreError: both cannot be kept.
     """
     if side not in divergence.choices:
         raise StoreError(

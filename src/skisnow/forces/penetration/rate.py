@@ -31,27 +31,13 @@ def creep_depth(
 ) -> FloatArray:
     """Depth (m) under a pressure that stays, of snow that was never pressed: p/H_V at once and the delayed depth later.
 
-    Parameters
-    ----------
-    time
-        Since the pressure came (s), ≥ 0.
-    pressure
-        p (Pa), ≥ 0.
-    snow_hardness, damping, delayed_share, retardation_time
-        H_V (N/m³), c (N s/m³), H_V/H₂ and c₂/H₂ (s). One of c and H_V/H₂ must be 0.
+    time: since the pressure came (s), ≥ 0.
+    pressure: p (Pa), ≥ 0.
+    snow_hardness, damping, delayed_share, retardation_time: H_V (N/m³), c (N s/m³), H_V/H₂ and c₂/H₂ (s). One of c and
+        H_V/H₂ must be 0.
+    Returns: ε = p/H_V (1 - e^(-H_V t/c)) with a dashpot, p/H_V (1 + H_V/H₂ (1 - e^(-t/τ))) with a delayed depth.
+    Raises ValueError: both are given: then the depth has no such plain form.
 
-    Returns
-    -------
-    array
-        ε = p/H_V (1 - e^(-H_V t/c)) with a dashpot, p/H_V (1 + H_V/H₂ (1 - e^(-t/τ))) with a delayed depth.
-
-    Raises
-    ------
-    ValueError
-        Both are given: then the depth has no such plain form.
-
-    Examples
-    --------
     A delayed share of a half, after the retardation time: 1 + 0.5 (1 - 1/e).
 
     >>> deep = creep_depth(2.0, pressure=2e5, snow_hardness=2e8, delayed_share=0.5, retardation_time=2.0)

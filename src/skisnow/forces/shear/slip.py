@@ -28,23 +28,14 @@ def strength_left(
 ) -> FloatArray:
     """Share of a strength that is left after a slip: 1 - (1 - r) min(slip/d, 1).
 
-    Parameters
-    ----------
-    slip
-        How far the edge has slipped across at a place on the snow (m), ≥ 0.
-    residual_ratio
-        r, 0 to 1; 1: nothing is lost.
-    slip_weakening
-        d (m), > 0.
+    slip: how far the edge has slipped across at a place on the snow (m), ≥ 0.
+    residual_ratio: r, 0 to 1; 1: nothing is lost.
+    slip_weakening: d (m), > 0.
 
-    Notes
-    -----
     Range: r and d are not measured for groomed snow. Mössner and others (2013) presume that snow that is being sheared
     is weaker than S_f. McClung (1977, J. Glaciol. 19(81)) found softening after the peak in direct shear of snow. To
     fall in proportion to the slip is the plainest form of slip weakening (modelling assumption).
 
-    Examples
-    --------
     Half of the strength, reached over 2 mm: after 1 mm three quarters are left.
 
     >>> float(strength_left(1e-3, residual_ratio=0.5, slip_weakening=2e-3))

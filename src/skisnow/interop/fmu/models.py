@@ -24,16 +24,10 @@ SIDES: Final = ("left", "right")
 class Model:
     """A model before it is packed.
 
-    Attributes
-    ----------
-    name, about
-        As the importing program shows them.
-    variables
-        In the order of their references.
-    data
-        Data of the core.
-    step
-        That an importer may begin with (s).
+    name, about: as the importing program shows them.
+    variables: in the order of their references.
+    data: data of the core.
+    step: that an importer may begin with (s).
     """
 
     name: str
@@ -179,20 +173,12 @@ UNITS: Final[dict[str, dict[str, int]]] = {
 class Variable:
     """One number that goes in or out.
 
-    Attributes
-    ----------
-    name
-        By the standards' structured convention: ``left.force[1]``.
-    causality
-        Whether it is the time, a parameter, an input or an output.
-    unit
-        A key of `UNITS`.
-    about
-        Description.
-    start
-        Its value before anything is set.
-    offered
-        Whether the model description names it; its reference is used in either case.
+    name: by the standards' structured convention: ``left.force[1]``.
+    causality: whether it is the time, a parameter, an input or an output.
+    unit: a key of `UNITS`.
+    about: description.
+    start: its value before anything is set.
+    offered: whether the model description names it; its reference is used in either case.
     """
 
     name: str

@@ -262,16 +262,10 @@ _LAST_COUNTED: Final = 65_535
 class C3dContent:
     """A file's content.
 
-    Attributes
-    ----------
-    parameters
-        Values by group and name, both in capitals.
-    rate
-        Frames a second (Hz).
-    first_frame
-        Number of the first one, counted from 0; the file counts from 1.
-    points
-        (frames, points, 3) in the file's units, NaN where a point was not seen.
+    parameters: values by group and name, both in capitals.
+    rate: frames a second (Hz).
+    first_frame: number of the first one, counted from 0; the file counts from 1.
+    points: (frames, points, 3) in the file's units, NaN where a point was not seen.
     """
 
     parameters: Mapping[tuple[str, str], Values]
@@ -283,10 +277,7 @@ class C3dContent:
 def c3d_content(data: bytes) -> C3dContent:
     """Read a file's bytes.
 
-    Raises
-    ------
-    ParameterError
-        The file is damaged, cut off, or not in this format; the message does not name it.
+    Raises ParameterError: the file is damaged, cut off, or not in this format; the message does not name it.
     """
     try:
         return _content(data)

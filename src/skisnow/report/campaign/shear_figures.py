@@ -58,12 +58,8 @@ class RegressionLine:
 def regression_line(row: Json, predictor: FloatArray) -> RegressionLine:
     """b₀ + b₁ x ± t rmse_dof √(1/n + (x − x̄)²/Σ(x − x̄)²) at 61 places.
 
-    Parameters
-    ----------
-    row
-        The regression in the results.
-    predictor
-        The values of its predictor, shape (n,), in its unit.
+    row: the regression in the results.
+    predictor: the values of its predictor, shape (n,), in its unit.
     """
     x = np.linspace(float(predictor.min()), float(predictor.max()), 61)
     y = row["b"][0] + row["b"][1] * x

@@ -38,10 +38,7 @@ _OF_RECORDINGS: Final = (
 def summary(results: Json) -> str:
     """Campaign, experiments, H_V, S_f, the nine candidate models, the selected law and the regressions.
 
-    Parameters
-    ----------
-    results
-        Contents of `skisnow.estimation.results_dict`.
+    results: contents of `skisnow.estimation.results_dict`.
     """
     return "\n".join(_lines(results))
 

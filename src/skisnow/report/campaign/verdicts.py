@@ -55,10 +55,7 @@ _SURVEY: Final = {
 def verdicts(results: Mapping[str, Any]) -> list[Message]:
     """One sentence for each pair of sites, of many sites a survey and the uncertain pairs; then tools and the like.
 
-    Parameters
-    ----------
-    results
-        Contents of `skisnow.results_dict`.
+    results: contents of `skisnow.results_dict`.
     """
     return _of_rows(results["group_comparisons"], results["provenance"]["options"]["difference_percent"])
 
@@ -105,12 +102,8 @@ def _is_certain(row: Json) -> bool:
 def verdict(row: Json, difference_percent: float) -> Message:
     """Sentence about one pair: which is larger, by how much, whether that is certain, and how many tests it takes.
 
-    Parameters
-    ----------
-    row
-        An entry of ``group_comparisons`` in the results.
-    difference_percent
-        The difference that ``n_needed`` of the row is for.
+    row: an entry of ``group_comparisons`` in the results.
+    difference_percent: the difference that ``n_needed`` of the row is for.
     """
     comparison, ends = _comparison(row)
     limit = 1.0 + difference_percent / 100.0

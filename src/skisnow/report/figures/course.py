@@ -46,20 +46,12 @@ def course_line(
 ) -> Figure:
     """Draw the figure.
 
-    Parameters
-    ----------
-    result
-        Course with the passages of its gates.
-    place
-        Places of the line (m), shape (n, 2) or (n, 3).
-    values
-        Quantity shown as colour, shape (n,).
-    label
-        Label of the colour scale, with the unit.
-    diverging
-        True for a colour scale that is symmetric about 0, such as left and right.
-    axes_words
-        Label of x with the unit (default: the symbol).
+    result: course with the passages of its gates.
+    place: places of the line (m), shape (n, 2) or (n, 3).
+    values: quantity shown as colour, shape (n,).
+    label: label of the colour scale, with the unit.
+    diverging: True for a colour scale that is symmetric about 0, such as left and right.
+    axes_words: label of x with the unit (default: the symbol).
     """
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=_HEIGHT_MM)
     axes = figure.add_subplot()

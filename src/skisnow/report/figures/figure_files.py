@@ -38,26 +38,12 @@ def write_pictures(
 ) -> list[Picture]:
     """Render drawings, see `render_pictures`, and write each as PNG, SVG, PDF and EPS, with its data as CSV.
 
-    Parameters
-    ----------
-    drawings
-        The drawings of the report.
-    folder
-        Folder of the files, created if necessary.
-    every
-        Names of all figures that such a report can have; files of those without a drawing are removed.
-    language, progress
-        See `render_pictures`.
-
-    Returns
-    -------
-    list of Picture
-        The pictures, for a page.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
+    drawings: the drawings of the report.
+    folder: folder of the files, created if necessary.
+    every: names of all figures that such a report can have; files of those without a drawing are removed.
+    language, progress: see `render_pictures`.
+    Returns: the pictures, for a page.
+    Raises OutputError: a file cannot be written.
     """
     pictures = render_pictures(drawings, language=language, progress=progress)
     for picture in pictures:
@@ -76,14 +62,9 @@ def render_pictures(
 ) -> list[Picture]:
     """Render drawings in the house style.
 
-    Parameters
-    ----------
-    drawings
-        An iterator that draws each figure when it is requested: a figure takes its style when it is created.
-    language
-        Language of the figures.
-    progress
-        Callback for the name of each figure.
+    drawings: an iterator that draws each figure when it is requested: a figure takes its style when it is created.
+    language: language of the figures.
+    progress: callback for the name of each figure.
     """
     pictures = []
     with journal_style(), in_language(language):
@@ -102,10 +83,7 @@ def silent(_message: str) -> None:
 def write_picture(picture: Picture, folder: Path) -> None:
     """Write all files of a picture.
 
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
+    Raises OutputError: a file cannot be written.
     """
     for ending, content in picture.files.items():
         write_file(folder / f"{picture.name}.{ending}", content)
@@ -119,12 +97,8 @@ SUFFIXES: Final = (".png", ".svg", ".pdf", ".csv")
 def require_drawable(path: Path) -> None:
     """Reject the path of a figure before long computations.
 
-    Raises
-    ------
-    ParameterError
-        The suffix is not one of a figure.
-    OutputError
-        The folder cannot be created or written.
+    Raises ParameterError: the suffix is not one of a figure.
+    Raises OutputError: the folder cannot be created or written.
     """
     if path.suffix.lower() not in SUFFIXES:
         raise ParameterError(
@@ -139,14 +113,9 @@ def require_drawable(path: Path) -> None:
 def write_figure(path: Path, draw: Callable[[], Figure], *, language: str = ENGLISH) -> None:
     """Draw in the house style and write a complete file; the same bytes for the same data.
 
-    Parameters
-    ----------
-    path
-        Path with the suffix .png (1200 pixels wide), .svg or .pdf, or .csv for the data of the figure.
-    draw
-        Function that draws the figure; it is called inside the house style.
-    language
-        Language of the figure (en, de).
+    path: Path with the suffix .png (1200 pixels wide), .svg or .pdf, or .csv for the data of the figure.
+    draw: function that draws the figure; it is called inside the house style.
+    language: language of the figure (en, de).
     """
     require_drawable(path)
     kind = path.suffix.lower().removeprefix(".")

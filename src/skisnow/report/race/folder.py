@@ -44,30 +44,14 @@ def write_race(
 ) -> Path:
     """Write the files of a race; race.json is last: a folder with it is complete.
 
-    Parameters
-    ----------
-    result
-        The quickest line.
-    folder
-        Output folder.
-    checked
-        Scores of the quickest line and of the start of the search, simulated again with the scenario's own settings.
-    worth
-        Variants compared with the scenario.
-    run
-        Run on the quickest line, drawn over the course.
-    against
-        Names of the variants with a table of times at each gate.
-
-    Returns
-    -------
-    Path
-        Path of race.json.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
+    folder: output folder.
+    checked: scores of the quickest line and of the start of the search, simulated again with the scenario's own
+        settings.
+    worth: variants compared with the scenario.
+    run: run on the quickest line, drawn over the course.
+    against: names of the variants with a table of times at each gate.
+    Returns: Path of race.json.
+    Raises OutputError: a file cannot be written.
     """
     folder = Path(folder)
     write_line(result.line, folder / "line.csv")
@@ -115,10 +99,7 @@ def write_gaps(
 ) -> list[Picture]:
     """Write gate_gaps.csv and the figure gate_gaps, whose picture is returned for the page.
 
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
+    Raises OutputError: a file cannot be written.
     """
     pictures = write_pictures(gap_drawings(gaps, names), folder, every=(), language=language)
     write_file(folder / GAPS_CSV, gaps_csv(gaps))  # the whole table, instead of the points that the figure shows

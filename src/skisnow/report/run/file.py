@@ -42,25 +42,13 @@ def write_run_file(
 ) -> None:
     """Write a run as a complete NetCDF-3 file.
 
-    Parameters
-    ----------
-    run
-        Result of `skisnow.simulate`.
-    values
-        Keys of the scenario with their values as in summary.json, for the global attribute ``scenario``; the attribute
-        ``scenario_keys`` has their meanings and units.
-    path
-        Path of the file; an existing file is replaced.
-    provenance
-        Global attribute ``provenance`` as in summary.json (default: the program's version).
+    run: result of `skisnow.simulate`.
+    values: keys of the scenario with their values as in summary.json, for the global attribute ``scenario``; the
+        attribute ``scenario_keys`` has their meanings and units.
+    path: Path of the file; an existing file is replaced.
+    provenance: global attribute ``provenance`` as in summary.json (default: the program's version).
+    Raises OutputError: the file cannot be written.
 
-    Raises
-    ------
-    OutputError
-        The file cannot be written.
-
-    Notes
-    -----
     All numbers are SI doubles, angles in radians. A value that is not finite, such as the turn radius of a straight
     path, is missing: ``_FillValue``.
     """
@@ -178,18 +166,11 @@ TIME, SKI, STATION, PIECE = "time", "ski", "station", "piece"
 class RunVariable:
     """One variable of run.nc.
 
-    Attributes
-    ----------
-    name, dimensions, units
-        As in the file; units are SI in the notation of UDUNITS, angles in rad.
-    meaning
-        Its long_name.
-    values
-        Function that returns the array of a run in this unit.
-    axis
-        "T", "X", "Y" or "Z" of a coordinate, otherwise empty.
-    coordinates
-        Names of the variables with its place in space.
+    name, dimensions, units: as in the file; units are SI in the notation of UDUNITS, angles in rad.
+    meaning: its long_name.
+    values: function that returns the array of a run in this unit.
+    axis: "T", "X", "Y" or "Z" of a coordinate, otherwise empty.
+    coordinates: names of the variables with its place in space.
     """
 
     name: str

@@ -39,32 +39,14 @@ def write_run(
 ) -> Path:
     """Write all files of a run to a temporary folder and move them into place together.
 
-    Parameters
-    ----------
-    run
-        The run.
-    folder
-        Output folder, created if necessary; other files in it stay.
-    summary
-        Contents of summary.json (default: those of `summary_dict`).
-    write_more
-        Function that writes further files of the run into the temporary folder.
-    language
-        Language of the page and the figures (en, de).
-    progress
-        Callback for progress messages.
-
-    Returns
-    -------
-    Path
-        Path of report.html.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
-    ParameterError
-        The language is unknown.
+    folder: output folder, created if necessary; other files in it stay.
+    summary: contents of summary.json (default: those of `summary_dict`).
+    write_more: function that writes further files of the run into the temporary folder.
+    language: language of the page and the figures (en, de).
+    progress: callback for progress messages.
+    Returns: Path of report.html.
+    Raises OutputError: a file cannot be written.
+    Raises ParameterError: the language is unknown.
     """
     require_language(language)
     folder, report = Path(folder), progress or silent
@@ -98,20 +80,9 @@ _LANGUAGE: Final = re.compile(r'<html lang="([a-z]+)">')
 def link_replay(folder: str | Path) -> Path | None:
     """Add the link to replay.html to the facts in the report of a run.
 
-    Parameters
-    ----------
-    folder
-        Folder of the run.
-
-    Returns
-    -------
-    Path or None
-        Path of the changed page; None if the folder has no report of a run, or the page has the link already.
-
-    Raises
-    ------
-    OutputError
-        The page cannot be read or written.
+    folder: folder of the run.
+    Returns: Path of the changed page; None if the folder has no report of a run, or the page has the link already.
+    Raises OutputError: the page cannot be read or written.
     """
     path = Path(folder) / PAGE
     if not path.is_file():
@@ -135,8 +106,6 @@ def link_replay(folder: str | Path) -> Path | None:
 def with_link(page: str) -> str:
     r"""The page with the link in its language; unchanged if it has the link or is not the report of a run.
 
-    Examples
-    --------
     >>> page = '<html lang="de">\n<p>skisnow</p><dl class="facts">\n<dt>Schnee</dt><dd>S</dd>\n</dl>\n'
     >>> print(with_link(page + '<h2 id="scenario">1</h2>'))
     <html lang="de">

@@ -59,28 +59,12 @@ def write_run_report(
 ) -> Path:
     """Write run.nc, figures/ and report.html.
 
-    Parameters
-    ----------
-    run
-        The run.
-    summary
-        Contents of summary.json, with ``verification`` if the run was repeated.
-    folder
-        Output folder, created if necessary. Figures of an earlier run are replaced or removed; other files stay.
-    language
-        Language of the page and the figures (en, de).
-    progress
-        Callback for progress messages.
-
-    Returns
-    -------
-    Path
-        Path of report.html, which is written last.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
+    summary: contents of summary.json, with ``verification`` if the run was repeated.
+    folder: output folder, created if necessary. Figures of an earlier run are replaced or removed; other files stay.
+    language: language of the page and the figures (en, de).
+    progress: callback for progress messages.
+    Returns: Path of report.html, which is written last.
+    Raises OutputError: a file cannot be written.
     """
     folder = Path(folder)
     require_writable(folder)

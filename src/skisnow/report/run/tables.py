@@ -48,10 +48,7 @@ _GIVEN: Final = (
 def scenario_table(values: Json) -> Table:
     """Table of the scenario's keys with value, unit and meaning.
 
-    Parameters
-    ----------
-    values
-        Values by full name, ``section.key``, or in sections as in a scenario file.
+    values: values by full name, ``section.key``, or in sections as in a scenario file.
     """
     return Table(
         "scenario",
@@ -179,10 +176,7 @@ def _change(start: float | None, end: float | None) -> tuple[float | None, float
 def verification_table(verification: Json) -> Table:
     """Table of the displacements of the end for one changed choice of the solver or input at a time.
 
-    Parameters
-    ----------
-    verification
-        Contents of `skisnow.simulation.verification.verification_dict`.
+    verification: contents of `skisnow.simulation.verification.verification_dict`.
     """
     return Table(
         "verification",

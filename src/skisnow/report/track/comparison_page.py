@@ -36,18 +36,11 @@ def comparison_page(
 ) -> str:
     """HTML of the page.
 
-    Parameters
-    ----------
-    comparison
-        Contents of `skisnow.comparison.comparison_dict`.
-    pictures
-        Pictures of the tracks, and of the gates.
-    verdict
-        Verdict on the times of two computed runs (default: none).
-    gaps
-        Time lost from gate to gate (default: no gates in common).
-    language
-        Language of the page (en, de).
+    comparison: contents of `skisnow.comparison.comparison_dict`.
+    pictures: pictures of the tracks, and of the gates.
+    verdict: verdict on the times of two computed runs (default: none).
+    gaps: time lost from gate to gate (default: no gates in common).
+    language: language of the page (en, de).
     """
     names = comparison["simulated"]["name"], comparison["measured"]["name"]
     with in_language(language):

@@ -61,30 +61,14 @@ def write_track_report(
 ) -> Path:
     """Write figures, track.json, turns.csv, points.csv, and track.gpx of a track with latitude and longitude.
 
-    Parameters
-    ----------
-    summary
-        Result of `skisnow.track.summary.track_summary`.
-    folder
-        Output folder, created if necessary; other files in it stay.
-    values
-        Contents of track.json (default: those of `summary_dict`).
-    gates
-        Passages of a course; adds gates.csv and figures/course, the line over the gates coloured by speed.
-    language
-        Language of the figures (en, de).
-    progress
-        Callback for progress messages.
-
-    Returns
-    -------
-    Path
-        Path of track.json, which is written last.
-
-    Raises
-    ------
-    OutputError
-        A file cannot be written.
+    summary: result of `skisnow.track.summary.track_summary`.
+    folder: output folder, created if necessary; other files in it stay.
+    values: contents of track.json (default: those of `summary_dict`).
+    gates: passages of a course; adds gates.csv and figures/course, the line over the gates coloured by speed.
+    language: language of the figures (en, de).
+    progress: callback for progress messages.
+    Returns: Path of track.json, which is written last.
+    Raises OutputError: a file cannot be written.
     """
     folder = Path(folder)
     require_writable(folder)

@@ -45,12 +45,8 @@ _TURNS_WORDS: Final = (
 def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] | None = None) -> str:
     """Text of a measured track: its numbers, flags, runs, lifts and turns.
 
-    Parameters
-    ----------
-    values
-        Contents of `skisnow.track.summary.summary_dict`.
-    flag_sentences
-        Sentence of each flag, by code.
+    values: contents of `skisnow.track.summary.summary_dict`.
+    flag_sentences: sentence of each flag, by code.
     """
     rows = list(_rows(values))
     width = max(len(name) for name, _ in rows)
@@ -176,10 +172,7 @@ _WORDS: Final = {"max": "largest", "mean": "mean", "rms": "rms"}
 def compare_summary(comparison: Mapping[str, Any]) -> str:
     """Text of a comparison: distances with their definitions.
 
-    Parameters
-    ----------
-    comparison
-        Contents of `skisnow.comparison.comparison_dict`.
+    comparison: contents of `skisnow.comparison.comparison_dict`.
     """
     simulated, measured, exact = comparison["simulated"], comparison["measured"], comparison["known_to_m"]
     lines = [

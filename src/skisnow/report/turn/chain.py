@@ -35,18 +35,11 @@ if TYPE_CHECKING:
 class EnsembleRun(Shown):
     """One run of an ensemble.
 
-    Attributes
-    ----------
-    snow
-        Sampled snow.
-    outcome
-        Outcome of the run.
-    track
-        Track of the middle between the boots.
-    values
-        Sampled values by the scenario's keys, in their units.
-    slips
-        Share of the time in which the more heavily loaded ski side-slips; None if unknown.
+    snow: sampled snow.
+    outcome: outcome of the run.
+    track: track of the middle between the boots.
+    values: sampled values by the scenario's keys, in their units.
+    slips: share of the time in which the more heavily loaded ski side-slips; None if unknown.
     """
 
     snow: SnowProperties
@@ -206,12 +199,8 @@ def end_offsets(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> tuple[Floa
 class BandShares:
     """Share of each input of an ensemble in the variance at the end of the band, aside and ahead.
 
-    Attributes
-    ----------
-    keys
-        Keys of the varied inputs.
-    aside, ahead
-        Shares of these inputs.
+    keys: keys of the varied inputs.
+    aside, ahead: shares of these inputs.
     """
 
     keys: tuple[str, ...]
@@ -236,18 +225,11 @@ def band_shares(nominal: TimedTrack, ensemble: Sequence[EnsembleRun]) -> BandSha
 class BandInput:
     """One input of a band.
 
-    Attributes
-    ----------
-    key
-        Key of the scenario.
-    measured
-        True if the campaign measured its spread; otherwise a prior gives it.
-    value
-        Median in the key's unit; None for a prior.
-    low, high
-        Ends in the key's unit: of the 95 % interval of a measured input, of the whole range of a prior.
-    origin
-        Origin of the range.
+    key: key of the scenario.
+    measured: True if the campaign measured its spread; otherwise a prior gives it.
+    value: median in the key's unit; None for a prior.
+    low, high: ends in the key's unit: of the 95 % interval of a measured input, of the whole range of a prior.
+    origin: origin of the range.
     """
 
     key: str

@@ -45,12 +45,8 @@ class TimedTrack:
 def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     """Draw the tracks from above, and the offsets of each run to the side of and ahead of the nominal run.
 
-    Parameters
-    ----------
-    nominal
-        Run with the best values of the parameters.
-    tracks
-        The ensemble, at least three. A run that ends earlier counts until its end.
+    nominal: run with the best values of the parameters.
+    tracks: the ensemble, at least three. A run that ends earlier counts until its end.
     """
     aside, ahead = offsets(nominal, tracks)
     band = band_of(aside)
@@ -152,12 +148,8 @@ LINE_STYLES: Final = ("-", (0, (5, 1.5)), (0, (1, 1)), "-.", (0, (7, 2, 1, 2, 1,
 def draw_runs(runs: Mapping[str, Run], *, at: float | None = None) -> Figure:
     """Draw runs by name; the first one is the reference.
 
-    Parameters
-    ----------
-    runs
-        At least one run, all on the same slope.
-    at
-        Time (s) at which the skis are drawn (default: 0.9 of the last time that all runs reach).
+    runs: at least one run, all on the same slope.
+    at: time (s) at which the skis are drawn (default: 0.9 of the last time that all runs reach).
     """
     named = list(runs.items())
     limits = track_limits(np.concatenate([run.place for run in runs.values()]))

@@ -51,17 +51,9 @@ FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = ENGLISH) -> Path:
     """Write report.html, turn.json and figures/; the language applies to page and figures.
 
-    Returns
-    -------
-    Path
-        Path of report.html, which is written last.
-
-    Raises
-    ------
-    ParameterError
-        There are fewer than two contacts or too few runs for a band, or the language is unknown.
-    OutputError
-        A file cannot be written.
+    Returns: Path of report.html, which is written last.
+    Raises ParameterError: there are fewer than two contacts or too few runs for a band, or the language is unknown.
+    Raises OutputError: a file cannot be written.
     """
     if len(chain.runs) < 2 or len(chain.ensemble) < FEWEST:
         raise ParameterError(

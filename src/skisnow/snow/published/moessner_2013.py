@@ -94,8 +94,6 @@ def failure_shear_stress_from_density(snow_density: npt.ArrayLike) -> FloatArray
 def named_snows() -> dict[str, SnowProperties]:
     """Fresh snow and the late-summer glacier, by the names of `skisnow.snow.from_results`.
 
-    Notes
-    -----
     The paper names these snows as the ends of its ranges of H_V and of S_f, one after the other. That the two numbers
     of one name belong to one snow is our reading (assumption): the paper found no relation between H_V and S_f.
     """

@@ -235,10 +235,7 @@ class Waypoint:
 def read_waypoints(path: str | Path) -> list[Waypoint]:
     """Read the waypoints of a GPX file.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, is not GPX, or a waypoint has no place on the earth.
+    Raises ParameterError: the file cannot be read, is not GPX, or a waypoint has no place on the earth.
     """
     data = plain_bytes(path, most_bytes=MOST_BYTES)
     try:
@@ -284,16 +281,10 @@ def _number(path: str | Path, row: int, what: str, text: str | None, limit: floa
 class Rules:
     """Limits of one discipline.
 
-    Attributes
-    ----------
-    article
-        Article of the International Ski Competition Rules (ICR), book IV.
-    width
-        Minimum and maximum width of a gate (m).
-    least_distance
-        Minimum distance between the nearest poles of successive gates (m).
-    turns_per_drop
-        Minimum and maximum number of changes of direction per metre of drop.
+    article: article of the International Ski Competition Rules (ICR), book IV.
+    width: minimum and maximum width of a gate (m).
+    least_distance: minimum distance between the nearest poles of successive gates (m).
+    turns_per_drop: minimum and maximum number of changes of direction per metre of drop.
     """
 
     article: str

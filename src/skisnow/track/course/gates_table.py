@@ -99,18 +99,11 @@ GAP_COLUMNS: Final = ("gate", "outcome", "time_s", "other_outcome", "other_time_
 class GateGap:
     """One gate of two runs.
 
-    Attributes
-    ----------
-    gate
-        Name of the gate.
-    outcome, other_outcome
-        Outcome of each run, as in gates.csv.
-    time, other_time
-        Time (s) from the start of each run; None if not crossed.
-    gap
-        Time (s) by which the first run is behind the other one; None if one did not cross the gate.
-    lost
-        Change (s) of the gap since the last gate that both crossed.
+    gate: name of the gate.
+    outcome, other_outcome: outcome of each run, as in gates.csv.
+    time, other_time: time (s) from the start of each run; None if not crossed.
+    gap: time (s) by which the first run is behind the other one; None if one did not cross the gate.
+    lost: change (s) of the gap since the last gate that both crossed.
     """
 
     gate: str
@@ -125,10 +118,7 @@ class GateGap:
 def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
     """Gaps at the gates of two folders with a gates.csv; None if one is missing, or the courses differ.
 
-    Raises
-    ------
-    ParameterError
-        A gates.csv cannot be read.
+    Raises ParameterError: a gates.csv cannot be read.
     """
     tables = [_gate_rows(run / GATES_FILE) for run in (folder, other) if (run / GATES_FILE).is_file()]
     if len(tables) < 2 or not _same_course(*tables):

@@ -196,18 +196,11 @@ HALVINGS: Final = 60
 class Crossing:
     """One crossing of a line.
 
-    Attributes
-    ----------
-    time
-        Time (s) on the points' clock.
-    aside
-        Position (m) along the line, from its origin.
-    speed
-        Speed (m/s) in the plane.
-    forward
-        True if it crosses in the given direction, False if against it.
-    doubt
-        Difference (s) from the time of a straight path between the two points, as the uncertainty.
+    time: time (s) on the points' clock.
+    aside: position (m) along the line, from its origin.
+    speed: speed (m/s) in the plane.
+    forward: True if it crosses in the given direction, False if against it.
+    doubt: difference (s) from the time of a straight path between the two points, as the uncertainty.
     """
 
     time: float
@@ -299,10 +292,8 @@ _OTHER_UNIT: Final = {
 def track_point(track: Track, course: Course) -> MovingPoint:
     """Moving point of a track: its usable horizontal places at rising times, from the course's origin.
 
-    Raises
-    ------
-    ParameterError
-        The axes of the track differ from those of the course, or it has fewer than two usable places.
+    Raises ParameterError: the axes of the track differ from those of the course, or it has fewer than two usable
+        places.
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):

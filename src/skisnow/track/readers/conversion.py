@@ -28,11 +28,8 @@ def build_track(
 ) -> Track:
     """Convert a recording to a track: validate it, project it about its origin, and compute flags.
 
-    Raises
-    ------
-    FieldDataError
-        There is no point, no point has a place, times run backwards, a number is out of range, or an origin is given
-        for a file in local metres.
+    Raises FieldDataError: there is no point, no point has a place, times run backwards, a number is out of range, or an
+        origin is given for a file in local metres.
     """
     _require_points(recording)
     recording, fix = fixed_points(recording, _fix(recording))
@@ -202,12 +199,8 @@ _ARRAYS: Final = ("time", "place", "speed", "velocity", "place_sd", "speed_sd", 
 def fixed_points(recording: Recording, fix: BoolArray) -> tuple[Recording, BoolArray]:
     """The recording from its first to its last point with a fix, and the fix of its points.
 
-    Parameters
-    ----------
-    recording
-        As read.
-    fix : (n,) bool
-        True for points with a fix; at least one is.
+    recording: as read.
+    fix: (n,) bool, True for points with a fix; at least one is.
     """
     numbers = np.flatnonzero(fix)
     first, last = int(numbers[0]), int(numbers[-1])

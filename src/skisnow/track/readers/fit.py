@@ -62,10 +62,7 @@ class _Records:
 def read_fit(data: bytes, name: str) -> Recording:
     """The recording in a FIT file.
 
-    Raises
-    ------
-    FieldDataError
-        The file is not a FIT file, ends too early, or its checksum is wrong.
+    Raises FieldDataError: the file is not a FIT file, ends too early, or its checksum is wrong.
     """
     records = _Records()
     files, extra = _files(data)

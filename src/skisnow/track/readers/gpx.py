@@ -110,10 +110,7 @@ class _Reader:
 def read_gpx(text: str, name: str) -> Recording:
     """The recording in a GPX file: all points of all tracks and segments, in the order of the file.
 
-    Raises
-    ------
-    FieldDataError
-        The file is not GPX, a point has no time, or a place, height or speed is not a number.
+    Raises FieldDataError: the file is not GPX, a point has no time, or a place, height or speed is not a number.
     """
     points = _points(text, name)
     moments = [_required_moment(point, name, place) for place, point in enumerate(points)]

@@ -119,10 +119,8 @@ class _Epoch:
 def read_nmea(data: bytes, name: str) -> Recording:
     """Read the sentences of a file; other lines are skipped.
 
-    Raises
-    ------
-    FieldDataError
-        No sentence GGA, GNS, GLL or RMC with a time and a right checksum, or without checksums, is in the file.
+    Raises FieldDataError: no sentence GGA, GNS, GLL or RMC with a time and a right checksum, or without checksums, is
+        in the file.
     """
     counts: dict[str, int] = {WRONG_CHECKSUM: 0, NO_TIME: 0}
     epochs = _epochs(data, counts)

@@ -22,38 +22,21 @@ if TYPE_CHECKING:
 class Recording:
     """Points in the order of a file; absent numbers are NaN.
 
-    Attributes
-    ----------
-    name
-        The file's name.
-    places_in_file
-        Place of each point in the file, for messages: ``"row 12"``.
-    time : (n,) s
-        Times with any zero; ``start`` belongs to the first.
-    place : (n, 3)
-        Latitude (°), longitude (°), height (m) where ``is_geodetic``, else x, y, z in m.
-    velocity : (n, 3) m/s or None
-        East, north, up at the point itself, or along x, y, z.
-    place_sd : (n, 3) m or None
-        East, north, up at the point itself, or along x, y, z.
-    fix : (n,) bool or None
-        True if the receiver had a fix; None if unknown.
-    solution : (n,) or None
-        As in `Track`; values of points without a fix are ignored.
-    axes_in_words
-        Description of the axes of places that are not geodetic.
-    heights
-        Description of the reference of the heights.
-    default_origin
-        Origin that the file names.
-    columns
-        Names of ``x``, ``y``, ``z`` in the file, for messages.
-    segment : (n,) or None
-        Number of the segment of each point, if the file separates segments.
-    not_finite : (n,) bool or None
-        True for points of which the file has a cell such as `nan` or `inf`.
-    notes
-        Sentences on how the file was read.
+    name: the file's name.
+    places_in_file: place of each point in the file, for messages: ``"row 12"``.
+    time: (n,) s, times with any zero; ``start`` belongs to the first.
+    place: (n, 3), latitude (°), longitude (°), height (m) where ``is_geodetic``, else x, y, z in m.
+    velocity: (n, 3) m/s or None, east, north, up at the point itself, or along x, y, z.
+    place_sd: (n, 3) m or None, east, north, up at the point itself, or along x, y, z.
+    fix: (n,) bool or None, True if the receiver had a fix; None if unknown.
+    solution: (n,) or None, as in `Track`; values of points without a fix are ignored.
+    axes_in_words: description of the axes of places that are not geodetic.
+    heights: description of the reference of the heights.
+    default_origin: origin that the file names.
+    columns: names of ``x``, ``y``, ``z`` in the file, for messages.
+    segment: (n,) or None, number of the segment of each point, if the file separates segments.
+    not_finite: (n,) bool or None, True for points of which the file has a cell such as `nan` or `inf`.
+    notes: sentences on how the file was read.
     """
 
     name: str

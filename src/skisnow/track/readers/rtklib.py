@@ -50,10 +50,7 @@ class Header:
 def parse_header(text: str, name: str) -> Header:
     """Find and parse the header of a solution.
 
-    Raises
-    ------
-    FieldDataError
-        The header is missing, or does not name all three coordinates.
+    Raises FieldDataError: the header is missing, or does not name all three coordinates.
     """
     match = HEADER.search(text)
     if match is None:
@@ -115,10 +112,7 @@ VELOCITIES: Final = {
 def read_rtklib(text: str, name: str) -> Recording:
     """The recording in a solution file.
 
-    Raises
-    ------
-    FieldDataError
-        The header line is missing, a row is shorter than it, or a cell is not a number or time.
+    Raises FieldDataError: the header line is missing, a row is shorter than it, or a cell is not a number or time.
     """
     lines = text.split("\n")
     header = parse_header(text, name)

@@ -36,10 +36,7 @@ def decode_text(data: bytes, name: str) -> str:
 
     All byte order marks are removed: concatenated files have several.
 
-    Raises
-    ------
-    FieldDataError
-        The bytes are not text.
+    Raises FieldDataError: the bytes are not text.
     """
     try:
         return "\n".join(decoded(data).text.replace("\ufeff", "").splitlines())
@@ -71,10 +68,8 @@ class Cells:
 def split_cells(text: str, name: str) -> Cells:
     """Split a CSV file into cells by the most frequent of comma, semicolon and tab, or by a first line ``sep=;``.
 
-    Raises
-    ------
-    FieldDataError
-        There is no header, a quote is never closed, a cell is too long, or there are too many columns.
+    Raises FieldDataError: there is no header, a quote is never closed, a cell is too long, or there are too many
+        columns.
     """
     lines = text.split("\n")
     named = named_separator(lines[0])
@@ -132,10 +127,7 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
 def require_width(cells: Cells, name: str) -> None:
     """Reject a row with more cells than the header, such as with decimal commas in a file separated by commas.
 
-    Raises
-    ------
-    FieldDataError
-        A row has more cells than the header.
+    Raises FieldDataError: a row has more cells than the header.
     """
     width = len(cells.header)
     for line, row in zip(cells.lines, cells.rows, strict=True):
@@ -185,20 +177,10 @@ _EVEN: Final = 1.01
 def spread_times(time: FloatArray, place: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Times with the points of each stamp spread until the next stamp, and which points were moved.
 
-    Parameters
-    ----------
-    time : (n,) s
-        Never falling.
-    place : (n, 2) m
-        Horizontal places, NaN if unknown.
+    time: (n,) s, never falling.
+    place: (n, 2) m, horizontal places, NaN if unknown.
+    Returns: times (n,) (s), and (n,) bool. Without rounded stamps: the times given, and no point.
 
-    Returns
-    -------
-    tuple
-        Times (n,) (s), and (n,) bool. Without rounded stamps: the times given, and no point.
-
-    Examples
-    --------
     >>> place = np.column_stack([np.arange(6.0), np.zeros(6)])
     >>> spread_times(np.array([0.0, 1.0, 1.0, 2.0, 2.0, 3.0]), place)[0].round(9).tolist()
     [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]
@@ -237,14 +219,9 @@ def _advance(place: FloatArray, begins: BoolArray) -> float:
 def _block_times(stamps: FloatArray, first: IntArray, size: int, usual: tuple[float, float]) -> FloatArray:
     """Times of the points of consecutive stamps: at an even rate if all stamps agree with one, else stamp by stamp.
 
-    Parameters
-    ----------
-    stamps, first : (m,)
-        Stamps (s), and the number of the first point of each.
-    size
-        Number of points.
-    usual
-        Unit of the stamps (s), and the usual number of points in a stamp.
+    stamps, first: (m,), stamps (s), and the number of the first point of each.
+    size: number of points.
+    usual: unit of the stamps (s), and the usual number of points in a stamp.
     """
     unit, count = usual
     step = unit / count
@@ -279,10 +256,7 @@ LONGEST_STEP: Final = 2e-4
 def convert_serial_dates(values: FloatArray) -> tuple[FloatArray, datetime | None, str | None]:
     """Seconds, the moment of the first value if the numbers are dates, and a note; numbers of seconds stay.
 
-    Parameters
-    ----------
-    values : (n,)
-        Numbers in a column of times.
+    values: (n,), numbers in a column of times.
     """
     steps = np.diff(values)
     steps = steps[steps > 0.0]

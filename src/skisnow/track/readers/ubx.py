@@ -47,10 +47,7 @@ class _Epoch:
 def read_ubx(data: bytes, name: str) -> Recording:
     """Read the messages NAV-PVT of a file, with NAV-HPPOSLLH and NAV-COV; other messages are ignored.
 
-    Raises
-    ------
-    FieldDataError
-        No message NAV-PVT with a right checksum and a valid time is in the file.
+    Raises FieldDataError: no message NAV-PVT with a right checksum and a valid time is in the file.
     """
     counts = dict.fromkeys(_COUNTS, 0)
     epochs = _epochs(data, counts)
