@@ -44,6 +44,7 @@ THEMES: Final = {
         "Skis, turns and tracks",
         (
             *("more_waist", "does_it_hold", "across_a_pipe", "energy_of_a_turn", "skid_to_carve"),
+            *("twelve_metres", "stiffer_tip", "robust_ski"),
             *("radius_of_a_track", "two_tracks", "friction_from_photo_cells"),
         ),
     ),

@@ -129,6 +129,25 @@ def test_does_it_hold(find: Find) -> None:
         assert force == pytest.approx(800 * math.tan(math.radians(angle)), rel=1e-9)
 
 
+def test_twelve_metres(find: Find) -> None:
+    assert find("twelve_metres")["confirmed"] == pytest.approx(12.0, rel=1e-6)
+
+
+def test_stiffer_tip(find: Find) -> None:
+    """To first order in a change by 10 %."""
+    found = find("stiffer_tip")
+    assert found["predicted"] == pytest.approx(found["carved"], rel=0.2)
+
+
+@pytest.mark.slow
+def test_robust_ski(find: Find) -> None:
+    """Equal deviations on both sides, four tenths of those of the ski for one snow."""
+    found = find("robust_ski")
+    softest, _, hardest = (found["radius"](found["skis"]["three snows"], each) for each in found["SNOWS"])
+    assert hardest - 12.0 == pytest.approx(12.0 - softest, rel=1e-3)
+    assert found["worst"]["three snows"] < 0.5 * found["worst"]["one snow"]
+
+
 # Turns
 
 
@@ -181,7 +200,7 @@ NAMES = tuple(builder().names())
 
 def test_every_script_has_its_place() -> None:
     assert sorted(NAMES) == sorted(path.stem for path in builder().EXAMPLES.glob("*.py"))
-    assert len(set(NAMES)) == len(NAMES) == 16
+    assert len(set(NAMES)) == len(NAMES) == 19
     assert sorted(NAMES) == sorted(path.stem for path in builder().PRINTED.iterdir())
 
 
