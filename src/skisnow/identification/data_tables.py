@@ -136,10 +136,7 @@ class TableFile:
 def read_table(path: Path) -> TableFile:
     """Read a table as spreadsheet programs write it: commas, semicolons or tabs, decimal points or commas.
 
-    Raises
-    ------
-    ParameterError, FieldDataError
-        The file cannot be read, is not text, or is empty.
+    Raises ParameterError or FieldDataError: the file cannot be read, is not text, or is empty.
     """
     data = plain_bytes(path, most_bytes=MOST_CSV_BYTES)
     cells = split_cells(decode_text(data, str(path)), str(path))

@@ -26,14 +26,9 @@ START: Final = "start."
 class Problem:
     """Least-squares problem of a search.
 
-    Attributes
-    ----------
-    parameters
-        The free parameters.
-    observations
-        Data of one or several kinds.
-    noise
-        Standard deviation of the residuals of each of them: 1 if accuracies are stated, otherwise estimated.
+    parameters: the free parameters.
+    observations: data of one or several kinds.
+    noise: standard deviation of the residuals of each of them: 1 if accuracies are stated, otherwise estimated.
     """
 
     parameters: tuple[Parameter, ...]

@@ -83,16 +83,10 @@ class Identified(Shown):
 class Profile(Shown):
     """The sum of squares along one parameter with all others refitted.
 
-    Attributes
-    ----------
-    key
-        Key of the parameter.
-    value
-        (m,) values of the parameter, rising.
-    rise
-        (m,) rise of the sum of squares above its minimum, in squared standard deviations of the data.
-    limit
-        Rise at the ends of the 95 % interval.
+    key: key of the parameter.
+    value: (m,) values of the parameter, rising.
+    rise: (m,) rise of the sum of squares above its minimum, in squared standard deviations of the data.
+    limit: rise at the ends of the 95 % interval.
     """
 
     key: str

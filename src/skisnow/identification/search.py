@@ -108,18 +108,11 @@ class SearchState:
 class Search:
     """Search for the minimum of a sum of squares.
 
-    Attributes
-    ----------
-    residuals
-        Function that computes the residuals.
-    lower, upper
-        Bounds (p,), in sizes from the start.
-    options
-        Step sizes and stopping rules.
-    progress
-        Called with a line of text after each round.
-    best
-        Best place so far.
+    residuals: function that computes the residuals.
+    lower, upper: bounds (p,), in sizes from the start.
+    options: step sizes and stopping rules.
+    progress: called with a line of text after each round.
+    best: best place so far.
     """
 
     residuals: Residuals

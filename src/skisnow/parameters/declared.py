@@ -42,12 +42,8 @@ def _nothing(_: Any) -> None:
 class Word(Quantity):
     """Text of a file for a field, such as a name, which the reader of the file interprets.
 
-    Attributes
-    ----------
-    word_of
-        The word for a value of the field.
-    names_file
-        Whether it is the path of a file.
+    word_of: the word for a value of the field.
+    names_file: whether it is the path of a file.
     """
 
     kind: Kind = "text"
@@ -92,10 +88,7 @@ def quantities(owner: type) -> tuple[Quantity, ...]:
 def require_declared(thing: Any) -> None:
     """Raise an error for values that a file could not contain; ``__post_init__`` of a dataclass calls it.
 
-    Raises
-    ------
-    ParameterError
-        The first value that is of another kind or outside its range, in the unit that its key names.
+    Raises ParameterError: the first value that is of another kind or outside its range, in the unit that its key names.
     """
     for slot in _slots(type(thing)):
         value = getattr(thing, slot.field.name)
@@ -109,10 +102,7 @@ def require_declared(thing: Any) -> None:
 def require_effect(thing: Any) -> None:
     """Reject values other than the default that have no effect because of another value of the same dataclass.
 
-    Raises
-    ------
-    ParameterError
-        With the code ``no_effect``: the first such value.
+    Raises ParameterError: with the code ``no_effect``: the first such value.
     """
     owner: Any = type(thing)
     conditional = _conditional_quantities(owner)
@@ -139,16 +129,10 @@ def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
 def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
     """A dataclass from values by name, in the units in the names, with its nested dataclasses.
 
-    Parameters
-    ----------
-    owner
-        The dataclass.
-    values
-        Values in their ranges; None and missing ones leave the default.
-    section
-        Section for names without one.
-    parts
-        Other fields, in SI; they go before.
+    owner: the dataclass.
+    values: values in their ranges; None and missing ones leave the default.
+    section: section for names without one.
+    parts: other fields, in SI; they go before.
     """
     several: dict[str, list[tuple[int, Any]]] = {}
     for quantity in own_quantities(owner):
@@ -339,21 +323,12 @@ def checked_table(
 ) -> dict[str, Any]:
     """The stated values of a table in their kinds and units.
 
-    Parameters
-    ----------
-    owner
-        The dataclass that declares the allowed values; `made` makes one of the values.
-    table
-        As parsed.
-    place
-        Place of the table, for messages.
-    further
-        Other keys that it may have; the caller reads them.
-
-    Raises
-    ------
-    ParameterError
-        A key is unknown (the nearest is named) or missing, or a value is of another kind or outside its range.
+    owner: the dataclass that declares the allowed values; `made` makes one of the values.
+    table: as parsed.
+    place: place of the table, for messages.
+    further: other keys that it may have; the caller reads them.
+    Raises ParameterError: a key is unknown (the nearest is named) or missing, or a value is of another kind or outside
+        its range.
     """
     keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:

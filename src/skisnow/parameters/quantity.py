@@ -37,12 +37,8 @@ def beyond_reason(values: FloatArray) -> BoolArray:
 class Search:
     """Search range of a quantity: size in its unit (of its logarithm if `logarithmic`), and usual bounds.
 
-    Attributes
-    ----------
-    size
-        Derivatives step by 1 to 5 % of it.
-    lower, upper
-        Bounds where the user gives none; where `about` is set they count from the start of the search.
+    size: derivatives step by 1 to 5 % of it.
+    lower, upper: bounds where the user gives none; where `about` is set they count from the start of the search.
     """
 
     size: float
@@ -56,14 +52,9 @@ class Search:
 class Condition:
     """Value of another key without which a quantity has no effect.
 
-    Attributes
-    ----------
-    key
-        The other key.
-    value
-        The value that it needs.
-    differs
-        True if it needs any other value than this one.
+    key: the other key.
+    value: the value that it needs.
+    differs: True if it needs any other value than this one.
     """
 
     key: str
@@ -214,10 +205,7 @@ class Quantity:
     def of_kind(self, value: object) -> InputValue:
         """Give the value in its kind, a number as float; its range is not looked at.
 
-        Raises
-        ------
-        ParameterError
-            It is of another kind.
+        Raises ParameterError: it is of another kind.
         """
         if self.kind == "switch" and isinstance(value, bool):
             return value
@@ -264,10 +252,7 @@ class Quantity:
     def in_range(self, value: object) -> InputValue:
         """Give the value in its kind.
 
-        Raises
-        ------
-        ParameterError
-            It is of another kind or outside the range.
+        Raises ParameterError: it is of another kind or outside the range.
         """
         checked = self.of_kind(value)
         if self.kind == "numbers" and isinstance(value, list | tuple):
@@ -312,10 +297,7 @@ class Quantity:
     def require(self, value: object) -> None:
         """Refuse a field's value, as Python gives it, that no file could give.
 
-        Raises
-        ------
-        ParameterError
-            As `in_range`, with the value in the unit of the name.
+        Raises ParameterError: as `in_range`, with the value in the unit of the name.
         """
         if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
             self.in_range([_plain(number, self._held) for number in value])

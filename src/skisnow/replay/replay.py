@@ -49,14 +49,9 @@ class ReplaySkier:
 class ReplayTerrain:
     """A slope of measured heights around a run.
 
-    Attributes
-    ----------
-    x, y
-        Evenly spaced rising places (m), shapes (p,) and (q,).
-    height
-        Height of the snow at these places (m), shape (p, q), linear between them.
-    grade
-        Mean dz/dx and dz/dy, for the snow beyond these places.
+    x, y: evenly spaced rising places (m), shapes (p,) and (q,).
+    height: height of the snow at these places (m), shape (p, q), linear between them.
+    grade: mean dz/dx and dz/dy, for the snow beyond these places.
     """
 
     x: FloatArray
@@ -85,26 +80,17 @@ def _cell(places: FloatArray, at: npt.ArrayLike) -> tuple[FloatArray, IntArray, 
 class ReplaySkis:
     """Two equal skis on a sledge; histories have the indices time, ski (0 left, 1 right), station from tip to tail.
 
-    Attributes
-    ----------
-    station, half_width, base_height
-        Position from the boot, half of the width, height of the unloaded base above that at the boot (m), shape (m,).
-    middle
-        Place of each ski's boot in the sledge's frame (m), shape (2, 3).
-    edge_angle
-        Edge angle of both skis against the sledge, positive: left edge down (rad).
-    bending, twist
-        Deflection of the base away from the snow (m), growth of the edge angle (rad), relative to the boot, (n, 2, m).
-    edge_depth
-        Depth of the lower edge below the undisturbed surface, negative above it (m), (n, 2, m).
-    force_per_length
-        Normal force of the snow per length (N/m), (n, 2, m).
-    force
-        Total force of the snow in space: normal force, shear and friction (N), (n, 2, 3).
-    normal_force
-        Component of the total force along the snow's normal (N), (n, 2).
-    boots
-        Moving boots, which determine the places of the skis (default: `middle` and `edge_angle`).
+    station, half_width, base_height: position from the boot, half of the width, height of the unloaded base above that
+        at the boot (m), shape (m,).
+    middle: place of each ski's boot in the sledge's frame (m), shape (2, 3).
+    edge_angle: edge angle of both skis against the sledge, positive: left edge down (rad).
+    bending, twist: deflection of the base away from the snow (m), growth of the edge angle (rad), relative to the boot,
+        (n, 2, m).
+    edge_depth: depth of the lower edge below the undisturbed surface, negative above it (m), (n, 2, m).
+    force_per_length: normal force of the snow per length (N/m), (n, 2, m).
+    force: total force of the snow in space: normal force, shear and friction (N), (n, 2, 3).
+    normal_force: component of the total force along the snow's normal (N), (n, 2).
+    boots: moving boots, which determine the places of the skis (default: `middle` and `edge_angle`).
     """
 
     station: FloatArray
@@ -125,18 +111,11 @@ class ReplaySkis:
 class ReplayGroove:
     """Pieces of groove, each a short line across the path.
 
-    Attributes
-    ----------
-    middle, left
-        Place on the undisturbed surface (m), and unit vector along the piece to the left, (k, 3).
-    width, depth, residual_depth
-        Width, maximum depth, residual depth (m), (k,).
-    time
-        Time when the boot, which has the load, passed the piece (s), (k,).
-    ski
-        Index of its ski, (k,): 0 left, 1 right.
-    spacing
-        Distance of pieces along the path (m), which is also their length.
+    middle, left: place on the undisturbed surface (m), and unit vector along the piece to the left, (k, 3).
+    width, depth, residual_depth: width, maximum depth, residual depth (m), (k,).
+    time: time when the boot, which has the load, passed the piece (s), (k,).
+    ski: index of its ski, (k,): 0 left, 1 right.
+    spacing: distance of pieces along the path (m), which is also their length.
     """
 
     middle: FloatArray
@@ -299,22 +278,13 @@ _NEIGHBOURS: Final = 2
 def groove_times(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[FloatArray, IntArray]:
     """Time (k,) at which a boot passed each piece of groove, and index (k,) of the ski with the nearest boot.
 
-    Parameters
-    ----------
-    middle
-        Places of the pieces (m), (k, 3).
-    time
-        Times of the run (s), (n,), n ≥ 1.
-    track
-        Places of the loaded edges under the boots (m), (n, 2, 3).
+    middle: places of the pieces (m), (k, 3).
+    time: times of the run (s), (n,), n ≥ 1.
+    track: places of the loaded edges under the boots (m), (n, 2, 3).
 
-    Notes
-    -----
     The boot moves straight between two outputs. A piece ahead of the boot's last place, or behind its first, gets the
     last or the first time. If a path crosses itself, the nearer passage counts.
 
-    Examples
-    --------
     >>> track = np.array([[[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]], [[2.0, 1.0, 0.0], [2.0, -1.0, 0.0]]])
     >>> when, ski = groove_times(np.array([[0.5, -0.99, 0.0], [3.0, 1.0, 0.0]]), np.array([0.0, 1.0]), track)
     >>> when.tolist(), ski.tolist()
@@ -345,8 +315,6 @@ def _passage(middle: FloatArray, time: FloatArray, track: FloatArray) -> tuple[F
 def quaternions(matrices: FloatArray) -> FloatArray:
     """Unit quaternions (n, 4), w, x, y, z, of rotation matrices (n, 3, 3); none is opposite to the one before.
 
-    Examples
-    --------
     >>> quarter = np.array([[[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]])  # about z, to the left
     >>> quaternions(quarter).round(6).tolist()
     [[0.707107, 0.0, 0.0, 0.707107]]

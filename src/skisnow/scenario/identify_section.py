@@ -199,14 +199,9 @@ def prior_of(word: str) -> Prior:
 class Measured:
     """A key of a scenario with a measured value, log-normal with its 95 % interval.
 
-    Attributes
-    ----------
-    key
-        Full name.
-    value
-        Median of the distribution, in the key's unit.
-    low, high
-        Ends of the 95 % interval in the key's unit, 0 < low ≤ value ≤ high.
+    key: full name.
+    value: median of the distribution, in the key's unit.
+    low, high: ends of the 95 % interval in the key's unit, 0 < low ≤ value ≤ high.
     """
 
     key: str

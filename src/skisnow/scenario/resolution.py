@@ -94,17 +94,9 @@ class ScenarioInput(ShownFields):
     def changed(self, changes: Mapping[str, object], *, folder: Path | None = None) -> ScenarioInput:
         """The same scenario with one more layer.
 
-        Parameters
-        ----------
-        changes
-            Values by key, with or without section.
-        folder
-            Folder where relative paths among the changes start (default: the current folder).
-
-        Raises
-        ------
-        ParameterError
-            Unknown key, wrong kind, or value outside its range.
+        changes: values by key, with or without section.
+        folder: folder where relative paths among the changes start (default: the current folder).
+        Raises ParameterError: unknown key, wrong kind, or value outside its range.
         """
         return replace(self, layers=(*self.layers, Layer(validate(changes), folder or Path())))
 

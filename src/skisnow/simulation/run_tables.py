@@ -129,14 +129,9 @@ def require_ending(path: Path) -> None:
 def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
     """The table as a file's text: numbers with all their digits.
 
-    Parameters
-    ----------
-    run
-        Result of `skisnow.simulate`.
-    ending
-        One of `ENDINGS`.
-    name
-        That the head of a .mot or .sto file begins with.
+    run: result of `skisnow.simulate`.
+    ending: one of `ENDINGS`.
+    name: that the head of a .mot or .sto file begins with.
     """
     columns = boots_columns(run) if ending == ".csv" else opensim_columns(run)
     rows = np.column_stack(list(columns.values())).tolist()

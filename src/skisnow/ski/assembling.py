@@ -129,29 +129,15 @@ def arc_ski(
 ) -> Ski:
     """Make a ski from three widths, a mass and a few stiffnesses, in SI.
 
-    Parameters
-    ----------
-    layout
-        Of its lengths, see `layout_of_lengths`.
-    tip_width, waist_width, tail_width
-        At the front end, the middle and the rear end of the sidecut length (m).
-    mass
-        Mass of the ski (kg), without binding; spread in proportion to the width (modelling assumption).
-    bending_stiffness, torsional_stiffness
-        EI and GJ (N m²), tip to tail, one value or several.
-    stiffness_station
-        Stations of both (m, from the boot, falling); default: evenly spaced over the running length (modelling
-        assumption). Between
-        them a shape-preserving cubic, beyond them the end values.
-    base
-        Camber, rocker and heights; default: flat, with the usual shovel and tail.
-    base_bevel, edge_width
-        As in `Ski`.
-
-    Raises
-    ------
-    ParameterError
-        The parts do not fit together or break a rule of `Ski`.
+    layout: of its lengths, see `layout_of_lengths`.
+    tip_width, waist_width, tail_width: at the front end, the middle and the rear end of the sidecut length (m).
+    mass: mass of the ski (kg), without binding; spread in proportion to the width (modelling assumption).
+    bending_stiffness, torsional_stiffness: EI and GJ (N m²), tip to tail, one value or several.
+    stiffness_station: stations of both (m, from the boot, falling); default: evenly spaced over the running length
+        (modelling assumption). Between them a shape-preserving cubic, beyond them the end values.
+    base: camber, rocker and heights; default: flat, with the usual shovel and tail.
+    base_bevel, edge_width: as in `Ski`.
+    Raises ParameterError: the parts do not fit together or break a rule of `Ski`.
     """
     outline = ArcOutline(layout=layout, tip_width=tip_width, waist_width=waist_width, tail_width=tail_width)
     return SkiParts(

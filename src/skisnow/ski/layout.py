@@ -86,24 +86,14 @@ def layout_of_lengths(
 ) -> Layout:
     """Lay a ski out by its lengths (m).
 
-    Parameters
-    ----------
-    length
-        From tip to tail along the base.
-    running_length, sidecut_length
-        Between the contact points, between the widest points.
-    tail_overhang
-        Length of the tail behind the sidecut length; the rest of the length is the tip. Modelling assumption: 20 mm.
-    boot_position
-        Distance of the boot in front of the middle of the running length, negative behind it. Modelling assumption: 0.
+    length: from tip to tail along the base.
+    running_length, sidecut_length: between the contact points, between the widest points.
+    tail_overhang: length of the tail behind the sidecut length; the rest of the length is the tip. Modelling
+        assumption: 20 mm.
+    boot_position: distance of the boot in front of the middle of the running length, negative behind it. Modelling
+        assumption: 0.
+    Raises ParameterError: the running or the sidecut length does not fit between tip and tail.
 
-    Raises
-    ------
-    ParameterError
-        The running or the sidecut length does not fit between tip and tail.
-
-    Examples
-    --------
     >>> ski = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
     >>> round(ski.tip - ski.widest_points[0], 6), round(ski.widest_points[1] - ski.tail, 6)
     (0.115, 0.02)
@@ -126,12 +116,8 @@ StationFunction: TypeAlias = Callable[[FloatArray], FloatArray]
 class SkiSections(ShownFields):
     """Cross sections of a ski at chosen stations; every array has the shape of ``station``.
 
-    Attributes
-    ----------
-    station
-        From the boot, positive forward (m).
-    width, base_height, bending_stiffness, torsional_stiffness, mass_per_length
-        As in `Ski`.
+    station: from the boot, positive forward (m).
+    width, base_height, bending_stiffness, torsional_stiffness, mass_per_length: as in `Ski`.
     """
 
     station: FloatArray
@@ -256,13 +242,8 @@ class BaseShape:
     def height_at(self, station: FloatArray, layout: Layout) -> FloatArray:
         """Height (m) of the base at stations (m), 0 at the boot.
 
-        Raises
-        ------
-        ParameterError
-            Rockers overlap, or the shovel or tail would bend down after its rocker.
+        Raises ParameterError: rockers overlap, or the shovel or tail would bend down after its rocker.
 
-        Examples
-        --------
         >>> from .layout import layout_of_lengths
         >>> layout = layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458)
         >>> contact, tip = BaseShape(camber=0.007).height_at(np.array([1.396 / 2, layout.tip]), layout)

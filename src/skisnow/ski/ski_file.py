@@ -80,13 +80,8 @@ def read_ski(name_or_path: str | Path) -> Ski:
 def ski_named(name: str) -> Ski:
     """Read a ski of the catalogue.
 
-    Raises
-    ------
-    ParameterError
-        The name is unknown; the message names the nearest.
+    Raises ParameterError: the name is unknown; the message names the nearest.
 
-    Examples
-    --------
     >>> slalom = ski_named("slalom")
     >>> round(slalom.length, 4), round(slalom.mass, 4), round(slalom.sidecut_radius_of_three_widths, 2)
     (1.593, 2.231, 13.12)
@@ -178,18 +173,10 @@ def keys_text(keys: Mapping[str, Any]) -> str:
 def write_ski(ski: Ski, path: str | Path) -> None:
     """Write a ski so that `read_ski` gives the same one, but for the last digits.
 
-    Parameters
-    ----------
-    ski
-        To write.
-    path
-        Path of the TOML file. The table, with a row for each station, is written next to it with the same name and the
-        ending .csv.
-
-    Raises
-    ------
-    OutputError
-        The path does not end in .toml, or cannot be written.
+    ski: to write.
+    path: Path of the TOML file. The table, with a row for each station, is written next to it with the same name and
+        the ending .csv.
+    Raises OutputError: the path does not end in .toml, or cannot be written.
     """
     path = Path(path)
     if path.suffix.lower() != ".toml":

@@ -41,11 +41,8 @@ def read_table(path: Path) -> dict[str, StationTable]:
     ``GJ_N_m2``, ``mass_per_length_kg_per_m``. Separators are commas, semicolons or tabs, decimals have a point or a
     comma, one of them in a file; lines beginning with # are remarks.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, a column is unknown or missing, a cell is not a number or outside its range, or the
-        stations do not fall. Line numbers are those of the file.
+    Raises ParameterError: the file cannot be read, a column is unknown or missing, a cell is not a number or outside
+        its range, or the stations do not fall. Line numbers are those of the file.
     """
     separator, lines = _lines(path)
     first, cells = lines[0]

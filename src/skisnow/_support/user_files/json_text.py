@@ -25,10 +25,7 @@ _MOST_DIGITS: Final = len(str(LARGEST_WHOLE)) + 1
 def read_json(path: str | Path, *, most_bytes: int = MOST_JSON_BYTES) -> Any:
     """Read a JSON file in UTF-8.
 
-    Raises
-    ------
-    GivenError
-        As in `plain_text` and `json_value`.
+    Raises GivenError: as in `plain_text` and `json_value`.
     """
     return json_value(plain_text(path, most_bytes=most_bytes), title=str(path))
 
@@ -36,11 +33,8 @@ def read_json(path: str | Path, *, most_bytes: int = MOST_JSON_BYTES) -> Any:
 def json_value(text: str | bytes, *, title: str = "") -> Any:
     """The value of a JSON text.
 
-    Raises
-    ------
-    GivenError
-        The text is not JSON (NaN and infinite numbers included), exceeds a limit (nesting, digits of a number, length
-        of a text), repeats a key of an object, or contains an invalid character.
+    Raises GivenError: the text is not JSON (NaN and infinite numbers included), exceeds a limit (nesting, digits of a
+        number, length of a text), repeats a key of an object, or contains an invalid character.
     """
     try:
         value = json.loads(text, object_pairs_hook=_object, parse_int=_whole, parse_constant=_refuse_constant)
@@ -62,10 +56,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
 def own_json(text: str | bytes) -> Any:
     """Value of a JSON text that skisnow wrote: without limits, and numbers may be infinite.
 
-    Raises
-    ------
-    ValueError
-        It is not JSON.
+    Raises ValueError: it is not JSON.
     """
     return json.loads(text)
 
@@ -106,19 +97,10 @@ T = TypeVar("T", bound="DataclassInstance")
 def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> T:
     """Read a JSON object into a dataclass of texts, numbers, switches and mappings of those.
 
-    Parameters
-    ----------
-    path
-        The file.
-    kind
-        The dataclass; keys are the names of its fields.
-    only_known
-        Reject keys that are not fields; False: ignore them.
-
-    Raises
-    ------
-    GivenError
-        The file cannot be read, or a key is missing, unknown or of another type.
+    path: the file.
+    kind: the dataclass; keys are the names of its fields.
+    only_known: reject keys that are not fields; False: ignore them.
+    Raises GivenError: the file cannot be read, or a key is missing, unknown or of another type.
     """
     values = read_json(path)
     if not isinstance(values, dict):

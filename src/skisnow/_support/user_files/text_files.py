@@ -21,10 +21,8 @@ if TYPE_CHECKING:
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
     """Read a file.
 
-    Raises
-    ------
-    GivenError
-        It is not there, may not be read, is not a plain file, or has more bytes; or no file can have such a name.
+    Raises GivenError: it is not there, may not be read, is not a plain file, or has more bytes; or no file can have
+        such a name.
     """
     try:
         if not stat.S_ISREG((place := Path(path)).stat().st_mode):
@@ -76,10 +74,7 @@ def is_file(path: str | Path) -> bool:
 def plain_text(path: str | Path, *, most_bytes: int) -> str:
     """Read a file as UTF-8 text, with or without byte order mark; lines end with a line feed, however they did.
 
-    Raises
-    ------
-    GivenError
-        As in `plain_bytes`, or it is not UTF-8 text.
+    Raises GivenError: as in `plain_bytes`, or it is not UTF-8 text.
     """
     data = plain_bytes(path, most_bytes=most_bytes)
     try:
@@ -100,18 +95,11 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
 class GivenError(ParameterError):
     """A file, or a text in its stead, cannot be read.
 
-    Parameters
-    ----------
-    what
-        Problem and allowed values, without the file.
-    code
-        As in `skisnow.SkisnowError`.
-    line
-        Line of the file, where one can be named.
-    title
-        The file, or another name of the text; empty until it is known.
-    sentence
-        The whole message, if it is not made of the others.
+    what: problem and allowed values, without the file.
+    code: as in `skisnow.SkisnowError`.
+    line: line of the file, where one can be named.
+    title: the file, or another name of the text; empty until it is known.
+    sentence: the whole message, if it is not made of the others.
     """
 
     def __init__(
@@ -257,10 +245,7 @@ _TOKENS: Final = re.compile(
 def read_toml(path: str | Path) -> dict[str, Any]:
     """Read a TOML file in UTF-8.
 
-    Raises
-    ------
-    GivenError
-        As in `plain_text` and `toml_values`.
+    Raises GivenError: as in `plain_text` and `toml_values`.
     """
     return toml_values(plain_text(path, most_bytes=MOST_TOML_BYTES), title=str(path))
 
@@ -281,18 +266,10 @@ def toml_text(value: object) -> str:
 def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     """The keys and values of a TOML text.
 
-    Parameters
-    ----------
-    text
-        With line feeds at the ends of lines.
-    title
-        Name of the text in messages.
-
-    Raises
-    ------
-    GivenError
-        It is not TOML, or beyond a limit: size, nesting, dots in a key, digits of a number, length of a text; or a text
-        has a character that none can have.
+    text: with line feeds at the ends of lines.
+    title: name of the text in messages.
+    Raises GivenError: it is not TOML, or beyond a limit: size, nesting, dots in a key, digits of a number, length of a
+        text; or a text has a character that none can have.
     """
     try:
         if len(text) > MOST_TOML_BYTES:

@@ -88,10 +88,8 @@ class _Builder:
 def xml_tree(data: bytes) -> Element:
     """Parse XML.
 
-    Raises
-    ------
-    GivenError
-        It is not XML, is damaged, has an unknown encoding, declares a document type, or exceeds the limits.
+    Raises GivenError: it is not XML, is damaged, has an unknown encoding, declares a document type, or exceeds the
+        limits.
     """
     builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True

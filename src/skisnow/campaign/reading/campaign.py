@@ -120,19 +120,10 @@ def campaign_of_cells(
 ) -> Campaign:
     """Check a campaign whose tables are in memory.
 
-    Parameters
-    ----------
-    description
-        Text of campaign.toml.
-    cells
-        Tables by file, with their corrections applied.
-    corrections
-        These corrections.
-
-    Raises
-    ------
-    FieldDataError
-        As `read_campaign`.
+    description: text of campaign.toml.
+    cells: tables by file, with their corrections applied.
+    corrections: these corrections.
+    Raises FieldDataError: as `read_campaign`.
     """
     problems: list[Problem] = []
     described = read_campaign_file(description, problems)

@@ -72,14 +72,9 @@ class FilesOfFolder:
 class FilesInMemory:
     """Files in memory.
 
-    Attributes
-    ----------
-    contents
-        Contents by name.
-    others
-        Names of other files, which are not read.
-    folder
-        Path whose name is the default name of the campaign; it is not read.
+    contents: contents by name.
+    others: names of other files, which are not read.
+    folder: Path whose name is the default name of the campaign; it is not read.
     """
 
     contents: Mapping[str, bytes]

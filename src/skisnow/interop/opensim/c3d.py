@@ -49,10 +49,7 @@ def read_c3d(path: str | Path) -> Markers:
     Angles, forces, moments and powers that a program for gait stored among the points are listed in ``omitted``, and
     points without a name by their number.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read or is damaged, or it has no markers or no sound unit.
+    Raises ParameterError: the file cannot be read or is damaged, or it has no markers or no sound unit.
     """
     try:
         content = c3d_content(plain_bytes(path, most_bytes=MOST_BYTES))
@@ -132,22 +129,12 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     Places are in millimetres; all numbers have the format's single precision. A marker without a position has a
     negative residual, as the format requires.
 
-    Parameters
-    ----------
-    markers
-        At a steady rate; the format counts frames from the time 0, up to 65,535.
-    path
-        Path that ends in .c3d.
-    forces
-        Forces over the same time, at the markers' rate or a whole multiple: a channel for each column.
-
-    Raises
-    ------
-    ParameterError
-        ezc3d is not installed, the name ends otherwise, times are not those of frames, or there are more frames or
-        names than the format counts.
-    OutputError
-        The place cannot be written.
+    markers: at a steady rate; the format counts frames from the time 0, up to 65,535.
+    path: Path that ends in .c3d.
+    forces: forces over the same time, at the markers' rate or a whole multiple: a channel for each column.
+    Raises ParameterError: ezc3d is not installed, the name ends otherwise, times are not those of frames, or there are
+        more frames or names than the format counts.
+    Raises OutputError: the place cannot be written.
     """
     path = Path(path)
     if path.suffix.lower() != ENDING:

@@ -29,23 +29,12 @@ _HEAD: Final = 5  # lines before the first row: file, keys, values, names, axes
 class Markers(Shown):
     """Places of markers over time.
 
-    Attributes
-    ----------
-    time
-        (n,), rising (s).
-    names
-        Names of the k markers.
-    place
-        (n, k, 3) in the laboratory's axes (m); not a number where a marker was not seen.
-    rate
-        Frames a second (Hz).
-    omitted
-        Names of points of the file that are not places, such as angles and forces.
-
-    Raises
-    ------
-    ParameterError
-        Shapes do not fit, times do not rise, or a name is there twice.
+    time: (n,), rising (s).
+    names: names of the k markers.
+    place: (n, k, 3) in the laboratory's axes (m); not a number where a marker was not seen.
+    rate: frames a second (Hz).
+    omitted: names of points of the file that are not places, such as angles and forces.
+    Raises ParameterError: shapes do not fit, times do not rise, or a name is there twice.
     """
 
     time: FloatArray
@@ -77,10 +66,7 @@ class Markers(Shown):
     def of(self, name: str) -> FloatArray:
         """Places of one marker, (n, 3) (m).
 
-        Raises
-        ------
-        ParameterError
-            Unknown name.
+        Raises ParameterError: unknown name.
         """
         if name not in self.names:
             raise ParameterError(
@@ -92,11 +78,8 @@ class Markers(Shown):
 def read_trc(path: str | Path) -> Markers:
     """Read a .trc file; empty cells are markers that were not seen.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, its header is invalid, its unit is not m, cm or mm, or a cell is not a number; the
-        message names file, line, marker and value.
+    Raises ParameterError: the file cannot be read, its header is invalid, its unit is not m, cm or mm, or a cell is not
+        a number; the message names file, line, marker and value.
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):
@@ -151,12 +134,8 @@ def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> li
 def write_trc(markers: Markers, path: str | Path) -> None:
     """Write a .trc file in metres, numbers with all their digits; cells of markers not seen are empty.
 
-    Raises
-    ------
-    ParameterError
-        The name ends otherwise.
-    OutputError
-        The place cannot be written.
+    Raises ParameterError: the name ends otherwise.
+    Raises OutputError: the place cannot be written.
     """
     path = Path(path)
     if path.suffix.lower() != ".trc":
@@ -185,14 +164,9 @@ FROM_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.
 class BootMarkers:
     """Three markers of a boot, and where its sole is from the one at the heel.
 
-    Attributes
-    ----------
-    heel, toe
-        Names of markers one behind the other along the boot.
-    left
-        Name of a marker to the left of that line, at the height of the base of a flat ski.
-    sole
-        Middle of the sole at the level of the base, from the heel's marker: ahead, left, up in the boot's axes (m).
+    heel, toe: names of markers one behind the other along the boot.
+    left: name of a marker to the left of that line, at the height of the base of a flat ski.
+    sole: middle of the sole at the level of the base, from the heel's marker: ahead, left, up in the boot's axes (m).
     """
 
     heel: str
@@ -211,22 +185,13 @@ def boots_of_markers(
 ) -> Boots:
     """Poses of both boots in the slope's axes.
 
-    Parameters
-    ----------
-    markers
-        In axes with x horizontally down the slope and the second or third axis upwards.
-    left, right
-        The markers of each boot.
-    up
-        "y" as OpenSim has it (z to the right), or "z" (y to the left).
-    slope_angle
-        Angle of the slope (rad): the boots' poses are turned into its axes. 0 where the markers' axes are those of the
-        slope.
-
-    Raises
-    ------
-    ParameterError
-        A marker is missing, was not seen in a frame (the error gives name and time), or three lie on one line.
+    markers: in axes with x horizontally down the slope and the second or third axis upwards.
+    left, right: the markers of each boot.
+    up: "y" as OpenSim has it (z to the right), or "z" (y to the left).
+    slope_angle: angle of the slope (rad): the boots' poses are turned into its axes. 0 where the markers' axes are
+        those of the slope.
+    Raises ParameterError: a marker is missing, was not seen in a frame (the error gives name and time), or three lie on
+        one line.
     """
     require_choice("up", up, ("y", "z"))
     c, s = np.cos(slope_angle), np.sin(slope_angle)
@@ -288,12 +253,8 @@ def _unit(vectors: FloatArray, of: BootMarkers) -> FloatArray:
 def boots_text(boots: Boots, *, edge_angles_only: bool = False) -> str:
     """Poses in the slope's frame as the text of a CSV file for ``boots.file``.
 
-    Parameters
-    ----------
-    boots
-        As `boots_of_markers` gives them.
-    edge_angles_only
-        Edge angles alone: the sledge of the scenario carries the boots, and the snow it.
+    boots: as `boots_of_markers` gives them.
+    edge_angles_only: edge angles alone: the sledge of the scenario carries the boots, and the snow it.
     """
     angles = angles_of(boots.axes) / DEGREE
     columns: dict[str, Sequence[float]] = {"time_s": boots.at.tolist()}

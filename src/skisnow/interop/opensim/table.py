@@ -26,23 +26,12 @@ _OWN_KEYS: Final = ("nrows", "ncolumns", "indegrees", "version")
 class MotionTable(Shown):
     """Columns over time.
 
-    Attributes
-    ----------
-    time
-        (n,), rising (s).
-    columns
-        Columns by name, (n,) each; the name states the quantity.
-    in_degrees
-        True if angles are in degrees (default: False, radians, as OpenSim reads a file without a statement).
-    name
-        That the head begins with.
-    head
-        Other keys of the head, as they are there.
-
-    Raises
-    ------
-    ParameterError
-        A column has not a number for each time, or times do not rise.
+    time: (n,), rising (s).
+    columns: columns by name, (n,) each; the name states the quantity.
+    in_degrees: True if angles are in degrees (default: False, radians, as OpenSim reads a file without a statement).
+    name: that the head begins with.
+    head: other keys of the head, as they are there.
+    Raises ParameterError: a column has not a number for each time, or times do not rise.
     """
 
     time: FloatArray
@@ -90,11 +79,8 @@ def require_rising(what: str, time: FloatArray) -> None:
 def read_motion(path: str | Path) -> MotionTable:
     """Read a .mot or .sto file.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, has no head or no column ``time``, its head leaves open whether angles are in degrees,
-        or a cell is not a number; file, row, column and value are named.
+    Raises ParameterError: the file cannot be read, has no head or no column ``time``, its head leaves open whether
+        angles are in degrees, or a cell is not a number; file, row, column and value are named.
     """
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     ends = next((i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END), None)
@@ -155,12 +141,8 @@ def number_of(cell: str, where: str) -> float:
 def write_motion(table: MotionTable, path: str | Path) -> None:
     """Write a .mot or .sto file, numbers with all their digits.
 
-    Raises
-    ------
-    ParameterError
-        The name ends otherwise.
-    OutputError
-        The place cannot be written.
+    Raises ParameterError: the name ends otherwise.
+    Raises OutputError: the place cannot be written.
     """
     if Path(path).suffix.lower() not in ENDINGS:
         raise ParameterError(

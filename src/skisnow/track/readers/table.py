@@ -39,10 +39,8 @@ _FORMS: Final = "time_s, x_m, y_m[, z_m, speed_m_per_s] or time, lat, lon[, alt_
 def read_table(text: str, name: str) -> Recording:
     """The recording in a CSV file.
 
-    Raises
-    ------
-    FieldDataError
-        A column is missing or repeated, a cell is not a number or a time, or a row has more cells than the header.
+    Raises FieldDataError: a column is missing or repeated, a cell is not a number or a time, or a row has more cells
+        than the header.
     """
     table = _Table.of(split_cells(text, name), name)
     is_geodetic = table.kind()
