@@ -51,7 +51,7 @@ def imported(page: Page, served: Served) -> None:
     )
     ready(page)
     page.get_by_role("button", name="Import files or zip").press("Enter")
-    page.get_by_text("The campaign is imported, byte for byte.").wait_for()
+    page.get_by_text("The campaign is imported.").wait_for()
 
 
 @pytest.mark.parametrize("has_icons", [True, pytest.param(False, marks=pytest.mark.slow)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import secrets
 import shutil
@@ -13,7 +14,7 @@ from typing import IO, TYPE_CHECKING, Final
 from .._support.errors import FieldDataError, ParameterError
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
-from .._support.user_files import read_record
+from .._support.user_files import GivenError, read_record
 from ..replay.replay import measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from ..replay.replay import Replay, ReplayTrack
     from ..track.track import Track
 
-    Count: TypeAlias = Callable[[Path, "Placing"], int]
+    Check: TypeAlias = Callable[[Path, "Placing"], "Placing"]
     Read: TypeAlias = Callable[[Path, "Placing", float | None], ReplayTrack]
 
 TRACKS_FOLDER: Final = "tracks"
@@ -52,14 +53,22 @@ class Placing:
     called
         Name of the uploaded file.
     fall_line_azimuth_deg
-        Compass direction of the fall line; None for a track in the axes of the slope.
+        Compass direction of the fall line; None for a track in the axes of the slope, or if it is unknown.
     starts_at_s
         Time of the run at the first point of the track (s).
+    is_geodetic
+        True for a track in latitude and longitude.
     """
 
     called: str
     fall_line_azimuth_deg: float | None = None
     starts_at_s: float = 0.0
+    is_geodetic: bool = False
+
+    @property
+    def is_on_slope(self) -> bool:
+        """True if the track can be drawn next to a run."""
+        return not self.is_geodetic or self.fall_line_azimuth_deg is not None
 
 
 class TrackFolders:
@@ -73,8 +82,8 @@ class TrackFolders:
         paths = sorted(self._folder.glob(f"*/{ABOUT}"), key=lambda place: -place.stat().st_mtime)
         return [place.parent.name for place in paths if not place.parent.name.startswith(".")]
 
-    def keep(self, content: IO[bytes], placing: Placing, *, count: Count | None = None) -> tuple[str, int]:
-        """Store a track that can be read and placed; returns its name and number of points.
+    def keep(self, content: IO[bytes], placing: Placing, *, check: Check | None = None) -> str:
+        """Store a track that can be read; returns its name.
 
         Parameters
         ----------
@@ -82,8 +91,8 @@ class TrackFolders:
             Contents of the file.
         placing
             Position relative to a run.
-        count
-            Function that checks the file and counts the points (default: `points_of_track` in this process).
+        check
+            Function that checks the file (default: `check_track` in this process).
 
         Raises
         ------
@@ -111,13 +120,21 @@ class TrackFolders:
             suffix = PurePosixPath(placing.called.lower()).suffix
             place = made / (_FILE + (suffix if suffix in SUFFIXES else ""))
             _copy_limited(content, place)
-            n_points = (count or points_of_track)(place, placing)
+            placing = (check or check_track)(place, placing)
             write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
             name = f"{plain_stem(placing.called, 'track')}-{secrets.token_hex(2)}"
             made.rename(self._folder / name)
         finally:
             shutil.rmtree(made, ignore_errors=True)
-        return name, n_points
+        return name
+
+    def placings(self) -> dict[str, Placing]:
+        """Placing of each undamaged track by its name, the newest first."""
+        placings = {}
+        for name in self.names():
+            with contextlib.suppress(GivenError):
+                placings[name] = read_record(self._folder / name / ABOUT, Placing)
+        return placings
 
     def file(self, name: str) -> tuple[Path, Placing]:
         """File of a track, and its position.
@@ -164,12 +181,14 @@ class TrackFolders:
         return (read or track_on_slope)(place, placing, angle)
 
 
-def points_of_track(place: Path, placing: Placing) -> int:
-    """Number of points of a track that can be drawn with a run; errors as in `TrackFolders.keep`."""
-    track = _to_slope_axes(_read_named(place, placing), placing, slope_angle=0.0)
+def check_track(place: Path, placing: Placing) -> Placing:
+    """Placing of a track, with its axes, that can be drawn; errors as in `TrackFolders.keep`."""
+    track = _read_named(place, placing)
     _require_few_points(track)
-    measured_track(track)  # rejects a track with too few places
-    return len(track.time)
+    placing = replace(placing, is_geodetic=track.axes == "east_north_up")
+    drawable = placing if placing.is_on_slope else replace(placing, fall_line_azimuth_deg=0.0)
+    measured_track(_to_slope_axes(track, drawable, slope_angle=0.0))  # rejects a track with too few places
+    return placing
 
 
 def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> ReplayTrack:
@@ -240,7 +259,7 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
     if azimuth is None:
         if track.axes == "east_north_up":
             raise ParameterError(
-                "{track} is in latitude and longitude: state the compass direction in which the slope falls",
+                "{track} is in latitude and longitude: add it again with the direction of the fall line",
                 code="no_direction",
                 track=placing.called,
             )

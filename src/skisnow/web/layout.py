@@ -130,7 +130,7 @@ LOG_BYTES: Final = 2_000_000
 
 _PLAIN: Final = """<!doctype html><html lang="{language}"><meta charset="utf-8"><title>{title} · skisnow</title>
 <meta name="viewport" content="width=device-width, initial-scale=1"><link rel="stylesheet" href="/lab.css">
-<body><main class="lab"><h1>{title}</h1><p>{said}</p><p><a href="/">{back}</a></p></main></body></html>"""
+<body><main class="lab"><h1>{title}</h1><p>{said}</p><p><a href="{address}">{back}</a></p></main></body></html>"""
 
 
 def log_to(path: Path) -> None:
@@ -187,12 +187,16 @@ def _error_page(error: Exception) -> None:
         sentence(error_sentence(error), "bad")
 
 
-def plain_page(title: str, sentence: str, status: int, request: Request) -> Response:
-    """Page without scripts in the language of the request: title, sentence, and a link to the campaigns."""
+def plain_page(title: str, sentence: str, status: int, request: Request, form: str = "") -> Response:
+    """Page without scripts in the language of the request: title, sentence, and a link to the form or the campaigns."""
     language = language_of_request(request)
-    shown = {"title": title, "said": sentence, "back": Message("To the campaigns")}
+    shown = {
+        "title": title,
+        "said": sentence,
+        "back": Message("Back to the form") if form else Message("To the campaigns"),
+    }
     words = {name: escape(translated(text, language)) for name, text in shown.items()}
-    return HTMLResponse(_PLAIN.format(language=language, **words), status)
+    return HTMLResponse(_PLAIN.format(language=language, address=form or "/", **words), status)
 
 
 async def _not_found_answer(request: Request, _: Exception) -> Response:

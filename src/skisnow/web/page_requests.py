@@ -228,7 +228,7 @@ def add_upload(
     Parameters
     ----------
     app, address
-        The application, and the address.
+        The application, and the address: that of the page with the form, and a further part.
     store
         Function that stores the upload and returns the address of the next page. Its errors are shown on a page.
     max_files, max_fields
@@ -236,17 +236,17 @@ def add_upload(
     too_many
         Sentence for a form with more.
     """
+    page = address.rpartition("/")[0] or "/"
 
     async def receive(request: Request) -> Response:
         try:
             async with request.form(max_files=max_files, max_fields=max_fields) as form:
                 place = await run_in_threadpool(store, form)
         except (SkisnowError, OSError) as error:
-            return plain_page(
-                NOT_STORED, Message("Nothing was stored: {error}", error=error_sentence(error)), 400, request
-            )
+            wrong = Message("Nothing was stored: {error}", error=error_sentence(error))
+            return plain_page(NOT_STORED, wrong, 400, request, page)
         except HTTPException:
-            return plain_page(NOT_STORED, too_many, 400, request)
+            return plain_page(NOT_STORED, too_many, 400, request, page)
         return RedirectResponse(place, 303)
 
     app.add_api_route(address, receive, methods=["POST"], include_in_schema=False, response_model=None)

@@ -23,7 +23,7 @@ from ..report.track.comparison_page import page_of_folders
 from ..report.track.page import file_of_track, page_of_track
 from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import read_ski
-from .lab_tracks import Placing, TrackFolders, number_of, points_of_track, track_on_slope
+from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
 from .layout import plain_page
 from .page_requests import add_upload, uploaded_files
 from .runs import JOB, Job
@@ -265,7 +265,7 @@ def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
         azimuth = number_of(str(form.get("azimuth", "")), Message("the direction of the fall line"))
         start = number_of(str(form.get("start", "")), Message("the time at the first point"))
         placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)
-        name, _ = tracks.keep(upload.file, placing, count=lambda *what: confined(BOUNDS, points_of_track, *what))
+        name = tracks.keep(upload.file, placing, check=lambda *what: confined(BOUNDS, check_track, *what))
         return f"{LIST}?track={quote(name, safe='')}"
 
     add_upload(app, TRACK_UPLOAD, store, max_fields=4)

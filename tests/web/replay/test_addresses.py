@@ -105,7 +105,7 @@ def test_a_kept_track_is_read_in_a_process_of_its_own(
     app, folder, tracks = FastAPI(), RunFolders(tmp_path), TrackFolders(tmp_path)
     add_addresses(app, folder)
     (tmp_path / "older").symlink_to(runs / "older")
-    name, _ = tracks.keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,2\n1,3,4\n"), Placing("x.csv"))
+    name = tracks.keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,2\n1,3,4\n"), Placing("x.csv"))
     monkeypatch.setattr("skisnow.web.lab_tracks.read_track", lambda _: pytest.fail("it is read here"))
     beside = folder.replay("older", name).track
     assert beside is not None and beside.place[:, :2].tolist() == [[1.0, 2.0], [3.0, 4.0]]
@@ -153,8 +153,8 @@ def csv(points: list[tuple[float, float, float, float]]) -> bytes:
 def test_towards_the_fall_line_is_down_and_left_of_it_is_left(tmp_path: Path) -> None:
     """The slope falls to the east: north is left of who looks down it."""
     tracks, replay = TrackFolders(tmp_path), replay_of_run(circle_run(count=21))
-    name, count = tracks.keep(io.BytesIO(gpx([(0, 0), (10, 0), (10, 5)])), Placing("Run 1.gpx", 90.0, 0.5))
-    assert count == 3 and name.startswith("Run-1-") and tracks.names() == [name]
+    name = tracks.keep(io.BytesIO(gpx([(0, 0), (10, 0), (10, 5)])), Placing("Run 1.gpx", 90.0, 0.5))
+    assert name.startswith("Run-1-") and tracks.names() == [name]
     beside = tracks.beside(name, replay)
     # without heights the points lie on the plane of 10°: 10 m from above are 10 m / cos 10° along it; sideways to
     # 0.1 mm: a circle of latitude is not quite straight
@@ -203,7 +203,7 @@ def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
     heading = np.where(way < math.pi * 12.0, way / 12.0, 2.0 * math.pi - way / 12.0)
     x, y = np.cumsum(1.2 * np.cos(heading)), np.cumsum(1.2 * np.sin(heading))
     places = [(k * 0.2, a, b, 0.0) for k, (a, b) in enumerate(zip(x.tolist(), y.tolist(), strict=True))]
-    name, _ = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
+    name = TrackFolders(tmp_path).keep(io.BytesIO(csv(places)), Placing("x.csv"))
     # each process would import the package again; another test checks that they are separate
     monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
     app = FastAPI()
@@ -229,7 +229,7 @@ def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
 
 def test_a_kept_track_of_a_receiver_is_a_gpx_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     places = [(8.0 * k, 0.0) for k in range(30)]
-    name, _ = TrackFolders(tmp_path).keep(io.BytesIO(gpx(places)), Placing("x.gpx", 0.0))
+    name = TrackFolders(tmp_path).keep(io.BytesIO(gpx(places)), Placing("x.gpx"))
     monkeypatch.setattr("skisnow.web.replay_addresses.confined", lambda _, work, *arguments: work(*arguments))
     app = FastAPI()
     add_addresses(app, RunFolders(tmp_path))

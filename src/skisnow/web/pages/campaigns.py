@@ -53,7 +53,7 @@ def add_page(lab: Lab) -> None:
     def campaigns(added: str = "") -> None:
         with framed(Message("Campaigns"), here=PATH):
             if added:
-                sentence(Message("The campaign is imported, byte for byte."), "good").props("role=status")
+                sentence(Message("The campaign is imported."), "good").props("role=status")
                 if added in {campaign.id for campaign in lab.store.list()}:
                     with ui.element("div").classes("acts"):
                         link(Message("Analysis of this campaign"), analysis("kept", added), "main")
@@ -178,8 +178,8 @@ def _import_form(lab: Lab) -> None:
     heading(Message("Import"))
     sentence(
         Message(
-            "A campaign's folder, its files, a zip, or a workbook (.xlsx) or CSV file in any layout. It is stored byte "
-            "for byte; corrections are separate. At most {most} files.",
+            "A campaign's folder, its files, a zip, or a workbook (.xlsx) or CSV file in any layout. The files "
+            "are kept unchanged; corrections are separate. At most {most} files.",
             most=lab.limits.files,
         ),
         "quiet",

@@ -48,8 +48,8 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH)
     def replay(track: str = "") -> None:
         with framed(Message("Replay"), here=PATH):
-            names = runs.names()
-            if track in tracks.names():
+            names, placings = runs.names(), tracks.placings()
+            if track in placings:
                 kept = Message("The track {track} is kept. Its turns are below.", track=track)
                 sentence(kept, "good").props("role=status")
             sentence(
@@ -60,19 +60,20 @@ def add_page(lab: Lab) -> None:
             )
             if not names:
                 sentence(Message("Simulate one, then it can be watched here."))
+            on_slope = [name for name, placing in placings.items() if placing.is_on_slope]
             if names:
-                _side_by_side_form({name: runs.title(name) for name in names}, tracks.names(), track)
-            _track_form(is_open=not tracks.names())
-            if tracks.names():
+                _side_by_side_form({name: runs.title(name) for name in names}, on_slope, track)
+            _track_form(is_open=not placings)
+            if placings:
                 heading(Message("Measured tracks"), 2)
-            for name in tracks.names():
+            for name, placing in placings.items():
                 asked = f"?track={quote(name, safe='')}"
+                files = {TURNS_FILE: Message("Turns as CSV")}
+                if placing.is_geodetic:
+                    files[GPX_FILE] = Message("Track as GPX")
                 with ui.element("div").classes("acts"):
                     link(Message("Turns of {name}", name=name), f"{TURNS}{asked}")
-                    for file, words in (
-                        (TURNS_FILE, Message("Turns as CSV")),
-                        (GPX_FILE, Message("Track as GPX")),
-                    ):
+                    for file, words in files.items():
                         named(link(words, f"{TURNS}/{file}{asked}"), Message("{words}: {name}", words=words, name=name))
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))
@@ -126,17 +127,16 @@ def _track_form(*, is_open: bool) -> None:
         sentence(
             Message(
                 "CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {largest_track_bytes} MB and {most_points} "
-                "points. A track in latitude and longitude needs the compass direction in which the "
-                "slope falls; it begins where the run begins. One in the run's own axes (x down the fall "
-                "line, y left, z out of the snow, in m) needs none, and stands where it says. Nothing is "
-                "fitted.",
+                "points. To show a track in latitude and longitude next to a run, state the compass direction in "
+                "which the slope falls. The track then begins at the start of the run. A track in the axes of a run "
+                "(x down the fall line, y left, z out of the snow, in m) keeps its place. Nothing is fitted.",
                 largest_track_bytes=LARGEST_TRACK_BYTES // 1_000_000,
                 most_points=MOST_POINTS,
             ),
             "quiet",
         )
         with upload_form(TRACK_UPLOAD).classes("acts"):
-            azimuth = Message("Direction of the fall line (°), clockwise from north")
+            azimuth = Message("Direction of the fall line (°), clockwise from north, optional")
             file_input("file", Message("Track"), "track-file")
             text_input("azimuth", azimuth, "track-azimuth", "inputmode=decimal")
             text_input(

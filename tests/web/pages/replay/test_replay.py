@@ -18,7 +18,7 @@ from skisnow.ski import read_ski
 from skisnow.track.read import read_track
 from skisnow.web import lab_tracks
 from skisnow.web.lab_skis import LabSkis
-from skisnow.web.lab_tracks import Placing, TrackFolders, points_of_track, track_on_slope
+from skisnow.web.lab_tracks import Placing, TrackFolders, check_track, track_on_slope
 from skisnow.web.replay_addresses import RunFolders, show_address, show_page
 from tests.coded import raises
 
@@ -94,6 +94,25 @@ def test_a_track_that_was_imported_is_chosen_for_a_run_alone(desk: Desk, run_fil
     assert "[good]" not in "".join(desk.open("/replay?track=nothing").outline())
 
 
+def test_a_track_of_a_receiver_without_a_direction_has_turns_but_is_not_put_next_to_a_run(
+    desk: Desk, run_files: dict[str, bytes]
+) -> None:
+    keep(desk.lab.runs, "older", run_files)
+    own = keep_track(desk.lab.runs)
+    without, placed = (
+        TrackFolders(desk.lab.runs).keep(io.BytesIO(gpx([(0, 0), (9, 0)])), Placing("x.gpx", azimuth))
+        for azimuth in (None, 90.0)
+    )
+    page = desk.open(f"/replay?track={without}")
+    assert {name for name, _, _ in options(page, "track")} == {"", own, placed}
+    files = [str(each.props["href"]) for each in page.of() if "/replay/turns" in str(each.props.get("href"))]
+    assert [name for name in (own, without, placed) if any("track.gpx" in f and name in f for f in files)] == [
+        without,
+        placed,
+    ]
+    assert sum(without in each for each in files) == 3
+
+
 @pytest.mark.parametrize(
     ("summary", "words"),
     [
@@ -142,7 +161,9 @@ def test_a_track_is_imported_with_what_was_typed(desk: Desk, here: list[Any]) ->
     ],
 )
 def test_an_invalid_track_is_rejected(desk: Desk, form: dict[str, Any], code: str) -> None:
-    assert desk.post("/replay/track", **form).status_code == 400
+    answer = desk.post("/replay/track", **form)
+    assert answer.status_code == 400
+    assert 'href="/replay"' in answer.text  # back to the form
     assert desk.code == code
     assert TrackFolders(desk.lab.runs).names() == []
 
@@ -164,12 +185,12 @@ def test_tracks_are_listed_the_newest_first_without_what_is_half_there(tmp_path:
 def test_a_track_keeps_an_ending_that_says_how_it_is_read(tmp_path: Path) -> None:
     files = []
     for called in ("a.CSV", "b.odd", "c"):
-        name, _ = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing(called))
+        name = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing(called))
         files += [each.name for each in (tmp_path / "tracks" / name).iterdir() if each.name != "about.json"]
     assert files == ["track.csv", "track", "track"]
-    name, _ = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing("Hütte.csv"))
+    name = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing("Hütte.csv"))
     about = json.loads((tmp_path / "tracks" / name / "about.json").read_text(encoding="utf-8"))
-    assert list(about.values()) == ["Hütte.csv", None, 0.0]
+    assert list(about.values()) == ["Hütte.csv", None, 0.0, False]
 
 
 def test_tracks_of_a_folder_that_cannot_be_written_are_rejected(tmp_path: Path) -> None:
@@ -183,7 +204,7 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
     monkeypatch.setattr(lab_tracks, "MOST_POINTS", 3)
     folders = TrackFolders(tmp_path)
     content = b"time_s,x_m,y_m,z_m\n" + rows
-    assert folders.keep(io.BytesIO(content), Placing("x.csv"))[1] == 3
+    folders.keep(io.BytesIO(content), Placing("x.csv"))
     with raises(ParameterError, "too_many_points", points=4, most=3):
         folders.keep(io.BytesIO(content + b"3,3,0,0\n"), Placing("x.csv"))
     (tmp_path / "long.csv").write_bytes(content + b"3,3,0,0\n")
@@ -191,10 +212,10 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
         track_on_slope(tmp_path / "long.csv", Placing("x.csv"), 0.0)
     monkeypatch.setattr(lab_tracks, "LARGEST_TRACK_BYTES", 2_000_000)
     monkeypatch.setattr(lab_tracks, "_CHUNK", 1_500_000)
-    counted = folders.keep(io.BytesIO(bytes(2_000_000)), Placing("x.csv"), count=lambda place, _: place.stat().st_size)
-    assert counted[1] == 2_000_000
+    kept = folders.keep(io.BytesIO(bytes(2_000_000)), Placing("x.csv"), check=lambda _, placing: placing)
+    assert folders.file(kept)[0].stat().st_size == 2_000_000
     with raises(ParameterError, "too_large", most=2):
-        folders.keep(io.BytesIO(bytes(2_000_001)), Placing("x.csv"), count=lambda *_: 1)
+        folders.keep(io.BytesIO(bytes(2_000_001)), Placing("x.csv"), check=lambda _, placing: placing)
 
 
 @pytest.mark.parametrize(
@@ -211,7 +232,7 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
 )
 def test_what_places_a_track_is_within_limits(tmp_path: Path, placing: Placing, is_allowed: bool) -> None:
     def kept() -> None:
-        TrackFolders(tmp_path).keep(io.BytesIO(b""), placing, count=lambda *_: 0)
+        TrackFolders(tmp_path).keep(io.BytesIO(b""), placing, check=lambda _, placing: placing)
 
     if is_allowed:
         kept()
@@ -229,17 +250,17 @@ def test_a_track_is_placed_by_what_it_is_in(tmp_path: Path) -> None:
     assert (own.name, list(own.time if own.time is not None else ())) == ("own.csv", [3.0, 4.0])
     earth = track_on_slope(tmp_path / "earth.gpx", Placing("x.gpx", 90.0), math.radians(60.0))
     assert earth.place[:, :2] == pytest.approx(np.array([[0, 0], [20, 0], [20, 5]]), rel=5e-3, abs=1e-3)
-    assert points_of_track(tmp_path / "earth.gpx", Placing("x.gpx", 90.0)) == 3
+    assert check_track(tmp_path / "earth.gpx", Placing("x.gpx")).is_geodetic
     with raises(ParameterError, "no_direction"):
-        points_of_track(tmp_path / "earth.gpx", Placing("mine.gpx"))
+        track_on_slope(tmp_path / "earth.gpx", Placing("mine.gpx"), 0.0)
     slope = replace(read_track(tmp_path / "own.csv"), axes="slope")
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(lab_tracks, "read_track", lambda _: slope)
         with raises(ParameterError, "needless_direction"):
-            points_of_track(tmp_path / "own.csv", Placing("mine.csv", 90.0))
+            check_track(tmp_path / "own.csv", Placing("mine.csv", 90.0))
     (tmp_path / "track.csv").write_bytes(b"nonsense")
     with pytest.raises(ParameterError) as found:
-        points_of_track(tmp_path / "track.csv", Placing("mine.csv"))
+        check_track(tmp_path / "track.csv", Placing("mine.csv"))
     assert str(tmp_path) not in str(found.value) and "track.csv" not in str(found.value)
     assert "mine.csv" in str(found.value)
 
@@ -338,4 +359,4 @@ def keep(runs: Path, name: str, files: dict[str, bytes], *, when: int = 1_000_00
 
 
 def keep_track(runs: Path, called: str = "measured.csv", **placed: Any) -> str:
-    return TrackFolders(runs).keep(io.BytesIO(TRACK), Placing(called, **placed))[0]
+    return TrackFolders(runs).keep(io.BytesIO(TRACK), Placing(called, **placed))
