@@ -49,6 +49,7 @@ LABELS: Final = {
     "snow_density_kg_per_m3": Message("Density (kg/m³)"),
     "drop_cone_depth_mm": Message("Drop-cone depth (mm)"),
     "remark": Message("Remark"),
+    "time": Message("Time"),
 }
 TABLES: Final = {
     "penetration.csv": Message("Penetration"),

@@ -1,4 +1,4 @@
-"""Page that imports a workbook or CSV file in any layout: choices on the left, stored rows and H_V on the right."""
+"""Page that imports a workbook or CSV file in any layout: choices of each table, its stored rows, and H_V."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..._support.messages import Message, template
 from ...campaign.importing import Answers
 from ...campaign.importing.columns import FROM_NOTES, number_columns
 from ...campaign.reading.headings import units_for
-from ..elements import Outcome, Words, add_head, add_items, button, choice, field, named
+from ..elements import Outcome, Words, add_head, add_items, button, choice, field
 from ..layout import error_sentence, framed, heading, sentence
 from ..settings import BUILD_S
 from ..subprocesses import BOUNDS, confined
@@ -77,12 +77,10 @@ class _Import:
         with ui.element("div").classes("acts"):
             self._store = button(Message("Store the campaign"), self._keep, "main", once=True)
             self._status = Outcome()
+        self._tables = ui.element("div").classes("importing")
         with ui.element("div").classes("acts"):
             self._name = field(Message("Name of the template"), "")
             button(Message("Save the answers as a template"), self._save_template, "small")
-        with ui.element("div").classes("two"):
-            self._choices = named(ui.element("section"), Message("Proposal"))
-            self._preview = named(ui.element("section").classes("stored-rows"), Message("Preview"))
 
     async def draw(self) -> None:
         """Propose again with the current answers, and show it."""
@@ -99,8 +97,8 @@ class _Import:
 
     def _show(self, tried: TriedImport) -> None:
         proposal = tried.proposal
-        self._choices.clear()
-        with self._choices:
+        self._tables.clear()
+        with self._tables:
             if proposal.questions:
                 heading(Message("Questions"))
                 for question in proposal.questions:
@@ -108,9 +106,6 @@ class _Import:
             _list_problems(proposal)
             for table in proposal.tables:
                 self._table(table, proposal.tables)
-        self._preview.clear()
-        with self._preview:
-            for table in proposal.tables:
                 _show_rows(table)
         self._store.set_enabled(not proposal.problems)
         if proposal.problems:
@@ -154,7 +149,7 @@ class _Import:
                 made = choice(_with_unit(column), {key: str(text) for key, text in own.items()}, column.column or NONE)
                 key = f"{kind}.{column.heading}"
                 made.on_value_change(lambda event, key=key: self._answer("column", key, event.value))
-        self._site(table, tables)
+            self._site(table, tables)
 
     def _site(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
         """Site of a sheet whose tables have no column for it."""
