@@ -1,16 +1,78 @@
-"""What only a browser does."""
+"""What only a browser does: a camera's picture is made small, a position needs consent, a wide preview is not cut."""
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+import pytest
+from PIL import Image
+
 from skisnow import samples
+from skisnow.campaign.store import Journals, Store, attachments_of, replay_journal
+from skisnow.campaign.store.attachments import photo_of
 
 from .conftest import Served, ready
+from .test_day import create, enter_series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
+    from skisnow.campaign.store import ReplayedTest
+
+TABLE = "penetration.csv"
+
+
+def attached(served: Served) -> list[ReplayedTest]:
+    """Photos and positions of the only campaign's first test."""
+    with Store.open(served.store) as store:
+        journals = Journals(store)
+        (head,) = journals.list()
+        return list(attachments_of(replay_journal(journals.entries(head.id)), TABLE, "1"))
+
+
+def camera_picture() -> bytes:
+    """A JPEG of 4000 × 3000 px with grain and a position, as a telephone's camera writes it."""
+    grain = np.random.default_rng(1).integers(0, 255, (300, 400, 3), dtype=np.uint8)
+    picture, exif = Image.fromarray(grain).resize((4000, 3000)), Image.Exif()
+    exif[0x010E] = "taken at 47.25 N 11.5 E"
+    content = io.BytesIO()
+    picture.save(content, "JPEG", quality=92, exif=exif)
+    return content.getvalue()
+
+
+def test_a_photo_is_made_small_and_loses_what_the_camera_added(page: Page, served: Served) -> None:
+    create(page, served)
+    enter_series(page, "1")
+    ready(page)
+    page.get_by_text("Photo and position").click()
+    page.locator(".attachments input[type=file]").set_input_files(
+        {"name": "slope.jpg", "mimeType": "image/jpeg", "buffer": camera_picture()}
+    )
+    page.get_by_text("Photo, ").wait_for()
+    (photo,) = map(photo_of, attached(served))
+    assert photo is not None
+    with Image.open(io.BytesIO(photo)) as stored:
+        assert (stored.size, stored.format) == ((1600, 1200), "JPEG")
+        assert not dict(stored.getexif())
+
+
+@pytest.mark.parametrize("is_allowed", [True, False])
+def test_a_position_is_stored_after_consent_only(page: Page, served: Served, is_allowed: bool) -> None:
+    page.context.set_geolocation({"latitude": 47.25, "longitude": 11.5, "accuracy": 6.0})
+    if is_allowed:
+        page.context.grant_permissions(["geolocation"])
+    create(page, served)
+    enter_series(page, "1")
+    ready(page)
+    page.get_by_text("Photo and position").click()
+    assert attached(served) == []
+    page.get_by_role("button", name="Store my position with this test").click()
+    page.get_by_text("47.25000°" if is_allowed else "did not allow it").wait_for()
+    cells = [each.rows[0].cells for each in attached(served)]
+    assert [(each["latitude_deg"], each["longitude_deg"]) for each in cells] == [("47.25", "11.5")] * is_allowed
 
 
 def test_the_preview_of_a_workbook_is_as_wide_as_the_page(page: Page, served: Served) -> None:
