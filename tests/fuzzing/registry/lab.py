@@ -132,7 +132,7 @@ def _read_jobs(folder: Path) -> object:
 def _placed(folder: Path) -> object:
     runs = RunFolders(folder)
     tracks = TrackFolders(folder)
-    return [tracks.beside(name, runs.replay("run-1")) for name in tracks.names()]
+    return [tracks.beside(name, runs.replay("run-1")) for name in tracks.names()], tracks.placings()
 
 
 def _track_files() -> Files:
@@ -185,6 +185,6 @@ READERS = (
     ),
     Reader(
         name="placing of a track", target="tracks/t-1/about.json", files=_track_files, read=_placed, mutations=JSON,
-        covers=("web.lab_tracks:TrackFolders.file",),
+        covers=("web.lab_tracks:TrackFolders.file", "web.lab_tracks:TrackFolders.placings"),
     ),
 )  # fmt: skip
