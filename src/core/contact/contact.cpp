@@ -136,7 +136,7 @@ void SnowContact::set_penetration(PenetrationLaw law) {
 
 const Wrench& SnowContact::evaluate(int k, const GrooveLines& lines, const Pose& pose, const Motion& motion, bool grows,
                                     Sections& s) {
-  kernels_->find_sections(runner(k), pose, lines, lines.first, s.base);
+  kernels_->find_sections(runner(k), pose, lines, nullptr, s.base);
   kernels_->press(*snow_, lines, s.base, grows, s.pressure, s.edge);
   if (bearing_) bearing_->press(lines, s);
   if (!rated_.empty()) rated_[std::size_t(k)].press(*snow_, lines, pose, motion, dt_, s);
@@ -282,7 +282,7 @@ void SnowContact::update(const Situation& to) {
     if (strength_varies())
       evaluate(k, lines, pose, to.motions[std::size_t(k)], false, sections_[std::size_t(k)]);
     else
-      kernels_->find_sections(runner(k), pose, lines, lines.first, sections_[std::size_t(k)].base);
+      kernels_->find_sections(runner(k), pose, lines, nullptr, sections_[std::size_t(k)].base);
     settle_history(k, pose);
   }
   stand(to.poses);

@@ -66,9 +66,15 @@ Sections::Sections(int capacity) {
   sliding.resize(capacity), forces.resize(capacity);
 }
 
-void Base::cover(const GrooveLines& lines, std::int64_t first) {
-  first_block = first >= 0 ? first / BLOCK : -((-first + BLOCK - 1) / BLOCK);
+void Base::cover(const GrooveLines& lines, const double* of) {
+  first_block = lines.first >= 0 ? lines.first / BLOCK : -((-lines.first + BLOCK - 1) / BLOCK);
   blocks = int((lines.end - first_block * BLOCK + BLOCK - 1) / BLOCK);
+  wanted.assign(std::size_t(blocks), of == nullptr ? SECTIONS : NOTHING);
+  for (int i = 0; of != nullptr && i < count(); i++) {
+    if (of[lines.slot(line(i))] == 0.0) continue;
+    for (int block = std::max(i / BLOCK - 1, 0); block < std::min(i / BLOCK + 2, blocks); block++)
+      wanted[std::size_t(block)] = std::max(wanted[std::size_t(block)], block == i / BLOCK ? SECTIONS : STATIONS);
+  }
 }
 
 }  // namespace skisnow

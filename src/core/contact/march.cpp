@@ -203,14 +203,14 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
     interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, lines, lines.first, sections_[std::size_t(k)].base);
+    kernels_->find_sections(runner(k), on_way_, lines, nullptr, sections_[std::size_t(k)].base);
     remember(k, lines, false);
   }
 }
 
 // The lines whose ground depends on the way between two poses and not on its ends alone: ahead, where the snow was not
 // touched yet, and where the base passes its deepest place; what lies behind that was passed before. Where an edge
-// slips, only its anchor depends on the way.
+// slips, only its anchor depends on the way, unless all of the edge that comes to the line slips to the same side.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
   const auto depth = [&](std::int64_t n) {
@@ -220,15 +220,24 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
     return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5 && depth(n) > 0.0;
   };
   const double most = snow_->shear_displacement - THIN;  // a slip leaves the anchor as far off, but for rounding
-  const auto slips = [&](int slot, int k) {
-    const auto of = [&](LineField left) { return v[of_edge(left, k)][slot]; };
-    return of(LEFT_MARK_DEPTH) > 0.0 && std::fabs(of(LEFT_ANCHOR) - of(LEFT_MARK)) > most;
-  };
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
+  // 1 where an edge slips to the left, -1 to the right, 0 where it holds
+  const auto slip = [&](std::int64_t n, int k) {
+    const auto of = [&](LineField left) { return v[of_edge(left, k)][lines.slot(n)]; };
+    const double way = of(LEFT_MARK) - of(LEFT_ANCHOR);
+    const bool slips = marked(n) && of(LEFT_MARK_DEPTH) > 0.0 && std::fabs(way) > most;
+    return !slips ? 0 : way > 0.0 ? 1 : -1;
+  };
+  const auto drags = [&](std::int64_t n, int k) {
+    const int side = slip(n, k);
+    bool alike = true;
+    for (std::int64_t m = n - over - 1; m < n && side != 0; m++) alike = alike && slip(m, k) == side;
+    return !alike;
+  };
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
   needed_.clear();
   for (Column* each : {&slips_, &is_needed_}) std::fill(each->begin(), each->end(), 0.0);
-  rearmost_slip_.reset();
+  drags_ = false;
   bool ahead = true;
   std::int64_t deepest = lines.end + over + 1;
   for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
@@ -240,8 +249,8 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
     if (ahead || (n >= deepest - 1 && n <= deepest + over)) {
       if (lines.station(n, to) > reach) continue;
       needed_.push_back(n), is_needed_[std::size_t(slot)] = 1.0;
-    } else if (v[MARKED][slot] > 0.5 && (slips(slot, 0) || slips(slot, 1))) {
-      slips_[std::size_t(slot)] = 1.0, rearmost_slip_ = n;
+    } else if (drags(n, 0) || drags(n, 1)) {
+      slips_[std::size_t(slot)] = 1.0, drags_ = true;
     }
   }
 }
@@ -257,19 +266,19 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (std::size_t a = 0; a < 3; a++)
     square += (end.position[a] - from.position[a]) * (end.position[a] - from.position[a]);
   find_needed(lines, std::sqrt(square), runner(k), end);
-  if (needed_.empty() && !rearmost_slip_) return;
+  if (needed_.empty() && !drags_) return;
   Before& before = before_[std::size_t(k)];
   for (const std::int64_t n : needed_) before.lines.push_back(lines.line(lines.slot(n)));
-  if (rearmost_slip_) before.keep_anchors(lines);
-  std::int64_t first = rearmost_slip_.value_or(needed_.empty() ? lines.first : needed_.back());
-  if (!needed_.empty()) first = std::min(first, needed_.back());
+  if (drags_) before.keep_anchors(lines);
+  Column& is_followed = scratch_;
+  for (std::size_t i = 0; i < is_followed.size(); i++) is_followed[i] = is_needed_[i] + slips_[i];
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, lines, first, s.base);
+    kernels_->find_sections(runner(k), on_way_, lines, is_followed.data(), s.base);
     for (const std::int64_t n : needed_) press_base(s.base, n, lines);
     kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
-    if (rearmost_slip_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
+    if (drags_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
 }
 

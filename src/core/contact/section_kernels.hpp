@@ -149,6 +149,7 @@ void cross_lines(const Runner& runner, const Pose& pose, const GrooveLines& line
             load<V>(lines.values[LineField(first + 2)] + j)};
   };
   for_lanes<V>(s, lines, [&](int i, int j) {
+    if (!s.wants(Base::STATIONS, i)) return;
     const Vector<V> origin = line3(ORIGIN_X, j), from = turned({origin.x - c[0], origin.y - c[1], origin.z - c[2]});
     const Vector<V> ahead = turned(line3(AHEAD_X, j)), normal = turned(line3(NORMAL_X, j));
     store3(s, FROM_BOOT_0, i, from);
@@ -396,6 +397,7 @@ void cross_bent_edge(const Runner& runner, const Pose& pose, const GrooveLines& 
   double most = 0.0;  // deflection
   for (std::size_t i = 0; i < pose.beam.size(); i += 3) most = std::max(most, std::fabs(pose.beam[i]));
   for_lanes<V>(s, lines, [&](int i, int) {
+    if (!s.wants(Base::STATIONS, i)) return;
     const V up = load<V>(s[LINE_AHEAD_2] + i), forwards = load<V>(s[LINE_AHEAD_0] + i);
     if (!any(most * absolute(up) > MISSED * absolute(forwards))) return;  // most lines: no division
     const V missed = most * absolute(V(up / forwards));
@@ -419,6 +421,7 @@ void cross_bent_edge(const Runner& runner, const Pose& pose, const GrooveLines& 
 template <class V>
 void cut_base(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
   for_lanes<V>(s, lines, [&](int i, int) {
+    if (!s.wants(Base::SECTIONS, i)) return;
     if (!any(load<V>(s[SHARE] + i) > 0.0)) {
       store(s[DEEPEST] + i, V{});
       return;
@@ -437,8 +440,8 @@ void cut_base(const Runner& runner, const Pose& pose, const GrooveLines& lines, 
 }
 
 template <class V>
-void find_sections(const Runner& runner, const Pose& pose, const GrooveLines& lines, std::int64_t first, Base& s) {
-  s.cover(lines, first);
+void find_sections(const Runner& runner, const Pose& pose, const GrooveLines& lines, const double* of, Base& s) {
+  s.cover(lines, of);
   s.edge_shape = runner.edge_shape;
   cross_lines<V>(runner, pose, lines, s);
   cross_bent_edge<V>(runner, pose, lines, s);

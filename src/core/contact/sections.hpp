@@ -87,6 +87,8 @@ struct Base : Columns<BaseField, BASE_FIELDS> {
   std::int64_t first_block = 0;  // first block of lines
   EdgeShape edge_shape;          // shape of the runner's edges
   int blocks = 0;
+  enum Wanted : unsigned char { NOTHING, STATIONS, SECTIONS };
+  std::vector<Wanted> wanted;  // of each block; that of a neighbour needs stations
 
   int count() const { return blocks * BLOCK; }
   std::int64_t line(int i) const { return first_block * BLOCK + i; }
@@ -96,7 +98,8 @@ struct Base : Columns<BaseField, BASE_FIELDS> {
   double face_angle(int i) const {
     return std::max(std::asin(std::min(std::fabs((*this)[EDGE_SINE][i]), 1.0)) - edge_shape.bevel(), 0.0);
   }
-  void cover(const GrooveLines& lines, std::int64_t first);  // the lines from the first one
+  bool wants(Wanted what, int i) const { return wanted[std::size_t(i / BLOCK)] >= what; }
+  void cover(const GrooveLines& lines, const double* of);
 };
 // A field of the left edge (0) or of the right one (1).
 constexpr BaseField of_edge(BaseField left, int edge) { return BaseField(left + edge); }
@@ -169,7 +172,8 @@ struct ContactPower {
 struct Kernels {
   const char* name;  // instruction set
   int lanes;
-  void (*find_sections)(const Runner&, const Pose&, const GrooveLines&, std::int64_t first, Base&);
+  // in the blocks with a line that `of` (by slot) has 1 for, or null for all of them
+  void (*find_sections)(const Runner&, const Pose&, const GrooveLines&, const double* of, Base&);
   // with `grows` the pressure's growth
   void (*press)(const Snow&, const GrooveLines&, const Base&, bool grows, Pressures&, EdgeHold&);
   void (*slide)(const Motion&, const Pose&, double dt, const Snow&, const GrooveLines&, const Base&, const Pressures&,

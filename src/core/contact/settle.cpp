@@ -114,7 +114,7 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
   lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
   state_.strips[std::size_t(k)] = snow_->archive.new_strip();
   prepare(k, lines, pose);
-  kernels_->find_sections(runner(k), pose, lines, lines.first, s.base);
+  kernels_->find_sections(runner(k), pose, lines, nullptr, s.base);
   remember(k, lines, false);
   for (std::int64_t n = lines.first; n < lines.end; n++) {
     const int i = s.index(n), slot = lines.slot(n);
