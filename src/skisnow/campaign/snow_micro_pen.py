@@ -150,10 +150,7 @@ class SnowMicroPenProfile:
 def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
     """Read a ``.PNT`` file.
 
-    Raises
-    ------
-    FieldDataError
-        The file cannot be read, is empty or cut off, or is not a recording of a SnowMicroPen.
+    Raises FieldDataError: the file cannot be read, is empty or cut off, or is not a recording of a SnowMicroPen.
     """
     path = Path(path)
     try:

@@ -166,10 +166,7 @@ class DensityLayers:
 def read_density_layers(path: Path) -> DensityLayers:
     """Read a CSV of pit densities.
 
-    Raises
-    ------
-    FieldDataError
-        The file has errors; the exception has all problems with their rows and columns.
+    Raises FieldDataError: the file has errors; the exception has all problems with their rows and columns.
     """
     path = Path(path)
     files = RawFiles(FilesOfFolder(path.parent))

@@ -289,10 +289,7 @@ class LyingCylinder(Tool):
 def in_form(tool: Tool, form: GeometryForm) -> Tool:
     """Return the tool in the chosen form: a ski piece becomes the paper's plain wedge, any other tool stays itself.
 
-    Raises
-    ------
-    ParameterError
-        The form is not a `GeometryForm`.
+    Raises ParameterError: the form is not a `GeometryForm`.
     """
     require_choice("geometry", form, get_args(GeometryForm))
     if form == "paper" and isinstance(tool, SkiPiece):

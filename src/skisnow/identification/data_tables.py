@@ -225,11 +225,8 @@ class PhotoCells(ShownFields):
 def read_photo_cells(path: str | Path) -> PhotoCells:
     """Read ``run, station_m, time_s[, time_sd_s]``, one row for each passage.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, a column is missing, a cell is not a number (row and column are named), distances or
-        times do not rise, or only some rows of a run state a standard deviation.
+    Raises ParameterError: the file cannot be read, a column is missing, a cell is not a number (row and column are
+        named), distances or times do not rise, or only some rows of a run state a standard deviation.
     """
     return parse_photo_cells(read_table(Path(path)))
 
@@ -341,10 +338,8 @@ def read_measured_grooves(path: str | Path) -> MeasuredGrooves:
 
     Columns and cells may be missing. A missing standard deviation is estimated from the scatter of at least 3 places.
 
-    Raises
-    ------
-    ParameterError
-        The file cannot be read, all three quantities are missing, or a number is missing or not above 0.
+    Raises ParameterError: the file cannot be read, all three quantities are missing, or a number is missing or not
+        above 0.
     """
     return parse_grooves(read_table(Path(path)))
 

@@ -236,10 +236,7 @@ def line_rows(line: RacingLine) -> list[list[str]]:
 def write_line(line: RacingLine, path: Path) -> None:
     """Write a line as CSV.
 
-    Raises
-    ------
-    OutputError
-        The place cannot be written.
+    Raises OutputError: the place cannot be written.
     """
     write_file(path, csv_text([COLUMNS, *line_rows(line)]))
 

@@ -74,10 +74,7 @@ class PointRacer:
     def of(cls, scenario: Scenario) -> PointRacer:
         """Point of a scenario: its mass with skis, friction, drag and start; its ski at the skier's largest edge angle.
 
-        Raises
-        ------
-        ParameterError
-            The slope is not a plane, or the scenario has no skier.
+        Raises ParameterError: the slope is not a plane, or the scenario has no skier.
         """
         if not isinstance(scenario.slope, Plane):
             raise ParameterError(

@@ -94,10 +94,7 @@ def replay_bytes(replay: Replay) -> bytes:
 def replay_of_bytes(content: bytes) -> Replay:
     """Replay from the bytes of `replay_bytes`.
 
-    Raises
-    ------
-    ParameterError
-        The bytes are not a replay, are incomplete, or have a later format.
+    Raises ParameterError: the bytes are not a replay, are incomplete, or have a later format.
     """
     if content[: len(MAGIC)] != MAGIC or len(content) < 8:
         raise ParameterError("these bytes are not a replay: they do not begin with SKRP", code="not_a_replay")

@@ -58,10 +58,7 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
 def write_replay_model(replay: Replay, path: str | Path, time: float, *, exaggeration: float = 1.0) -> None:
     """Write the model of a moment; see `replay_model`.
 
-    Raises
-    ------
-    OutputError
-        The file cannot be written.
+    Raises OutputError: the file cannot be written.
     """
     write_file(path, replay_model(replay, time, exaggeration=exaggeration))
 
@@ -106,10 +103,7 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
 def write_moving_replay_model(replay: Replay, path: str | Path, *, exaggeration: float = 1.0) -> None:
     """Write the model of a whole replay; see `moving_replay_model`.
 
-    Raises
-    ------
-    OutputError
-        The file cannot be written.
+    Raises OutputError: the file cannot be written.
     """
     write_file(path, moving_replay_model(replay, exaggeration=exaggeration))
 

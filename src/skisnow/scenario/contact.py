@@ -369,10 +369,7 @@ class Contact:
     def require_linear_friction(self) -> None:
         """Reject a law file where μ_0 and μ_1 are all that is used.
 
-        Raises
-        ------
-        ParameterError
-            The scenario has a law file.
+        Raises ParameterError: the scenario has a law file.
         """
         if self.friction_law is not None:
             raise ParameterError(

@@ -257,10 +257,7 @@ def scenario_place(name: str) -> Path:
 def scenario_text(name: str) -> str:
     """Text of a built-in scenario: every key with the origin of its value; defaults follow the keys of the file.
 
-    Raises
-    ------
-    ParameterError
-        The scenario does not exist; the message names the nearest.
+    Raises ParameterError: the scenario does not exist; the message names the nearest.
     """
     if name not in scenario_names():
         raise ParameterError(

@@ -133,10 +133,7 @@ class Ski(Shown):
     def at(self, station: npt.ArrayLike) -> SkiSections:
         """Give the cross sections at stations (m, any shape), interpolated linearly.
 
-        Raises
-        ------
-        ParameterError
-            A station is beyond tip or tail.
+        Raises ParameterError: a station is beyond tip or tail.
         """
         where = np.asarray(station, dtype=float)
         require_on_ski(self.name, self.station, where)
@@ -156,10 +153,7 @@ class Ski(Shown):
     def camber_rounded(self, length: float) -> Ski:
         """The ski with another rounding of its camber (m).
 
-        Raises
-        ------
-        ParameterError
-            The ski has no camber, or its heights were given themselves.
+        Raises ParameterError: the ski has no camber, or its heights were given themselves.
         """
         if self.base is None or self.base.camber == 0.0:
             problem = (

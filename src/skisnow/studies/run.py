@@ -35,10 +35,7 @@ class StudyState(Enum):
 def study_state(study: Study) -> StudyState:
     """State of the table of this study: complete, absent, or of another study.
 
-    Raises
-    ------
-    ParameterError
-        A file that is not a study's table has its name: it is not replaced.
+    Raises ParameterError: a file that is not a study's table has its name: it is not replaced.
     """
     if not study.out.exists():
         return StudyState.NEW

@@ -46,10 +46,7 @@ class Shard:
     def of(cls, text: str) -> Self:
         """Read ``"2/8"``, the second of eight.
 
-        Raises
-        ------
-        ParameterError
-            The text is not a shard.
+        Raises ParameterError: the text is not a shard.
         """
         match = _SHARD.fullmatch(text)
         shard = cls(int(match[1]), int(match[2])) if match else None

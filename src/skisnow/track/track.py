@@ -129,10 +129,7 @@ class Track(Shown):
 
         Velocities and standard deviations stay: the axes of two origins 1 km apart differ by 0.009°.
 
-        Raises
-        ------
-        ParameterError
-            The track is in local metres, and its position on the ellipsoid is unknown.
+        Raises ParameterError: the track is in local metres, and its position on the ellipsoid is unknown.
         """
         if self.axes != "east_north_up" or self.origin is None:
             raise ParameterError(

@@ -47,10 +47,7 @@ def export_corrected(store: Store, id_: str, folder: Path, *, progress: Progress
 
     Corrections are appended to corrections.csv; without corrections all files are unchanged.
 
-    Raises
-    ------
-    StoreError
-        As `Store.export`; or the corrections.csv of the campaign cannot be read.
+    Raises StoreError: as `Store.export`; or the corrections.csv of the campaign cannot be read.
     """
     entries = Journals(store).corrections(store.show(id_).id)
     written: list[int] = []
@@ -104,10 +101,7 @@ def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: by
 def corrected_files(files: Mapping[str, bytes], entries: Iterable[JournalEntry]) -> dict[str, bytes]:
     """Files of a campaign with the corrections.csv that `add_corrections` writes.
 
-    Raises
-    ------
-    StoreError
-        The corrections.csv of the campaign cannot be read.
+    Raises StoreError: the corrections.csv of the campaign cannot be read.
     """
     rows = list(_corrections(entries))
     if not rows:
@@ -152,10 +146,7 @@ FoundCampaign: TypeAlias = StoredCampaign | JournalHead
 def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in Store)
     """Find a campaign by the beginning of its id, among stored campaigns and lab entries.
 
-    Raises
-    ------
-    StoreError
-        No campaign or several have this beginning; the message lists candidates.
+    Raises StoreError: no campaign or several have this beginning; the message lists candidates.
     """
     beginning = required_digits(id)
     entry_index = {head.id: head for head in Journals(store).list()}
@@ -180,10 +171,7 @@ def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A00
 def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
     """Export a campaign from lab entries to a new folder, which `read_campaign` reads.
 
-    Raises
-    ------
-    StoreError
-        The campaign is unknown, an entry is damaged, or the folder exists and is not empty.
+    Raises StoreError: the campaign is unknown, an entry is damaged, or the folder exists and is not empty.
     """
     campaign = replay_journal(Journals(store).entries(id))
     with file_errors(folder, "could not be written"), new_folder(folder) as filling:

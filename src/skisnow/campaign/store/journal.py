@@ -106,20 +106,14 @@ class Journals:
         The order is that of their uids, which is the same in all stores; without synchronisation it is the order of
         writing.
 
-        Raises
-        ------
-        StoreError
-            The journal is unknown.
+        Raises StoreError: the journal is unknown.
         """
         return self._read(id, after, _require)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
 
-        Raises
-        ------
-        StoreError
-            The campaign is unknown.
+        Raises StoreError: the campaign is unknown.
         """
         return self._read(id, after, _require_stored)
 

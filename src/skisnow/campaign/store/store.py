@@ -159,10 +159,8 @@ class Store(Shown):
         Files are read twice, for the campaign's id and to store them. If a file changes in between, nothing is stored.
         Other writers wait only during the second reading.
 
-        Raises
-        ------
-        StoreError
-            The folder does not exist, is empty, contains a link or the like, or a file changed while it was read.
+        Raises StoreError: the folder does not exist, is empty, contains a link or the like, or a file changed while it
+            was read.
         """
         folder = Path(folder)
         with file_errors(folder, "could not be read"):
@@ -220,10 +218,7 @@ class Store(Shown):
 
         A later sync brings it back from a group's store that has it.
 
-        Raises
-        ------
-        StoreError
-            As in `show`; or the campaign has corrections.
+        Raises StoreError: as in `show`; or the campaign has corrections.
         """
         with database_errors(self.path, "could not be changed"), writing(self.engine) as connection:
             stored = one_campaign(connection, id)
@@ -238,10 +233,7 @@ class Store(Shown):
     def show(self, id: str) -> StoredCampaign:  # noqa: A002 (users know it by this name)
         """One campaign by its id or the beginning of it (at least 4 digits).
 
-        Raises
-        ------
-        StoreError
-            The id is unknown or ambiguous; the message lists candidates.
+        Raises StoreError: the id is unknown or ambiguous; the message lists candidates.
         """
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             return one_campaign(connection, id)
@@ -259,10 +251,8 @@ class Store(Shown):
         The folder gets its name after all files are on the disk and verified. ``complete`` is called with it before,
         and can add files.
 
-        Raises
-        ------
-        StoreError
-            As in `show`; the folder exists and is not empty; a file is damaged or its path is not safe here.
+        Raises StoreError: as in `show`; the folder exists and is not empty; a file is damaged or its path is not safe
+            here.
         """
         out, done = Path(out_folder), 0
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
@@ -284,10 +274,7 @@ class Store(Shown):
     ) -> tuple[StoredCampaign, dict[str, bytes]]:
         """Original bytes of some of a campaign's files, by path; missing ones are omitted.
 
-        Raises
-        ------
-        StoreError
-            As in `show`; a file is damaged.
+        Raises StoreError: as in `show`; a file is damaged.
         """
         with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)

@@ -43,10 +43,7 @@ class FrictionLaw(abc.ABC):
     def coefficient(self, speed: npt.ArrayLike) -> FloatArray:
         """Coefficient of friction μ (≥ 0) at a sliding speed v (m/s, ≥ 0), any shape.
 
-        Raises
-        ------
-        ParameterError
-            A speed is negative, or the law gives a negative coefficient at one of the speeds.
+        Raises ParameterError: a speed is negative, or the law gives a negative coefficient at one of the speeds.
         """
         v = np.asarray(speed, float)
         if np.any(v < 0):
