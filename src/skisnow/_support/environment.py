@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import gc
 import ssl
+from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .errors import ParameterError
 from .messages import Message, joined
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 def needed(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:

@@ -7,13 +7,10 @@ instead of the wording.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Self
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Self
 
 from .messages import ENGLISH, Message, count_message, joined, languages, translated
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 
 class _Coded(Exception):  # noqa: N818 -- of errors and warnings

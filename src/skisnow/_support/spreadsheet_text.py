@@ -9,18 +9,15 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from .errors import ParameterError
 from .messages import Message
 from .user_files import plain_text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 SEPARATOR_NAMES: Final = {",": "comma", ";": "semicolon", "\t": "tab"}
 _FORMS: Final = {

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import os
 import sqlite3
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from pathlib import Path
+from typing import Final, Literal, TypeAlias
 from urllib.parse import quote
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
 Mode: TypeAlias = Literal["ro", "rw", "rwc", "ro&immutable=1"]
 Tables: TypeAlias = "Mapping[str, Sequence[str]]"

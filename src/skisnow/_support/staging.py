@@ -14,15 +14,13 @@ import shutil
 import sys
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from .errors import OutputError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
 
 _PREFIX: Final = ".skisnow-"
 _HIDDEN: Final = re.compile(r"\.(skisnow|report|run)-[a-z0-9_]{8}")

@@ -10,24 +10,20 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import Final, NoReturn
 
 import numpy as np
 
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, DEGREE, MM, ZERO_CELSIUS
-from .._support.user_files import GivenError, plain_bytes, xml_tree
+from .._support.user_files import Element, GivenError, plain_bytes, xml_tree
 from ..parameters.quantity import LARGEST
 from .problems import error
 from .snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from .._support.user_files import Element
 
 MOST_BYTES: Final = 32 * 2**20
 NAMESPACE: Final = re.compile(

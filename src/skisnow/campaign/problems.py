@@ -6,12 +6,9 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from .._support.messages import Message, joined
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 Severity: TypeAlias = Literal["error", "warning", "mark"]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from .._support.units import DEGREE, MM, Facts, Shown, amount, ends
-from .problems import AppliedCorrection
+from .problems import AppliedCorrection, Problem
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from .._support.arrays import FloatArray, IntArray
     from ..geometry import Tool
-    from .problems import Problem
     from .smet import CampaignWeather
     from .snow_micro_pen_records import SnowMicroPenRecordings
 

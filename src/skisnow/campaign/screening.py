@@ -11,7 +11,7 @@ import numpy as np
 
 from .._support.messages import Message
 from .._support.units import MM
-from ..geometry import in_form
+from ..geometry import GeometryForm, in_form
 from .problems import (
     CREEP_SHARE,
     CREEP_STEPS,
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from .._support.arrays import BoolArray, FloatArray, IntArray
-    from ..geometry import GeometryForm
     from .records import Campaign, PenetrationTests, UnloadingReadings
 
 __all__ = [

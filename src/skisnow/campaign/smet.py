@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import MAXYEAR, MINYEAR, UTC, datetime, timedelta, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final, NoReturn
+from typing import Annotated, Final, NoReturn
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import Facts, Shown
@@ -23,12 +25,6 @@ from .._support.user_files import GivenError, plain_bytes
 from ..parameters import Quantity, require_declared
 from ..parameters.quantity import LARGEST
 from .problems import error
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from .._support.arrays import FloatArray
-
 
 MOST_BYTES: Final = 256 * 2**20
 _NEEDED: Final = ("station_id", "nodata", "fields")

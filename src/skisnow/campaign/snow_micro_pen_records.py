@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 import numpy as np
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.units import MM, Facts, Shown, amount
 from ..parameters import Quantity, require_declared
 from .snow_micro_pen import SnowMicroPenProfile, parse_snow_micro_pen
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from .._support.arrays import FloatArray, IntArray
-
 
 Relation: TypeAlias = Literal["proksch-2015", "calonne-2020", "king-2020a", "king-2020b"]
 

@@ -12,7 +12,7 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
 from ..parameters import Quantity
-from .problems import error
+from .problems import Problem, error
 from .reading.campaign_files import FilesOfFolder, RawFiles
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
@@ -20,7 +20,6 @@ from .reading.text import UnreadableTextError, inspect_csv
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray, IntArray
-    from .problems import Problem
     from .reading.columns import Table
 
 

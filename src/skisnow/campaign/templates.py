@@ -6,7 +6,7 @@ No estimate counts the example rows: their status cancels them.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -17,15 +17,12 @@ from .._support.staging import prepare_folder, staged, write_file
 from ..snow.published import moessner_2013
 from .reading.campaign import CAMPAIGN_FILES
 from .reading.campaign_file import CAMPAIGN_FILE, CAMPAIGN_KEYS
-from .reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, allowed_words
+from .reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, TableForm, allowed_words
 from .reading.workbook_files import CAMPAIGN, COLUMNS, PLATES, TOOLS, is_workbook
 from .reference import design
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
     from ..parameters import Quantity
-    from .reading.table_forms import TableForm
 
 EXAMPLE_STATUS: Final = "example: write over or delete this row"
 """A status cancels the experiment: the example is in no estimate even where it is left standing."""

@@ -6,14 +6,12 @@ import argparse
 import io
 import os
 import sys
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 from .._support.errors import FieldDataError, SkisnowError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS
 from .output import Ended
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 LONGEST_MESSAGE: Final = 8_000
 

@@ -15,15 +15,13 @@ import tempfile
 import threading
 import time
 import traceback
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from types import TracebackType
+from types import TracebackType
+from typing import Any, Final, Self
 
 
 def print_json(contents: Any) -> None:

@@ -24,7 +24,7 @@ from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
 from .models import Model, fit_models, select_model, why_no_choice
 from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, SiteMean, seating, site_means, site_snow, used_of
-from .readings import readings_of
+from .readings import ReadingUncertainty, readings_of
 from .regressions import (
     DENSITY_KEY,
     HARDNESS_KEY,
@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ..geometry import GeometryForm
-    from .readings import ReadingUncertainty
 
 
 DEFAULT_RESAMPLES: Final = 2000

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
-from .._support.arrays import IntArray, index_names
+from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
 from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import CONFIDENCE, N_PER_MM2, N_PER_MM3
 from ..snow.published import domine_2011, federolf_2006, moessner_2013
 from ..statistics.clusters import cluster_intervals
 from ..statistics.combined_uncertainty import expanded_factor
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._support.arrays import BoolArray, FloatArray
-
 
 FEWEST_SITES: Final = 4
 """Fewer sites do not show how sites scatter (two leave one degree of freedom): no interval over them (assumption)."""

@@ -35,13 +35,12 @@ import numpy as np
 from .._support.units import CONFIDENCE, ShownFields
 from ..statistics.bounded import condensed, non_negative_fits
 from ..statistics.combined_uncertainty import expanded_factor
-from .campaign_model import CONTACT_STEPS
+from .campaign_model import CONTACT_STEPS, CampaignModel
 from .hardness import DEFINITIONS, hardness_of_all_readings
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
 
 if TYPE_CHECKING:
     from .._support.arrays import BoolArray, FloatArray
-    from .campaign_model import CampaignModel
     from .readings import Readings, ReadingUncertainty
 
 _EXACT_SHARE: Final = 1e-6

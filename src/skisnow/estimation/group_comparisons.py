@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 from scipy.special import stdtr
 
-from .._support.arrays import index_names
+from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.units import CONFIDENCE
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from ..statistics.f_tests import compact_letters, holm_corrected, tests_per_group
@@ -32,7 +32,6 @@ from .spread_groups import bartlett
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from .screening import Screened
 

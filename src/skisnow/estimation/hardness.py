@@ -22,14 +22,13 @@ import numpy.typing as npt
 
 from .._support.units import CONFIDENCE, N_PER_MM, N_PER_MM2, N_PER_MM3, ShownFields
 from ..statistics.combined_uncertainty import expanded_factor
-from .campaign_model import Parts
+from .campaign_model import CampaignModel, Parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..campaign.records import Campaign, ShearTests, TurningReadings
-    from .campaign_model import CampaignModel
     from .readings import Readings, ReadingUncertainty
 
 

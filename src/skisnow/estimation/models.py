@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import BoolArray
+from .._support.arrays import BoolArray, FloatArray
 from .._support.messages import Message
 from .._support.units import ShownFields
 from ..statistics.bounded import Condensed, condensed
 from .hardness import DEFINITIONS
 
 if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
     from .readings import Readings
 
 Term: TypeAlias = Literal["none", "one", "constant", "linear"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray, index_names
+from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, ShownFields, amount, field_facts
 from ..snow import SnowProperties
@@ -28,7 +28,7 @@ from ..snow.mean_snow import (
 from .campaign_model import CampaignModel
 from .comparisons import OwnValue, SiteValue, own_mean
 from .errors_in_depth import FittedHardness, VolumeFactor
-from .group_comparisons import letters_of_groups
+from .group_comparisons import GroupComparison, letters_of_groups
 from .hardness import Hardness, ShearDisplacement, ShearStress
 from .layering import GrowingHardness
 from .model_choice import NestedRows
@@ -40,11 +40,7 @@ from .unloading import SiteUnloading, Unloading
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign
-    from .campaign_model import CampaignModel
-    from .group_comparisons import GroupComparison
-    from .readings import Readings
 
 
 @dataclass(frozen=True, repr=False)

@@ -10,14 +10,13 @@ import numpy as np
 
 from .._support.units import ShownFields
 from ..campaign.screening import reading_at_largest_load
-from ..geometry import in_form
+from ..geometry import GeometryForm, Tool, in_form
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..campaign.records import PenetrationTests
-    from ..geometry import GeometryForm, Tool
 
 _FEW_ANGLES = 16
 """Readings at up to so many angles are gone through angle by angle: each has one sine and one tangent."""

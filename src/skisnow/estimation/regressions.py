@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import FloatArray, IntArray, index_names
+from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
 from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, ShownFields
@@ -21,7 +21,6 @@ from ..statistics.linear import LinearFit, linear_fit
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from .models import ModelFit
     from .snow_micro_pen import SnowMicroPenAnalysis

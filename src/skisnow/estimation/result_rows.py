@@ -9,21 +9,25 @@ import numpy as np
 
 from .._support.messages import Message
 from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
-from .hardness import DEFINITIONS, hardness_at_largest_load, shear_displacement, shear_stress
-from .models import MODELS
+from .hardness import (
+    DEFINITIONS,
+    ShearDisplacement,
+    ShearStress,
+    hardness_at_largest_load,
+    shear_displacement,
+    shear_stress,
+)
+from .models import MODELS, Model, ModelFit
 from .readings import readings_of
-from .screening import screened_both
+from .screening import Screened, SeriesEstimates, screened_both
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray
     from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..geometry import GeometryForm
     from .campaign_model import CampaignModel
-    from .hardness import ShearDisplacement, ShearStress
     from .model_choice import NestedRows
-    from .models import Model, ModelFit
     from .parts import ModelTable, PenetrationAnalysis
-    from .screening import Screened, SeriesEstimates
     from .unloading import Unloading
 
 Json: TypeAlias = dict[str, Any]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM3
-from .parts import campaign_notes
+from .parts import PenetrationAnalysis, ShearAnalysis, SiteMean, campaign_notes
 from .result_rows import (
     campaign_model_results,
     column_rows,
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from .analysis import Analysis
     from .errors_in_depth import VolumeFactor
-    from .parts import PenetrationAnalysis, ShearAnalysis, SiteMean
     from .regressions import Regression
     from .unloading import SiteUnloading
 

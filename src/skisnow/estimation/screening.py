@@ -8,24 +8,22 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from .._support.arrays import index_names
+from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.units import N_PER_MM3, ShownFields
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
 from .campaign_model import DEFAULT_PRIORS, CampaignModel
 from .hardness import DEFINITIONS, Hardness, hardness, hardness_at_largest_load, shear_stress
 from .layering import layered
-from .readings import ReadingUncertainty, readings_of
+from .readings import Readings, ReadingUncertainty, readings_of
 from .spread_groups import fit_in_groups
 from .unloading import NOT_FALLING, Unloading, unloading
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from .._support.arrays import BoolArray, FloatArray
     from ..campaign.problems import Problem
     from ..campaign.records import Campaign, PenetrationTests
     from ..geometry import GeometryForm
-    from .readings import Readings
 
 FEWEST_FOR_OUTLIERS: Final = 5
 OUTLIER_DISTANCE: Final = 3.5

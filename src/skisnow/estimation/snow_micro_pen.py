@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from .._support.units import MM, Facts, Shown
-from ..campaign.snow_micro_pen_records import SnowSurface, snow_surface
+from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings, SnowSurface, snow_surface
 from ..parameters import values_of
 from ..snow.measured_range import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from .._support.arrays import BoolArray, FloatArray
     from ..campaign.snow_micro_pen import SnowMicroPenProfile
-    from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
 
 
 OVERLAP: Final = 0.5

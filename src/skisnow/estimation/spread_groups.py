@@ -18,14 +18,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from scipy.special import chdtrc, expit, gammaln
 
-from .._support.arrays import index_names
+from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
 from .._support.messages import Message
 from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from .._support.arrays import BoolArray, FloatArray, IntArray
     from .campaign_fit import Priors
     from .readings import Readings, ReadingUncertainty
 

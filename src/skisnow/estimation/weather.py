@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import index_names
+from .._support.arrays import FloatArray, index_names
 from .._support.units import HOUR, PERCENT, ZERO_CELSIUS, Facts, Shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from .._support.arrays import FloatArray
     from ..campaign.records import Campaign
     from ..campaign.smet import CampaignWeather
 

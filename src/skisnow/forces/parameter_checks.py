@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
 
 RIGHT_ANGLE = math.pi / 2.0
 

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from ..campaign.records import Campaign, DensitySamples, PenetrationTests, ShearTests
     from ..campaign.snow_micro_pen import SnowMicroPenProfile
-    from ..campaign.snow_pit import SnowPit
     from ..estimation import Analysis
     from ..estimation.snow_micro_pen import EvaluatedRecording
 

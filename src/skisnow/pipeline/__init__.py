@@ -30,7 +30,6 @@ from ..snow.mean_snow import drawn_snows, measured_intervals, no_used_experiment
 
 if TYPE_CHECKING:
     from .._support.processes.kept_rows import Row
-    from ..scenario import Scenario
     from ..simulation.run import Run
 
 UNLOADING_RATIO: Final = 10.0

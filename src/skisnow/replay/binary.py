@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -24,13 +25,7 @@ from .._support.errors import ParameterError
 from .._support.user_files import GivenError, json_value
 from .meshes import COLOURS, drawn_thickness
 from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
-from .skier import JOINTS, skier_parts
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from .skier import Part
-
+from .skier import JOINTS, Part, skier_parts
 
 MAGIC: Final = b"SKRP"
 FORMAT: Final = 2

@@ -16,7 +16,7 @@ from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
 from ..simulation.run_summary import feet_and_tips
 from ..skier.segments import height_of
-from ..track.course import MovingPoint, passages
+from ..track.course import Course, MovingPoint, passages
 from .replay import (
     Replay,
     ReplayBoots,
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from ..scenario.terrain import Slope
     from ..simulation.run import Run
     from ..ski import Ski
-    from ..track.course import Course
 
 _AROUND: Final = 30.0
 """Distance around a run with measured heights (m); beyond it the slope is a plane."""

@@ -9,17 +9,13 @@ import json
 import math
 import struct
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
-from .replay import ski_edges
-
-if TYPE_CHECKING:
-    from .replay import Replay
-
+from .replay import Replay, ski_edges
 
 _MARGIN: Final = 3.0
 LIFTED: Final = 0.0005

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -25,11 +25,8 @@ from .meshes import (
     surface_heights,
     unloaded_ski_mesh,
 )
-from .replay import SKI_NAMES, continuous, nearest_frame
+from .replay import SKI_NAMES, Replay, ReplayBoots, continuous, nearest_frame
 from .skier import JOINTS, part_poses, skier_mesh, skier_parts
-
-if TYPE_CHECKING:
-    from .replay import Replay, ReplayBoots
 
 
 def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> bytes:

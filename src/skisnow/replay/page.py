@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -19,11 +19,8 @@ from .._support.staging import write_file
 from ..simulation.run import Run
 from .binary import replay_bytes
 from .from_run import replay_of_run
-from .replay import Replay
+from .replay import Replay, ReplayTrack
 from .run_file import replay_of_file
-
-if TYPE_CHECKING:
-    from .replay import ReplayTrack
 
 MODULES: Final = (
     "words.js", "three.core.min.js", "three.module.min.js", "binary.js", "motion.js", "colours.js", "snow_tile.js",

@@ -18,15 +18,13 @@ from ..geometry.boot_axes import axes_of
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
 from ..scenario.scenario import course_on_slope
-from ..ski import read_ski, ski_named
+from ..ski import Ski, read_ski, ski_named
 from ..skier.segments import height_of
-from ..track.course import read_course
+from ..track.course import Course, read_course
 from .from_run import Setting, assemble_replay, facts_of, moving_boots, skis_words
 
 if TYPE_CHECKING:
     from ..scenario.terrain import Slope
-    from ..ski import Ski
-    from ..track.course import Course
     from .replay import Replay, ReplayBoots, ReplayTrack
 
 

@@ -8,24 +8,18 @@ it. The hips are placed so that the centre of mass of all segments is that of th
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.units import DEGREE
-from ..skier.segments import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM
+from ..skier.segments import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM, Segment
 from .meshes import Mesh, linear
-from .replay import ReplaySkier, quaternions
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..skier.segments import Segment
-    from .replay import Replay, ReplaySkier
-
+from .replay import Replay, ReplaySkier, quaternions
 
 SIDED: Final = ("ankle", "knee", "hip", "shoulder", "elbow", "hand", "pole tip")
 JOINTS: Final = ("pelvis", "neck", "head", *(f"{side} {name}" for side in ("left", "right") for name in SIDED))

@@ -9,13 +9,12 @@ import numpy as np
 
 from .._support.messages import Message
 from .._support.units import MM
-from ..geometry import in_form
+from ..geometry import GeometryForm, Tool, in_form
 from .formatting import significant
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray
     from ..campaign.records import Campaign, PenetrationTests
-    from ..geometry import GeometryForm, Tool
     from ..ski import Ski
 
 

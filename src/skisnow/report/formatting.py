@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from datetime import UTC, date, datetime
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias
 
 from markupsafe import Markup
 
@@ -19,9 +20,6 @@ from .._support.messages import (
     template,
     translations,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 Style: TypeAlias = Literal["typeset", "plain", "latex"]
 """typeset: in the current language, with Unicode minus and powers; plain: for a terminal; latex: for siunitx."""

@@ -16,7 +16,7 @@ from .._support.errors import require_language
 from .._support.messages import ENGLISH, Message, in_language, outcome_words, template
 from .._support.spreadsheet_text import csv_text, guarded
 from .._support.staging import require_writable, staged, write_file
-from .figures.drawing import Drawing
+from .figures.drawing import Drawing, Picture
 from .figures.figure_files import picture_files, silent, write_pictures
 from .figures.style import BLACK, BLUE, COLOURS, DOUBLE_MM, GREY, ORANGE, PALE, legend_below, new_figure
 from .formatting import counted, figure_text, interval, json_text, prose, significant
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
     from ..identification.problem import Fit
     from ..identification.result import Identification, Interval
-    from .figures.drawing import Picture
 
 ANSWER: Final = "identification.json"
 FIGURES: Final = ("tracks", "residuals_track", "residuals_photo_cells", "residuals_marks", "profiles")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.resources import files
@@ -13,13 +13,10 @@ from markupsafe import Markup
 
 from .._support.messages import Message, current_language, translated, translations
 from .formatting import latex_escaped, prose
-from .table import table_html
+from .table import Table, table_html
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from .figures.drawing import Picture
-    from .table import Table
 
 
 @dataclass(frozen=True, slots=True)

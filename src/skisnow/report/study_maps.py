@@ -28,6 +28,7 @@ from .figures.style import (
 )
 from .study_layout import (
     MOST_LINES,
+    MapLayout,
     axes_of_panels,
     drawn_table,
     fixed_inputs,
@@ -49,7 +50,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..studies import StudyTable
-    from .study_layout import MapLayout
 
 Json = dict[str, Any]
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias
 
 import orjson
 from markupsafe import Markup
@@ -15,9 +16,6 @@ from .._support.messages import Message, joined, local_number
 from .._support.spreadsheet_text import guarded
 from . import formatting
 from .formatting import html, prose
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 Kind: TypeAlias = Literal[
     "text", "words", "codes", "yes", "tick", "count", "angle", "hundredths", "number", "p", "interval", "range",

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Callable, Sequence
+from typing import Any, Final
 
 from . import formatting
 from .formatting import latex, latex_escaped
-from .table import ROWS_IN_LATEX
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from .table import Column, Kind, Table
+from .table import ROWS_IN_LATEX, Column, Kind, Table
 
 PACKAGES: Final = (
     "array", "booktabs", "longtable", "siunitx", "makecell", "adjustbox", "rotating", "pdflscape", "textcomp",

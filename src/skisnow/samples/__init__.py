@@ -20,7 +20,7 @@ from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowP
 from ..carving.equilibrium import carve
 from ..interop.caaml import caaml_text
 from ..interop.smet import smet_text
-from ..scenario import Plane, load_scenario
+from ..scenario import Plane, Scenario, load_scenario
 from ..simulation.simulated_run import simulate
 from ..track.projection import GeodeticPoint, earth_centred, geodetic
 from ..track.slope_frame import slope_axes
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from .._support.arrays import FloatArray
-    from ..scenario import Scenario
     from ..simulation import Run
 
 ORIGIN: Final = GeodeticPoint(47.1234, 11.4321, 1900.0)

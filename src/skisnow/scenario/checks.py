@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .terrain import reach_of
+from .terrain import Slope, reach_of
 
 if TYPE_CHECKING:
     from ..ski import Ski
     from .run_settings import Start
     from .skier import Skier
     from .sledge import RigidSledge, Shear
-    from .terrain import Slope
 
 
 def require_sound(

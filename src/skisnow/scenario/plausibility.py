@@ -24,7 +24,6 @@ from .terrain import heights_of
 
 if TYPE_CHECKING:
     from ..ski import Ski
-    from .scenario import Scenario
 
 
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:

@@ -13,14 +13,13 @@ from .._support.small_figure import SmallFigure
 from .._support.units import DEGREE, MM, Facts, Shown, amount, field_facts, name_with_values, span
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
-from .run_forces import node_lengths
+from .run_forces import BalanceHistory, node_lengths
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ..contact import Laws
     from .moving_boots import BootHistory
-    from .run_forces import BalanceHistory
 
 Outcome: TypeAlias = Literal[
     "finished",

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -26,9 +26,6 @@ from ..track.course.gates_table import gates_dict
 from ..track.course.passages import track_point
 from ..track.track import Track
 from .run import GIVEN, LEAST_OPEN, LOST, OPEN_SHARE, STORED, Run
-
-if TYPE_CHECKING:
-    from .run import Run
 
 SCHEMA_VERSION: Final = 1
 

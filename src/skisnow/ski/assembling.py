@@ -5,21 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .checks import GREATEST_SPACING
-from .layout import BaseShape
+from .layout import BaseShape, Layout, StationFunction
 from .outline import ArcOutline
 from .ski import Ski
 from .table_file import StationTable, evenly_spread
-
-if TYPE_CHECKING:
-    from .layout import Layout, StationFunction
-
 
 _SAME_PLACE = 1e-9  # m
 

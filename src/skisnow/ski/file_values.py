@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 import numpy as np
 
@@ -16,10 +17,6 @@ from .._support.units import DEGREE
 from .._support.user_files import read_toml
 from ..parameters import InputValue, Quantity, made, nearest
 from .file_keys import SKI_KEYS, SkiFile
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
 
 _OTHER_UNITS: Final = {
     "mm": (("metres", 1e3), ("centimetres", 10.0), ("inches", 25.4)),

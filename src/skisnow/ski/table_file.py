@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -25,10 +26,6 @@ from .._support.user_files import plain_bytes
 from ..parameters import nearest
 from .file_keys import COLUMNS
 from .file_values import checked, refuse, warn_of_unusual
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
 
 MOST_BYTES: Final = 1 << 20
 """Most rows of a table: a row for each 2.5 mm of a ski takes 200 kB at most."""

@@ -6,22 +6,18 @@ conditions is the answer: coefficients > 0 where free, and for a coefficient on 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .least_squares import as_predictors, as_response
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import numpy.typing as npt
-
-    from .._support.arrays import BoolArray, FloatArray
 
 MOST_COEFFICIENTS = 6
 _KKT_TOLERANCE = 1e-12

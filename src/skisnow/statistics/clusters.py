@@ -7,10 +7,11 @@ freedom for each coefficient (the same; Imbens and Kolesár, 2016, Rev. Econ. St
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .combined_uncertainty import expanded_factor, require_confidence
 from .least_squares import (
@@ -22,12 +23,6 @@ from .least_squares import (
     standardised,
     warn_if_ill_conditioned,
 )
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from .._support.arrays import BoolArray, FloatArray
-
 
 _WHOLLY = 1e-9
 """A direction of which a cluster holds all but this share is known only from that cluster."""

@@ -11,22 +11,16 @@ errors allow. For 4 to 30 estimates whose errors differ up to five times it cove
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from collections.abc import Iterator
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy.special import ndtri, stdtrit
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import CONFIDENCE
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import numpy.typing as npt
-
-    from .._support.arrays import FloatArray
-
 
 _LEAST_SHARE: Final = 1e-12
 """Relative standard error below which an estimate counts as exact: rounding of double precision."""

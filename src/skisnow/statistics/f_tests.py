@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from scipy.special import fdtrc, nctdtr, ndtr, ndtri, stdtrit
 
+from .._support.arrays import FloatArray
 from .._support.errors import FitError, ParameterError
 from .least_squares import require_finite
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import numpy.typing as npt
-
-    from .._support.arrays import FloatArray
 
 
 class NestedTest(NamedTuple):

@@ -7,22 +7,18 @@ carried back to the columns as given. No normal equations: they would square the
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypedDict
+from typing import Final, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import qr, solve_triangular
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.errors import FitError, FitWarning, ParameterError
 from .._support.messages import Message
 from .combined_uncertainty import expanded_factor
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._support.arrays import FloatArray, IntArray
-
 
 CONDITION_LIMIT: Final = 1e3
 """Of centred columns of unit length. NIST's Longley has 110 and keeps 13 digits; Wampler5 has 1,600 and keeps 8."""

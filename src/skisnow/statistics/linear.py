@@ -8,10 +8,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import ShownFields
 from .combined_uncertainty import require_confidence
@@ -26,12 +28,6 @@ from .least_squares import (
     standardised,
     warn_if_ill_conditioned,
 )
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from .._support.arrays import FloatArray
-
 
 _CHEBYSHEV_LIMIT: Final = 1e5
 """Limit of the condition number of Chebyshev polynomials: at 3·10⁴ the coefficients of the powers keep 9 digits."""

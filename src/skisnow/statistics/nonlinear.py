@@ -11,23 +11,18 @@ the extrapolation that agrees best with its neighbours is used.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import FitError, FitWarning, ParameterError
 from .._support.messages import Message, template
 from .combined_uncertainty import require_confidence
 from .least_squares import Columns, Factorisation, as_response, factorise, require_finite, spread
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._support.arrays import FloatArray
-
 
 Model: TypeAlias = Callable[..., Any]
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
+from .._support.arrays import FloatArray
 from .._support.errors import FitError, FitWarning, ParameterError
 from .combined_uncertainty import expanded_factor, require_confidence
 from .f_tests import f_ratio, f_tail
@@ -19,11 +21,6 @@ from .least_squares import (
     standardised,
     warn_if_ill_conditioned,
 )
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from .._support.arrays import FloatArray
 
 
 class RegressStatistics(NamedTuple):

@@ -13,16 +13,13 @@ height; the ellipsoid falls away from it by d²/(2R): 8 cm at 1 km, 8 m at 10 km
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, Facts, Shown
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-
 
 SEMI_MAJOR_AXIS: Final = 6378137.0
 """a in m, WGS84."""

@@ -17,11 +17,10 @@ from .readers.rtklib import HEADER, read_rtklib
 from .readers.table import read_table
 from .readers.text import decode_text
 from .readers.ubx import SYNC, has_places, read_ubx
-from .track import FASTEST, GAP_FACTOR
+from .track import FASTEST, GAP_FACTOR, Track
 
 if TYPE_CHECKING:
     from .projection import GeodeticPoint
-    from .track import Track
 
 TrackFormat: TypeAlias = Literal["csv", "gpx", "fit", "nmea", "ubx", "rtklib"]
 SUFFIXES: Final[dict[str, TrackFormat]] = {

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE
 from .track import Track
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-
 
 STEEPEST: Final = 75.0 * DEGREE
 """Steepest slope (rad), as for scenarios."""

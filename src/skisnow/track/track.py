@@ -6,22 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
+from typing import Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import BoolArray, FloatArray
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.errors import ParameterError
 from .._support.units import Facts, Shown, amount, ends
 from .projection import GeodeticPoint, place_from_origin
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import numpy.typing as npt
-
-    from .._support.arrays import BoolArray, FloatArray, IntArray
 
 Axes: TypeAlias = Literal["file", "east_north_up", "slope"]
 

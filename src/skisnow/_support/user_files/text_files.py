@@ -9,13 +9,10 @@ import stat
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from ..errors import ParameterError
 from ..messages import Message
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:

@@ -11,16 +11,14 @@ import io
 import re
 import warnings
 import zipfile
+from collections.abc import Callable, Iterable
 from datetime import date, datetime, time
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 from xml.parsers import expat
 
 from ..messages import Message
 from .text_files import GivenError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
 
 Rows: TypeAlias = list[list[str]]
 """Cells as texts, row 1 first, blank rows as empty lists."""

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
-from ..problems import error, with_sheet_name
+from ..problems import AppliedCorrection, Problem, error, with_sheet_name
 from ..records import Campaign
-from .campaign_file import CAMPAIGN_FILE, read_campaign_file
+from .campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
 from .campaign_files import (
     ENDING,
     WEATHER_ENDING,
+    CampaignFiles,
     FilesInMemory,
     FilesOfFolder,
     RawFiles,
@@ -22,26 +23,18 @@ from .campaign_files import (
     recording_contents,
     snow_micro_pen_recordings,
 )
-from .corrections import corrections_by_file, report_missing_files
+from .corrections import RowCorrections, corrections_by_file, report_missing_files
 from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .headings import Headings
 from .row_checks import check_rows
-from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
-from .tables import read_table, table_of_cells
+from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES, TableForm
+from .tables import Cells, read_table, table_of_cells
 from .text import UnreadableTextError, decode, inspect_csv
 from .workbook_files import is_workbook, unfolded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from ..problems import AppliedCorrection, Problem
     from ..smet import CampaignWeather
-    from .campaign_file import CampaignFile
-    from .campaign_files import CampaignFiles
     from .columns import Table
-    from .corrections import RowCorrections
-    from .table_forms import TableForm
-    from .tables import Cells
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files of a campaign, in the order of reading; workbooks can replace them."""

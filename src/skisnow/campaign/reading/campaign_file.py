@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import Annotated, Any, Final
 
 from ..._support.messages import Message, joined
 from ..._support.units import MM
@@ -14,18 +14,12 @@ from ..._support.user_files import GivenError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...parameters import Quantity, own_quantities
-from ..problems import ALWAYS_EXCLUDE, QUALITY_FLAGS, error, warning
+from ..problems import ALWAYS_EXCLUDE, QUALITY_FLAGS, Problem, error, warning
 from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
 from .headings import KEY as COLUMNS_KEY
 from .headings import UNITS_KEY, Headings, parse_headings
 from .toml_values import TomlValues
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ...geometry import Tool
-    from ..problems import Problem
 
 CAMPAIGN_FILE: Final = "campaign.toml"
 

@@ -12,20 +12,15 @@ from typing import TYPE_CHECKING, Final, Protocol
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
 from ..._support.units import MM
-from ..problems import error, warning
-from ..smet import CampaignWeather, parse_smet
+from ..problems import Problem, error, warning
+from ..smet import CampaignWeather, WeatherSettings, parse_smet
 from ..snow_micro_pen import parse_snow_micro_pen
-from ..snow_micro_pen_records import SnowMicroPenRecordings
+from ..snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
 from .campaign_file import CAMPAIGN_FILE
 from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ..problems import Problem
-    from ..smet import WeatherSettings
-    from ..snow_micro_pen_records import SnowMicroPenSettings
     from .columns import Table
     from .text import UnreadableTextError
 

@@ -12,17 +12,15 @@ import numpy as np
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import decimal_mark, is_number, number
 from ...parameters.quantity import LARGEST, SMALLEST, beyond_reason
-from ..problems import error, warning
-from .table_forms import UNLOADING, allowed_words
+from ..problems import Problem, error, warning
+from .table_forms import UNLOADING, TableForm, allowed_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ..._support.arrays import BoolArray, FloatArray, IntArray
     from ...parameters import Quantity
-    from ..problems import Problem
     from .headings import UnitConversion
-    from .table_forms import TableForm
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,17 +11,14 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, TypeAlias
 
 from ..._support.messages import Message
-from ..problems import AppliedCorrection, error
-from .columns import is_number, number
-from .table_forms import CORRECTIONS, TABLES
+from ..problems import AppliedCorrection, Problem, error
+from .columns import Table, is_number, number
+from .table_forms import CORRECTIONS, TABLES, TableForm
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from ..problems import Problem
-    from .columns import Table
     from .header import Header
-    from .table_forms import TableForm
 
 STATUS = "status"
 

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import compress
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
-from ..problems import error
+from ..problems import Problem, error
 from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests, TurningReadings, UnloadingReadings
-from .columns import is_unloading
+from .columns import NameColumn, Table, is_unloading
 from .table_forms import BRANCH
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from ..._support.arrays import BoolArray, FloatArray, IntArray
-    from ..problems import Problem
-    from .columns import NameColumn, Table
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,19 +6,25 @@ import difflib
 import json
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ..._support.messages import Message, joined
-from ..problems import error, warning
-from .headings import columns_by_synonym, conversion, known_unit, named_unit, own_unit, unit_of_column, units_for
+from ..problems import Problem, error, warning
+from .headings import (
+    Headings,
+    UnitConversion,
+    columns_by_synonym,
+    conversion,
+    known_unit,
+    named_unit,
+    own_unit,
+    unit_of_column,
+    units_for,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..problems import Problem
-    from .headings import Headings, UnitConversion
     from .table_forms import TableForm
 
 _MOST_TITLES = 20

@@ -11,13 +11,10 @@ from typing import TYPE_CHECKING, Final
 
 from ..._support.messages import Message, joined
 from ..._support.units import DEGREE, KILOGRAM_FORCE, ZERO_CELSIUS
-from .table_forms import CORRECTIONS, TABLES
+from .table_forms import CORRECTIONS, TABLES, TableForm
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ..._support.arrays import FloatArray
-    from .table_forms import TableForm
     from .toml_values import TomlValues
 
 

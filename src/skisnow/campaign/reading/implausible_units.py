@@ -14,8 +14,8 @@ import numpy as np
 
 from ..._support.messages import Message
 from ..._support.units import DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
-from ..problems import warning
-from .columns import is_unloading
+from ..problems import Problem, warning
+from .columns import Table, is_unloading
 from .headings import conversion
 from .table_forms import BRANCH, PENETRATION, SHEAR
 
@@ -23,9 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ..._support.arrays import FloatArray
-    from ..problems import Problem
     from .campaign_file import CampaignFile
-    from .columns import Table
 
 FAR: Final = 500.0
 """Factor from the median of its column beyond which a number is reported: loads of one campaign span less."""

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import BoolArray
 from ..._support.messages import Message
-from ..problems import warning
-from .campaign_file import CAMPAIGN_FILE
-from .columns import is_unloading
+from ..problems import Problem, warning
+from .campaign_file import CAMPAIGN_FILE, CampaignFile
+from .columns import Table, is_unloading
 from .experiments import Blocks, check_one_site, check_series, shear_blocks
 from .implausible_units import check_likely_units, check_missing_units
 from .table_forms import BRANCH, BRANCHES, DENSITY, DROP_CONE, LOADING, PENETRATION, SHEAR, UNLOADING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from ..._support.arrays import BoolArray
-    from ..problems import Problem
-    from .campaign_file import CampaignFile
-    from .columns import Table
-    from .experiments import Blocks
 
 
 def check_rows(table: Table, described: CampaignFile | None) -> Iterator[Problem]:

@@ -9,23 +9,19 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from ..._support.messages import Message
-from ..problems import error, warning
-from .columns import DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
-from .corrections import Corrector, header_with_status
+from ..problems import Problem, error, warning
+from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
+from .corrections import Corrector, RowCorrections, header_with_status
 from .header import ColumnUnits, Header, check_header, column_units, split_header
 from .headings import Headings
-from .text import SEPARATOR_NAMES, CsvText, UnreadableTextError
+from .text import SEPARATOR_NAMES, CsvText, Records, UnreadableTextError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from ..._support.arrays import IntArray
-    from ..problems import Problem
     from .campaign_files import RawFiles
-    from .columns import Collector
-    from .corrections import RowCorrections
     from .table_forms import TableForm
-    from .text import Records
 
 
 OWN_NAMES: Final = Headings()

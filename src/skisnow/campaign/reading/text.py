@@ -10,9 +10,10 @@ from __future__ import annotations
 import csv
 import io
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import (
@@ -26,9 +27,6 @@ from ..._support.spreadsheet_text import (
     named_separator,
     unguarded,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "inspect_csv"]
 

@@ -6,19 +6,14 @@ Paths count from 1: ``tool[2].length_mm`` is the length of the second tool.
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
-from ...parameters import made, own_quantities
-from ..problems import error, warning
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from ...parameters import Quantity
-    from ..problems import Problem
+from ...parameters import Quantity, made, own_quantities
+from ..problems import Problem, error, warning
 
 _SIMILAR = 0.8  # from here a key is taken for a misspelt one
 _MISSING = object()

@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING, Final
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
 from ..._support.user_files import GivenError, toml_text, workbook_sheets
-from ..problems import error, warning
+from ..problems import Problem, error, warning
 from .campaign_file import CAMPAIGN_KEYS
 from .headings import columns_by_synonym
 from .table_forms import CORRECTIONS, TABLES
 
 if TYPE_CHECKING:
     from ..._support.user_files.workbook import Rows
-    from ..problems import Problem
     from .campaign_files import CampaignFiles
 
 ENDINGS: Final = (".xlsx", ".xlsm")

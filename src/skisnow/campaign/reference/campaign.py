@@ -7,20 +7,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..problems import QUALITY_FLAGS
-from ..records import Campaign
+from ..records import Campaign, DensitySamples, DropConeTests, PenetrationTests, ShearTests
 from . import design, draws
 from .design import ReferenceNoise
-
-if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
-    from ..records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
-
 
 DEFAULT_NOISE: Final = ReferenceNoise()
 

@@ -18,17 +18,15 @@ depths of each site and their scatter, and that the pairs are among the tests at
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...geometry import SkiPiece
 from ...snow.published import moessner_2013
-
-if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

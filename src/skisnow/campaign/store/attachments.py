@@ -5,21 +5,17 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 from uuid import uuid4
 
 from ..._support.errors import ParameterError, StoreError
 from ..reading.campaign import ATTACHMENTS
 from ..reading.text import UnreadableTextError, inspect_csv
 from .journal_entry import NewEntry
-from .replayed import ReplayedTest, campaign_files, guarded_csv
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    from .replayed import ReplayedCampaign
+from .replayed import ReplayedCampaign, ReplayedTest, campaign_files, guarded_csv
 
 COLUMNS: Final = ("table", "test", "time", "who", "latitude_deg", "longitude_deg", "accuracy_m", "photo")
 """Columns of attachments.csv; `photo`: path of the file in the exported campaign."""

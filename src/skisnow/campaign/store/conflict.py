@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, select
 
 from ..._support.messages import Message
-from .journal_entry import DESCRIPTION, parse_entry
+from .journal_entry import DESCRIPTION, JournalEntry, parse_entry
 from .rows import damage_error
 from .schema import campaign, journal, journal_entry
 from .stored_tables import cell_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from sqlalchemy import Connection
-
-    from .journal_entry import JournalEntry
-
 
 Side: TypeAlias = Literal["here", "there", "both"]
 Kind: TypeAlias = Literal["described", "begun twice", "added to", "cancelled", "corrected", "taken back"]

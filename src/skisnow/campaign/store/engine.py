@@ -10,10 +10,12 @@ from __future__ import annotations
 import errno
 import sqlite3
 import time
+from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Any, Final
 
-from sqlalchemy import Connection, Engine, NullPool, create_engine, event
+from sqlalchemy import Connection, Engine, ExceptionContext, NullPool, create_engine, event
 from sqlalchemy.exc import DBAPIError
 
 from ..._support.errors import StoreError
@@ -21,6 +23,7 @@ from ..._support.messages import Message, template
 from ..._support.sqlite_file import (
     NO_ROOM,
     READ_ONLY,
+    Mode,
     connect,
     first_damage,
     place_reason,
@@ -28,16 +31,7 @@ from ..._support.sqlite_file import (
     require_schema,
 )
 from .schema import APPLICATION_ID, metadata
-from .server import ServerAddress, lock_for_writing, needs_migration, open_server, reason
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from sqlalchemy import ExceptionContext
-
-    from ..._support.sqlite_file import Mode
-    from .server import StorePlace
+from .server import ServerAddress, StorePlace, lock_for_writing, needs_migration, open_server, reason
 
 _DAMAGED: Final = Message("the file is damaged; restore a backup, or export the readable part")
 _NO_STORE: Final = Message("this file is not a store; name another file")

@@ -12,10 +12,11 @@ from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
 from .attachments import attachment_files, exported_files, with_rows, write_campaign
 from .engine import database_errors, file_errors, reading
-from .folder import StoredFile, new_folder, no_progress
+from .folder import Progress, StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
 from .replayed import (
     COLUMNS,
+    ReplayedTest,
     correction_cells,
     correction_of_cell,
     replay_journal,
@@ -28,9 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ..problems import AppliedCorrection
-    from .folder import Progress
     from .journal_entry import JournalEntry
-    from .replayed import ReplayedTest
     from .store import Store, StoredCampaign
 
 

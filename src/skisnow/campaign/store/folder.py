@@ -9,11 +9,12 @@ import hashlib
 import os
 import re
 import stat
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import Final, Protocol
 
 from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
@@ -21,9 +22,6 @@ from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
 from ..reading.campaign_files import FilesOfFolder
 from ..reading.text import UnreadableTextError, decode
 from ..reading.workbook_files import DESCRIPTION, unfolded
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
 
 _WINDOWS_NAMES: Final = re.compile(
     r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³])\s*(\..*)?", re.IGNORECASE

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import secrets
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from hashlib import sha256
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias
 
 from sqlalchemy import Connection, RowMapping, func, insert, select
 
@@ -18,9 +18,6 @@ from ..._support.messages import Message
 from ..._support.user_files import json_value
 from .rows import TIME, damage_error, require_integer, text_of
 from .schema import journal_entry
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
 
 Action: TypeAlias = Literal["describe", "add", "correct", "cancel", "undo"]
 

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from ..._support.errors import FieldDataError
 from ..._support.spreadsheet_text import csv_text, guarded
 from ..._support.user_files import toml_text
-from ..problems import AppliedCorrection
+from ..problems import AppliedCorrection, Problem
 from ..reading.campaign import campaign_of_cells
 from ..reading.campaign_file import read_campaign_file
 from ..reading.columns import is_unloading_cell
 from ..reading.corrections import STATUS
-from ..reading.table_forms import BRANCH, CORRECTIONS, TABLES
+from ..reading.table_forms import BRANCH, CORRECTIONS, TABLES, TableForm
 from ..reading.tables import Cells
-from .journal_entry import DESCRIPTION
+from .journal_entry import DESCRIPTION, JournalEntry
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from ..problems import Problem
-    from ..reading.table_forms import TableForm
     from ..records import Campaign
-    from .journal_entry import JournalEntry
 
 
 @dataclass(slots=True)

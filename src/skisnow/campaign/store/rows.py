@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Final, NamedTuple
+from pathlib import Path
+from typing import Final, NamedTuple
 
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
@@ -14,10 +16,6 @@ from ..._support.errors import StoreError
 from ..._support.messages import Message
 from .folder import StoredFile, manifest_sha256, read_chunks
 from .schema import CHUNK_BYTES, campaign, campaign_file, chunk, content, journal_entry
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
 
 ID_DIGITS: Final = 12
 _SHORTEST_PREFIX: Final = 4

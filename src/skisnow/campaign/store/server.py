@@ -7,21 +7,17 @@ returns. A laptop that is closed during a transaction blocks others for at most 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
-from sqlalchemy import URL, Connection, create_engine, event, make_url, text
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError
 
 from ..._support.errors import StoreError
 from ..._support.messages import Message
 from .schema import APPLICATION_ID, MARK, REVISION
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from sqlalchemy import Engine
 
 CONNECT_TIMEOUT_S: Final = 10
 _SILENT_S: Final = 60

@@ -41,7 +41,7 @@ from .rows import (
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
-from .server import ServerAddress, store_place
+from .server import ServerAddress, StorePlace, store_place
 from .verification import Finding, findings
 
 if TYPE_CHECKING:
@@ -49,8 +49,6 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from sqlalchemy import Engine
-
-    from .server import StorePlace
 
 __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", "default_path"]
 

@@ -13,25 +13,20 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
 from ..._support.user_files import natural_number
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
-from ..reading.campaign_files import FilesOfFolder, RawFiles
+from ..reading.campaign_files import CampaignFiles, FilesOfFolder, RawFiles
 from ..reading.columns import number
-from ..reading.corrections import Corrector, corrections_by_file, header_with_status
+from ..reading.corrections import Corrector, RowCorrections, corrections_by_file, header_with_status
 from ..reading.header import Header, column_units, split_header
 from ..reading.headings import Headings, UnitConversion
-from ..reading.table_forms import BRANCH, BRANCHES, CORRECTIONS, TABLES
+from ..reading.table_forms import BRANCH, BRANCHES, CORRECTIONS, TABLES, TableForm
 from ..reading.tables import decimal_mark_of, read_table
-from ..reading.text import UnreadableTextError, decode, inspect_csv
+from ..reading.text import CsvText, UnreadableTextError, decode, inspect_csv
 from .rows import damage_error
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ...parameters import Quantity
-    from ..reading.campaign_files import CampaignFiles
-    from ..reading.corrections import RowCorrections
-    from ..reading.headings import UnitConversion
-    from ..reading.table_forms import TableForm
-    from ..reading.text import CsvText
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,13 +14,22 @@ from sqlalchemy import Connection, insert, select
 
 from ..._support.errors import StoreError
 from ..._support.messages import Message
-from .conflict import Conflict, entries_by_uid, entry_index, find_divergences, shared_journals
+from .conflict import Conflict, Divergence, Side, entries_by_uid, entry_index, find_divergences, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
 from .journal import entered_name
-from .journal_entry import DESCRIPTION, NewEntry, insert_entries, next_sequence, number_of_uid, write_entry
+from .journal_entry import (
+    DESCRIPTION,
+    JournalEntry,
+    NewEntry,
+    insert_entries,
+    next_sequence,
+    number_of_uid,
+    write_entry,
+)
 from .rows import (
     ID_DIGITS,
+    StoredCampaign,
     copy_content,
     damage_error,
     one_campaign,
@@ -35,11 +44,6 @@ from .stored_tables import FORMS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from sqlalchemy import Connection
-
-    from .conflict import Divergence, Side
-    from .journal_entry import JournalEntry
-    from .rows import StoredCampaign
     from .store import Store
 
 ALL: Final = "all"

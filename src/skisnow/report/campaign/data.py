@@ -13,14 +13,13 @@ import numpy.typing as npt
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
-from ...estimation.regressions import DENSITY_KEY
+from ...estimation.regressions import DENSITY_KEY, Observations, Source
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ...campaign.records import Campaign
     from ...estimation import Analysis
-    from ...estimation.regressions import Observations, Source
     from ...geometry import GeometryForm
 
 TextArray: TypeAlias = npt.NDArray[np.str_]

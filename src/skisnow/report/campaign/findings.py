@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
 
 from ..._support.messages import Message
 from ..formatting import html, interval, p_equals, prose, significant, whole
-from .data import numbers, pairs
+from .data import Json, ReportData, numbers, pairs
 from .key_results import SIGNIFICANT
 from .series_tables import count_resolved_offsets
 from .tables import QUANTITY
-
-if TYPE_CHECKING:
-    from .data import Json, ReportData
 
 _STEP: Final = {
     "edge_angle_rad": (math.pi / 2.0, Message("from 0° to 90°")),

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from ..._support.messages import Message
-from ...estimation.models import FORMS
+from ...estimation.models import FORMS, ModelFit
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
@@ -18,6 +18,7 @@ from ..figures.style import (
     PALE,
     RASTERISE_FROM,
     VERMILLION,
+    SiteStyle,
     legend_below,
     mark_synthetic,
     new_figure,
@@ -32,9 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..._support.arrays import FloatArray
-    from ...estimation.models import ModelFit
     from ...estimation.readings import Readings
-    from ..figures.style import SiteStyle
     from .data import Json, ReportData
 
 MOST_GROUPS: Final = 12

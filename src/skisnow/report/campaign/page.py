@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from markupsafe import Markup
 
@@ -16,12 +17,12 @@ from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import prepare_folder, staged, write_file
 from ...estimation import Analysis
 from ...estimation.results import results_json
-from ..figures.drawing import Drawing
+from ..figures.drawing import Drawing, LeftOut, Picture
 from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
 from ..figures.style import site_styles
 from ..formatting import counted, days_words, moment_words, significant, whole
 from ..sheet import bibtex, cited_text, render_template
-from ..table import table_csv, table_html
+from ..table import Table, table_csv, table_html
 from ..table_latex import table_latex
 from .data import ReportData
 from .findings import (
@@ -39,13 +40,6 @@ from .shear_figures import machining, shear_force_depth, stress_angle, stress_de
 from .site_figures import sites, snow_profiles
 from .tables import campaign_tables
 from .verdicts import verdicts
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from ..figures.drawing import LeftOut, Picture
-    from ..table import Table
-    from .data import ReportData
 
 RESULTS: Final = "results.json"
 SECTIONS: Final = {

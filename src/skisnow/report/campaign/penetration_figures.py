@@ -18,6 +18,7 @@ from ..figures.style import (
     GREY,
     SINGLE_MM,
     SitePlot,
+    SiteStyle,
     error_bars,
     legend_below,
     logarithmic,
@@ -29,7 +30,7 @@ from ..figures.style import (
     spans_a_decade,
 )
 from ..formatting import p_equals, prose, whole
-from .data import numbers, pairs, texts
+from .data import Json, ReportData, numbers, pairs, texts
 from .series_tables import count_resolved_offsets
 
 if TYPE_CHECKING:
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 
     from ..._support.arrays import FloatArray
     from ...campaign.records import PenetrationTests
-    from ..figures.style import SiteStyle
-    from .data import Json, ReportData
 
 MOST_SERIES: Final = 40
 """Maximum number of series in one panel of Fig 5."""

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import MM
 from ..table import Column, Table, record_table
-from .data import numbers, pairs
-
-if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
-    from .data import Json, ReportData
+from .data import Json, ReportData, numbers, pairs
 
 QUANTILES: Final = (0.0, 5.0, 25.0, 50.0, 75.0, 95.0, 100.0)
 LARGEST: Final = 12

@@ -15,9 +15,9 @@ from ...estimation.regressions import HARDNESS_KEY, STRESS_KEY
 from ...forces.cutting import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
 from ..figures.drawing import Drawing, LeftOut
-from ..figures.style import BLACK, SitePlot, error_bars, logarithmic, masks, scatter, spans_a_decade
+from ..figures.style import BLACK, SitePlot, SiteStyle, error_bars, logarithmic, masks, scatter, spans_a_decade
 from ..formatting import counted, interval, p_equals, prose, significant
-from .data import numbers
+from .data import Json, ReportData, numbers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..._support.arrays import FloatArray
-    from ..figures.style import SiteStyle
-    from .data import Json, ReportData
 
 SIGNIFICANT: Final = 0.05
 MOST_SENTENCES: Final = 6

@@ -9,11 +9,21 @@ from matplotlib.lines import Line2D
 
 from ..._support.messages import Message
 from ..._support.units import MM
-from ...estimation.snow_micro_pen import depth_profile
+from ...estimation.snow_micro_pen import DepthProfile, depth_profile
 from ..figures.drawing import Drawing, LeftOut
-from ..figures.style import BLUE, COLOURS, GREY, legend_below, logarithmic, mark_synthetic, new_figure, spans_a_decade
+from ..figures.style import (
+    BLUE,
+    COLOURS,
+    GREY,
+    SiteStyle,
+    legend_below,
+    logarithmic,
+    mark_synthetic,
+    new_figure,
+    spans_a_decade,
+)
 from ..formatting import figure_text, prose
-from .data import numbers, pairs
+from .data import Json, ReportData, TextArray, numbers, pairs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,9 +31,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..._support.arrays import FloatArray
-    from ...estimation.snow_micro_pen import DepthProfile
-    from ..figures.style import SiteStyle
-    from .data import Json, ReportData, TextArray
 
 MOST_SITES: Final = 40
 _ROW_MM: Final = 4.6

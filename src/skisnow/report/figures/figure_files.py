@@ -10,17 +10,14 @@ from typing import TYPE_CHECKING, Any, Final
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import require_writable, write_file
-from .drawing import FORMS, UNDATED, render
+from .drawing import FORMS, UNDATED, Drawing, Picture, render
 from .figure_data import figure_data
 from .style import journal_style, local_axes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
-    from pathlib import Path
 
     from matplotlib.figure import Figure
-
-    from .drawing import Drawing, Picture
 
 
 def picture_files(names: Iterable[str]) -> list[str]:

@@ -10,10 +10,10 @@ from markupsafe import Markup
 from ..._support.messages import ENGLISH, Message, local_number, outcome_words
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import write_file
-from ...racing import write_line
-from ...track.course.gates_table import GAP_COLUMNS, gap_rows, gaps_csv
+from ...racing import QuickestLine, Score, Worth, write_line
+from ...track.course.gates_table import GAP_COLUMNS, GateGap, gap_rows, gaps_csv
 from ..figures.course import run_course
-from ..figures.drawing import FORMS
+from ..figures.drawing import FORMS, Drawing, Picture
 from ..figures.figure_files import write_figure, write_pictures
 from ..formatting import aligned_rows, html, json_text, prose
 from ..sheet import Section
@@ -22,12 +22,8 @@ from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
-    from ...racing import QuickestLine, Score, Worth
     from ...simulation.run import Run
-    from ...track.course.gates_table import GateGap
-    from ..figures.drawing import Drawing, Picture
 
 
 SUMMARY = "race.json"

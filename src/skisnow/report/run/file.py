@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
@@ -18,17 +18,14 @@ from ..._support.environment import needed
 from ..._support.messages import Message
 from ..._support.staging import write_file
 from ...scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
-from ...simulation.run import GIVEN, LOST, STORED
+from ...simulation.run import GIVEN, LOST, STORED, Run
 from ...simulation.run_tables import track_columns, track_table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
     from pandas import DataFrame
     from xarray import Dataset
-
-    from ...simulation.run import Run
 
 CONVENTIONS: Final = "CF-1.11"
 MISSING: Final = 9.969209968386869e36

@@ -10,7 +10,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message, outcome_words
 from ...scenario.keys import SCENARIO_KEYS
-from ...simulation.run import OPEN_SHARE
+from ...simulation.run import OPEN_SHARE, Run
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
 from ..table import Column, Table
@@ -18,7 +18,6 @@ from .time_figures import grip_utilisation, gross_grip_utilisation
 from .track_figure import SKIS
 
 if TYPE_CHECKING:
-    from ...simulation.run import Run
     from ...track.course import CourseResult
 
 

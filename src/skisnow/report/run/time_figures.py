@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import DEGREE, MM
-from ...simulation.run import LOST, STORED
+from ...simulation.run import LOST, STORED, Run
 from ...track.turns import STRAIGHT
 from ..figures.course import edge_angles_of_skis
 from ..figures.style import (
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.collections import QuadMesh
     from matplotlib.figure import Figure
-
-    from ...simulation.run import Run
 
 
 _TIMES_MEDIAN: Final = 3.0

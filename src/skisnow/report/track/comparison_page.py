@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..._support.messages import ENGLISH, Message, in_language
 from ...comparison import compare_tracks, comparison_dict
-from ...track.course.gates_table import read_gate_gaps
+from ...track.course.gates_table import GateGap, read_gate_gaps
 from ..figures.figure_files import render_pictures
 from ..formatting import html
 from ..pair_verdicts import read_compared, time_verdict
@@ -20,9 +20,7 @@ from .summary import TITLES, track_verdict
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from typing import Any
 
-    from ...track.course.gates_table import GateGap
     from ..figures.drawing import Picture
 
 

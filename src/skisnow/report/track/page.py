@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Any, Final
 
 import numpy as np
 
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language, outcome_words
 from ...track.read import read_track
-from ...track.summary import track_summary
+from ...track.summary import TrackSummary, track_summary
 from ..figures.figure_files import render_pictures
 from ..formatting import counted
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table, record_table
 from .report import track_drawings
 from .summary import GPX_FILE, TURNS_FILE, track_gpx, turn_rows, turns_csv
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ...track.summary import TrackSummary
 
 _COLUMNS: Final = (
     Column("turn", Message("Turn"), "count"),

@@ -13,7 +13,7 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import ENGLISH, Message
 from ..._support.staging import require_writable, staged, write_file
 from ...track.course.gates_table import gates_csv
-from ...track.summary import summary_dict
+from ...track.summary import TrackSummary, summary_dict
 from ..figures.course import course_line
 from ..figures.drawing import Drawing
 from ..figures.figure_files import picture_files, write_pictures
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
     from ...comparison import Comparison, Distances
     from ...track.course import CourseResult
-    from ...track.summary import TrackSummary
 
 FIGURES: Final = ("map", "speed", "radius", "along")
 """Names of a track's figures, in figures/ as .png and .svg."""

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from ...scenario.identify_section import Measured, Prior
     from ...simulation.run import Run
     from ...snow import SnowProperties
-    from .figures import TimedTrack
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

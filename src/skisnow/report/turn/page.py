@@ -16,7 +16,7 @@ from ..._support.messages import ENGLISH, Message, in_language, outcome_words
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
-from ..figures.drawing import Drawing
+from ..figures.drawing import Drawing, Picture
 from ..figures.figure_files import write_pictures
 from ..formatting import counted, html, json_text, prose, significant
 from ..run.tables import scenario_table
@@ -25,6 +25,8 @@ from ..sheet import Header, Section, sheet
 from ..table import Column, Table
 from .chain import (
     BandShares,
+    EnsembleRun,
+    TurnChain,
     afterbody_depth_ratio,
     band_inputs,
     band_shares,
@@ -37,12 +39,8 @@ from .figures import FEWEST, draw_runs, track_band
 from .sentences import ensemble_accuracy, ensemble_sentence, headline, key_sentences, meaning
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from ...simulation.run import Run
     from ...snow import SnowProperties
-    from ..figures.drawing import Picture
-    from .chain import EnsembleRun, TurnChain
 
 FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 """Names of the figures of such a report, in figures/ as .png and .svg."""

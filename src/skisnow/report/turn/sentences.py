@@ -12,6 +12,7 @@ from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..formatting import counted, html, interval, prose, significant
 from .chain import (
     BandShares,
+    TurnChain,
     afterbody_depth_ratio,
     band_inputs,
     band_shares,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...simulation.run import Run
-    from .chain import TurnChain
 
 ALIKE: Final = 0.002
 """Relative difference below which two numbers are called the same."""

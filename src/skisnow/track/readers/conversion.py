@@ -16,7 +16,6 @@ from .text import spread_times
 if TYPE_CHECKING:
     from ..._support.arrays import BoolArray, FloatArray
     from ...parameters import Quantity
-    from .recording import Recording
 
 
 def build_track(

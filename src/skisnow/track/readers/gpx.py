@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta, timezone
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from xml.parsers import expat
 
 import numpy as np
@@ -18,9 +19,6 @@ import numpy as np
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import number
 from .recording import Recording, is_not_finite, track_error
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 DEEPEST: Final = 100
 """Elements within each other; a point with extensions has about seven."""

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Final
 from ..._support.errors import FieldDataError
 from ...parameters import Quantity, own_quantities
 from ..projection import HIGHEST, GeodeticPoint
-from ..track import Axes
+from ..track import Axes, SolutionArray
 
 if TYPE_CHECKING:
     from ..._support.arrays import BoolArray, FloatArray, IntArray
-    from ..track import SolutionArray
 
 
 @dataclass(eq=False)

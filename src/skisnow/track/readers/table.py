@@ -8,20 +8,17 @@ import itertools
 import math
 import re
 import unicodedata
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from datetime import datetime
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import BoolArray, FloatArray
 from ..._support.spreadsheet_text import number
 from .recording import FARTHEST, Recording, is_not_finite, track_error
 from .text import Cells, convert_serial_dates, decimal_mark_of, moment, require_width, split_cells
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from datetime import datetime
-
-    from ..._support.arrays import BoolArray, FloatArray
 
 TIMES: Final = ("time_s", "time")
 LOCAL: Final = ("x_m", "y_m", "z_m")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.spreadsheet_text import (
     LONGEST_CELL,
     MOST_COLUMNS,
@@ -21,12 +23,6 @@ from ..._support.spreadsheet_text import (
     named_separator,
 )
 from .recording import track_error
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from ..._support.arrays import BoolArray, FloatArray, IntArray
-
 
 _HEAD: Final = 1 << 16
 
