@@ -16,6 +16,7 @@ from skisnow.campaign.snow_micro_pen import SnowMicroPenProfile
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
 from skisnow.cli.shell import json_schema
 from skisnow.estimation.snow_micro_pen import SnowMicroPenAnalysis, depth_profile, evaluate_profile
+from skisnow.interop.snowex import site_pit
 from skisnow.report.campaign.summary import summary
 from skisnow.snow.measured_range import PENETROMETER_RELATIONS
 
@@ -222,6 +223,9 @@ def test_recordings_without_plate_tests_are_a_campaign(tmp_path: Path) -> None:
     assert analysis.results["campaign"]["remarks"] == []
     assert analysis.results["group_comparisons"] == []
     assert "A: mean force 2.00 N" in summary(analysis.results)
+    (relation,) = analysis.results["published_relations"]
+    assert (relation["source"], relation["n"]) == ("calonne-2020", 1)
+    assert relation["snow_density_kg_per_m3"] == pytest.approx(row["snow_density_kg_per_m3"])
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -231,6 +235,32 @@ def test_a_report_of_recordings_alone_has_their_profiles(tmp_path: Path) -> None
     (tmp_path / "one.PNT").write_bytes(plain_snow(2.0))
     skisnow.write_report(skisnow.analyse(tmp_path, n_resamples=100), tmp_path / "out")
     assert "figure-snow_profiles" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_samples_of_pits_alone_have_a_profile_and_a_strength_by_the_published_relation(tmp_path: Path) -> None:
+    """Eqn 14 at 500 kg/m³: −0.047 + 0.00031 × 500 = 0.108 N/mm²; 250 kg/m³ is outside of its range."""
+    (tmp_path / "campaign.toml").write_text('name = "pits"\n', encoding="utf-8")
+    (tmp_path / "density.csv").write_text(
+        "sample,site,snow_density_kg_per_m3,sample_depth_mm,status\n"
+        "1,A,520,300,\n2,A,480,100,\n3,B,250,,\n4,A,100,20,spilt\n",
+        encoding="utf-8",
+    )
+    analysis = skisnow.analyse(tmp_path, n_resamples=100)
+    pits, soft = analysis.results["published_relations"]
+    assert (pits["site"], pits["source"], pits["n"], pits["snow_density_kg_per_m3"]) == ("A", "density.csv", 2, 500.0)
+    assert pits["S_f_N_per_mm2"] == pytest.approx(0.108)
+    assert (soft["site"], soft["n"], soft["S_f_N_per_mm2"]) == ("B", 1, None)
+    jsonschema.validate(analysis.results, json_schema("results"))
+    assert "0.108 N/mm²" in summary(analysis.results)
+    (axes,) = analysis.plot("snow_profiles").axes
+    (line,) = axes.lines
+    assert np.asarray(line.get_xydata()).tolist() == [[480.0, 100.0], [520.0, 300.0]]
+    skisnow.write_report(analysis, tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "figure-snow_profiles" in page and "table-published_relations" in page
+    pit = site_pit(analysis, "A")
+    assert [(each.top, each.snow_density) for each in pit.densities] == [(0.3, 520.0), (0.1, 480.0)]
 
 
 @pytest.mark.parametrize("name", ["calonne-2020", "king-2020a"])

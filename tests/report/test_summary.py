@@ -180,7 +180,7 @@ def test_many_regressions_and_sites_are_cut_and_the_rest_counted(reference: Repo
 
 
 def test_a_campaign_with_nothing_has_a_summary(campaign: Campaign) -> None:
-    silent = replace(campaign, penetration=None, shear=None, gauge_resolution=None, load_uncertainty=None)
+    silent = replace(campaign, penetration=None, shear=None, density=None, gauge_resolution=None, load_uncertainty=None)
     text = summary(results_of(silent))
     assert "penetration experiments: none" in text
     assert "no depth uncertainty" in text

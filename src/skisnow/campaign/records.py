@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping, Sequence
     from pathlib import Path
 
-    from .._support.arrays import FloatArray, IntArray
+    from .._support.arrays import BoolArray, FloatArray, IntArray
     from ..geometry import Tool
     from .smet import CampaignWeather
     from .snow_micro_pen_records import SnowMicroPenRecordings
@@ -243,11 +243,12 @@ class ShearTests(Shown):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class DensitySamples(Shown):
-    """Samples of a density cutter: ρ in kg/m³. ``further`` as in `PenetrationTests`."""
+    """Samples of a density cutter: ρ in kg/m³, depth in m or NaN. ``further`` as in `PenetrationTests`."""
 
     sample: tuple[str, ...]
     site: tuple[str, ...]
     snow_density: FloatArray
+    sample_depth: FloatArray
     cancelled: tuple[str, ...]
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -258,6 +259,11 @@ class DensitySamples(Shown):
     def site_means(self) -> dict[str, float]:
         """Mean density of each site's samples that were not cancelled (kg/m³)."""
         return _means(self.site, self.snow_density, self.cancelled)
+
+    @property
+    def in_profile(self) -> BoolArray:
+        """True for samples with a depth that were not cancelled."""
+        return np.isfinite(self.sample_depth) & (np.array(self.cancelled) == "")
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -9,11 +9,13 @@ from __future__ import annotations
 import platform
 from dataclasses import asdict
 from importlib.metadata import version
+from math import fsum, isfinite
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import orjson
 
-from .._support.units import DEGREE, MM, N_PER_MM3
+from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..snow.published.moessner_2013 import SNOW_DENSITY_RANGE, failure_shear_stress_from_density
 from .parts import PenetrationAnalysis, ShearAnalysis, SiteMean, campaign_notes
 from .result_rows import (
     campaign_model_results,
@@ -77,10 +79,36 @@ def results_dict(analysis: Analysis) -> Json:
     }
     if analysis.snow_micro_pen is not None:
         results["snow_micro_pen"] = snow_micro_pen_results(analysis.snow_micro_pen)
+    if analysis.penetration is None and analysis.shear is None:
+        results["published_relations"] = list(_strengths_by_density(analysis))
     if analysis.weather is not None and analysis.campaign.weather is not None:
         results["weather"] = weather_results(analysis.campaign.weather, analysis.weather)
     cleaned: Json = without_nan(results)
     return cleaned
+
+
+def _strengths_by_density(analysis: Analysis) -> Iterator[Json]:
+    """Density of each site by samples and by recordings, and S_f by Eqn 14; None outside of its measured range."""
+    samples, pen = analysis.campaign.density, analysis.snow_micro_pen
+    values: dict[tuple[str, str], list[float]] = {}
+    if samples is not None:
+        for site, value, why in zip(samples.site, samples.snow_density.tolist(), samples.cancelled, strict=True):
+            values.setdefault((site, "density.csv"), []).extend([] if why else [value])
+    if pen is not None:
+        for site, value in zip(pen.recordings.site, pen.snow_density.tolist(), strict=True):
+            values.setdefault((site, pen.recordings.settings.relation), []).extend([value] if isfinite(value) else [])
+    low, high = SNOW_DENSITY_RANGE
+    for (site, source), numbers in sorted(values.items()):
+        if numbers:
+            mean = fsum(numbers) / len(numbers)
+            stress = float(failure_shear_stress_from_density(mean)) / N_PER_MM2 if low <= mean <= high else None
+            yield {
+                "site": site,
+                "source": source,
+                "n": len(numbers),
+                "snow_density_kg_per_m3": mean,
+                "S_f_N_per_mm2": stress,
+            }
 
 
 def _campaign(analysis: Analysis) -> Json:

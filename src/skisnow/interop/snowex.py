@@ -9,17 +9,20 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import write_file
 from .._support.units import CM, MM
+from ..campaign.records import DensitySamples
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
 from ..estimation.regressions import HARDNESS_KEY, STRESS_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from ..campaign.records import Campaign, DensitySamples, PenetrationTests, ShearTests
+    from ..campaign.records import Campaign, PenetrationTests, ShearTests
     from ..campaign.snow_micro_pen import SnowMicroPenProfile
     from ..estimation import Analysis
     from ..estimation.snow_micro_pen import EvaluatedRecording
@@ -169,11 +172,12 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     densities = tuple(_densities(campaign, site))
     profiles = tuple(_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
+    is_at_surface = bool(temperatures) or not all(density.top for density in densities)
     return SnowPit(
         name=site,
         time=min(_times(campaign, site), default=""),
         observer=", ".join(campaign.observers),
-        comment=f"{campaign.name}. {_NO_DEPTH}" if densities or temperatures else campaign.name,
+        comment=f"{campaign.name}. {_NO_DEPTH}" if is_at_surface else campaign.name,
         region=campaign.place,
         latitude_deg=None if first is None else first.latitude_deg,
         longitude_deg=None if first is None else first.longitude_deg,
@@ -229,15 +233,18 @@ def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
     """Every sample of density.csv; then densities of experiments that are not among them, each once."""
     tables = campaign.density, campaign.penetration, campaign.shear
     sampled, *beside = ([] if table is None else list(_densities_of(table, site)) for table in tables)
-    others = {density: None for densities in beside for density in densities if density not in sampled}
-    for density in (*sampled, *others):
-        yield LayerDensity(0.0, density)
+    known = {density for _, density in sampled}
+    others = {density: None for densities in beside for _, density in densities if density not in known}
+    yield from (LayerDensity(depth, density) for depth, density in (*sampled, *((0.0, other) for other in others)))
 
 
-def _densities_of(table: DensitySamples | PenetrationTests | ShearTests, site: str) -> Iterator[float]:
-    for name, density, reason in zip(table.site, table.snow_density.tolist(), table.cancelled, strict=True):
+def _densities_of(table: DensitySamples | PenetrationTests | ShearTests, site: str) -> Iterator[tuple[float, float]]:
+    """Depth (0 where it is unknown) and density of each test or sample of the site that was not cancelled."""
+    depth = table.sample_depth if isinstance(table, DensitySamples) else np.zeros(len(table.site))
+    rows = zip(table.site, np.nan_to_num(depth).tolist(), table.snow_density.tolist(), table.cancelled, strict=True)
+    for name, top, density, reason in rows:
         if name == site and not reason and math.isfinite(density):
-            yield density
+            yield top, density
 
 
 def _recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:

@@ -26,7 +26,7 @@ from ..estimation.group_comparisons import DIFFERENCE
 from ..report import write_report
 from ..report.campaign.data import ReportData
 from ..report.campaign.key_results import key_results
-from ..report.campaign.page import DRAWERS, tables_html
+from ..report.campaign.page import DRAWERS, drawers_of, tables_html
 from ..report.campaign.tables import campaign_tables
 from ..report.campaign.verdicts import verdicts
 from ..report.figures.drawing import Drawing, data_uri, drawing_svg
@@ -43,7 +43,8 @@ if TYPE_CHECKING:
     from .subprocesses import Worker
 
 LEFT_OUT: Final = Message("excluded by choice in the lab")
-N_FIGURES: Final = len(DRAWERS)
+N_FIGURES: Final = len(DRAWERS) + 2
+"""Maximum number of figures: also those of recordings."""
 SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetration_experiments", "shear_experiments")
 
 
@@ -135,7 +136,8 @@ def figure(analysis: Analysis, number: int, language: str) -> FigureImage | None
     """Image of one of the report's figures, counted from 0; None if the campaign has no data for it."""
     data = ReportData(analysis)
     with journal_style(), in_language(language):
-        drawn = DRAWERS[number](data, site_styles(data))
+        drawers = drawers_of(analysis.campaign)
+        drawn = drawers[number](data, site_styles(data)) if number < len(drawers) else None
         if not isinstance(drawn, Drawing):
             return None
         local_axes(drawn.figure)

@@ -116,6 +116,10 @@ class DensityRow:
     """The numbers of a row of density.csv."""
 
     snow_density: Annotated[float, _DENSITY]
+    sample_depth: Annotated[
+        float | None,
+        Quantity("sample_depth_mm", "depth of the sample's middle below the snow surface", lowest=0.0),
+    ] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None
     snow_temperature: Annotated[float | None, _SNOW] = None

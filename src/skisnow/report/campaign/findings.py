@@ -37,7 +37,7 @@ def caveats(data: ReportData) -> list[Markup]:
 def _missing_uncertainties(data: ReportData) -> list[str]:
     campaign = data.results["campaign"]
     sentences: list[str] = []
-    if campaign["gauge_resolution_mm"] is None:
+    if campaign["gauge_resolution_mm"] is None and (data.penetration or data.shear):
         sentences.append(
             Message(
                 "The gauge's resolution is not stated: no interval carries a depth uncertainty, and no experiment "

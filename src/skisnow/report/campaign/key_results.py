@@ -22,7 +22,7 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each available result."""
-    builders = (_hardness, _stress, _unloading, _displacement, _law, _relations)
+    builders = (_hardness, _stress, _unloading, _displacement, _by_relation, _law, _relations)
     sentences = (build(data) for build in builders)
     return [sentence for sentence in sentences if sentence is not None]
 
@@ -115,6 +115,25 @@ def _displacement(data: ReportData) -> Markup | None:
         ends="" if ends is None else prose(" (95 % interval {pair} mm)", pair=interval(ends)),
         n=counted(row["n"], "{count} shear experiment", "{count} shear experiments"),
     )
+
+
+def _by_relation(data: ReportData) -> Markup | None:
+    """Density of each site and S_f by the published relation, in a campaign without plate tests."""
+    rows = data.results.get("published_relations")
+    if not rows:
+        return None
+    return prose(
+        "Density: {densities}. Shear strength S_f by the published relation with density, not measured here: "
+        "{stresses}.",
+        densities=_of_sites(rows, "snow_density_kg_per_m3", "kg/m³"),
+        stresses=_of_sites([row for row in rows if row["S_f_N_per_mm2"]], "S_f_N_per_mm2", "N/mm²")
+        or Message("outside of its range at each site"),
+    )
+
+
+def _of_sites(rows: list[Json], key: str, unit: str) -> Markup:
+    values = [Markup("{} {} {}").format(row["site"], _strong(row[key]), unit) for row in rows]
+    return Markup("; ").join(values)
 
 
 class Quantity(NamedTuple):

@@ -15,11 +15,12 @@ from ..._support.environment import paused_collector
 from ..._support.errors import ParameterError, require_language
 from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import prepare_folder, staged, write_file
+from ...campaign import Campaign
 from ...estimation import Analysis
 from ...estimation.results import results_json
 from ..figures.drawing import Drawing, LeftOut, Picture
 from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
-from ..figures.style import site_styles
+from ..figures.style import SiteStyle, site_styles
 from ..formatting import counted, days_words, moment_words, significant, whole
 from ..sheet import bibtex, cited_text, render_template
 from ..table import Table, table_csv, table_html
@@ -263,8 +264,14 @@ DRAWERS: Final = (
     stress_hardness,
 )
 """Functions that draw one figure each, in the order of the report."""
-RECORDING_DRAWERS: Final = (snow_profiles, hardness_mean_force)
-"""Figures of a campaign with recordings of a SnowMicroPen."""
+
+
+def drawers_of(campaign: Campaign) -> tuple[Callable[[ReportData, Sequence[SiteStyle]], Drawing | LeftOut], ...]:
+    """Functions of the figures that a campaign with its tables can have."""
+    has_profile = campaign.density is not None and bool(campaign.density.in_profile.any())
+    recorded = (snow_profiles, hardness_mean_force) if campaign.snow_micro_pen else ()
+    of_plates = DRAWERS if campaign.penetration or campaign.shear else ()
+    return of_plates + (recorded or (snow_profiles,) * has_profile)
 
 
 def campaign_figures(
@@ -275,7 +282,7 @@ def campaign_figures(
 
     def drawings() -> Iterator[Drawing]:
         styles = site_styles(data)
-        for draw in (*DRAWERS, *RECORDING_DRAWERS) if data.campaign.snow_micro_pen else DRAWERS:
+        for draw in drawers_of(data.campaign):
             drawing = draw(data, styles)
             if isinstance(drawing, Drawing):
                 yield drawing

@@ -9,7 +9,8 @@ from matplotlib.lines import Line2D
 
 from ..._support.messages import Message
 from ..._support.units import MM
-from ...estimation.snow_micro_pen import DepthProfile, depth_profile
+from ...campaign.records import DensitySamples
+from ...estimation.snow_micro_pen import DepthProfile, SnowMicroPenAnalysis, depth_profile
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import (
     BLUE,
@@ -26,7 +27,7 @@ from ..formatting import figure_text, prose
 from .data import Json, ReportData, TextArray, numbers, pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from matplotlib.axes import Axes
 
@@ -102,40 +103,66 @@ _PANELS: Final = (
 
 
 def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
-    """Force, density and surface area of each used recording against the depth below the snow surface."""
-    name, pen = "snow_profiles", data.analysis.snow_micro_pen
-    usable = [] if pen is None else [i for i, each in enumerate(pen.evaluated) if each.is_used]
-    if pen is None or not usable:
-        return LeftOut(name, "Profiles of the SnowMicroPen", Message("no recording is used"))
-    recordings, drawn = pen.recordings, usable[:MOST_DRAWN]
-    sites = sorted({recordings.site[index] for index in drawn})
+    """Force, density and surface area of each used recording, and densities of samples, against the depth."""
+    name, samples = "snow_profiles", _samples_by_site(data.campaign.density)
+    profiles = list(_profiles(data.analysis.snow_micro_pen))
+    if not profiles and not samples:
+        return LeftOut(name, Message("Profiles of the snow"), Message("no recording is used"))
+    sites = sorted({site for site, _ in profiles} | samples.keys())
     colours = {site: COLOURS[place % len(COLOURS)] for place, site in enumerate(sites)}
-    found = [
-        (colours[recordings.site[index]],
-         depth_profile(recordings.profile(index), recordings.settings, pen.evaluated[index].surface))
-        for index in drawn
+    found = [(colours[site], profile) for site, profile in profiles]
+    panels = [
+        (key, label) for key, label in _PANELS
+        if any(np.isfinite(getattr(each, key)).any() for _, each in found) or (samples and key == "snow_density")
     ]  # fmt: skip
-    panels = [(key, label) for key, label in _PANELS if any(np.isfinite(getattr(each, key)).any() for _, each in found)]
-    figure = new_figure(width_mm=60.0 * len(panels), height_mm=100.0)
+    figure = new_figure(width_mm=max(85.0, 60.0 * len(panels)), height_mm=100.0)
     every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for axes, (key, label) in zip(every, panels, strict=True):
         for colour, profile in found:
             axes.plot(_shown(profile, key), profile.depth / MM, color=colour, linewidth=0.6, alpha=0.8)
+        for site, (depth, density) in samples.items() if key == "snow_density" else ():
+            axes.plot(density, depth / MM, "o-", color=colours[site], markersize=3.0, linewidth=0.8)
         axes.set_xlabel(label)
-    forces = np.concatenate([each.force for _, each in found])
+    forces = np.concatenate([each.force for _, each in found] or [np.ones(1)])
     if spans_a_decade(forces):
         logarithmic(every[0], "x", forces)
     every[0].set_ylabel(Message("depth below the snow surface (mm)"))
-    every[0].set_ylim(max(float(each.depth.max()) for _, each in found) / MM, 0.0)
+    depths = [each.depth for _, each in found] + [depth for depth, _ in samples.values()]
+    every[0].set_ylim(1.03 * float(np.concatenate(depths).max()) / MM, 0.0)
     legend_below(figure, [Line2D([], [], color=colours[site], label=figure_text(site)) for site in sites])
     mark_synthetic(data, every[-1])
-    caption = prose(
-        "SnowMicroPen: force, density and specific surface area over the depth below the snow surface, by site, in "
-        "overlapping windows. Density and surface area by {relation}, which was fitted to ungroomed snow.",
-        relation=recordings.settings.relation,
-    )
-    alt = Message("Force, density and specific surface area against depth, one line for each recording.")
+    caption = prose("Profiles over the depth below the snow surface, by site; points are samples of the density.")
+    if profiles and (pen := data.analysis.snow_micro_pen):
+        caption += prose(
+            " SnowMicroPen: force, density and specific surface area in overlapping windows. Density and surface area "
+            "by {relation}, which was fitted to ungroomed snow.",
+            relation=pen.recordings.settings.relation,
+        )
+    alt = Message("Force, density and specific surface area against depth, one line for each recording or pit.")
     return Drawing(name, caption, alt, figure, wide=len(panels) > 1)
+
+
+def _profiles(pen: SnowMicroPenAnalysis | None) -> Iterator[tuple[str, DepthProfile]]:
+    """Site and profile of the first used recordings."""
+    if pen is None:
+        return
+    used = [index for index, each in enumerate(pen.evaluated) if each.is_used]
+    for index in used[:MOST_DRAWN]:
+        recordings, surface = pen.recordings, pen.evaluated[index].surface
+        yield recordings.site[index], depth_profile(recordings.profile(index), recordings.settings, surface)
+
+
+def _samples_by_site(samples: DensitySamples | None) -> dict[str, tuple[FloatArray, FloatArray]]:
+    """Depths in rising order, and densities, of the samples of each site that have a depth."""
+    if samples is None:
+        return {}
+    place, site = samples.in_profile, np.array(samples.site)
+    found = {}
+    for name in sorted(set(site[place].tolist())):
+        rows = np.flatnonzero(place & (site == name))
+        rows = rows[np.argsort(samples.sample_depth[rows])]
+        found[name] = samples.sample_depth[rows], samples.snow_density[rows]
+    return found
 
 
 def _shown(profile: DepthProfile, key: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -56,8 +56,9 @@ def _lines(results: Json) -> Iterator[str]:
     yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
     yield from _displacement(results, tag)
     yield from _recordings(results, tag)
-    has_tests = any(results[kind]["experiments"] for kind in ("penetration", "shear"))
-    yield from _missing_values(results["campaign"], has_tests=has_tests or "snow_micro_pen" not in results)
+    relations = results.get("published_relations", ())
+    yield from map(_by_relation, relations)
+    yield from _missing_values(results["campaign"], has_tests=not relations)
     if results["penetration"]["selected"]:
         yield ""
         yield from _models(results["penetration"], tag)
@@ -134,6 +135,16 @@ def _recordings(results: Json, tag: str) -> Iterator[str]:
             if (known := [row[key] for row in mine if row[key] is not None])
         ]
         yield f"SnowMicroPen{tag} at {site}: mean {', '.join(means)} (by {pen['relation']}), recordings: {len(mine)}"
+
+
+def _by_relation(row: Json) -> str:
+    """Density of a site, and S_f by the published relation."""
+    density = (
+        f"density at {row['site']} ({row['source']}): {plain(row['snow_density_kg_per_m3'])} kg/m³, n = {row['n']}"
+    )
+    stress = row["S_f_N_per_mm2"]
+    given = "outside its range" if stress is None else f"{plain(stress)} N/mm²"
+    return f"{density}; S_f by the published relation with density, not measured: {given}"
 
 
 def _ratio_in_words(row: Json) -> str:
@@ -215,10 +226,9 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
     from ..figures.drawing import Drawing
     from ..figures.style import journal_style, site_styles
     from .data import ReportData
-    from .page import DRAWERS, RECORDING_DRAWERS
+    from .page import drawers_of
 
-    recordings = RECORDING_DRAWERS if analysis.campaign.snow_micro_pen else ()
-    drawers = {drawer.__name__: drawer for drawer in (*DRAWERS, *recordings)}
+    drawers = {drawer.__name__: drawer for drawer in drawers_of(analysis.campaign)}
     if what not in drawers:
         raise ParameterError(
             "Unknown figure {what!r} of an analysis. {names}",

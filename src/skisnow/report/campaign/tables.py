@@ -11,6 +11,7 @@ import numpy as np
 from ..._support.messages import Message
 from ...campaign import QUALITY_FLAGS
 from ...estimation.comparisons import own_mean
+from ...snow.published.moessner_2013 import SNOW_DENSITY_RANGE
 from ..table import Column, Table, record_table
 from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .series_tables import (
@@ -264,6 +265,26 @@ def snow_micro_pen_table(data: ReportData) -> Table:
     )
 
 
+def published_relations_table(data: ReportData) -> Table:
+    """Density of each site and S_f by the published relation, for a campaign without plate tests."""
+    columns = (
+        Column("site", Message("Site"), "text"),
+        Column("source", Message("density by"), "text"),
+        Column("n", "n", "count"),
+        Column("snow_density_kg_per_m3", "ρ", unit="kg/m³"),
+        Column("S_f_N_per_mm2", Message("S_f by the published relation"), unit="N/mm²"),
+    )
+    low, high = SNOW_DENSITY_RANGE
+    note = Message(
+        "Not measured here: S_f = −0.047 + 0.00031 ρ (Mössner and others 2013, Eqn 14; rmse 0.059 N/mm²) is given "
+        "within its range of {low:g} to {high:g} kg/m³. No published relation gives H_V from the density.",
+        low=low,
+        high=high,
+    )
+    caption = Message("Density of each site, and shear strength by a published relation.")
+    return record_table("published_relations", caption, columns, data.results["published_relations"], note=note)
+
+
 def files_table(data: ReportData) -> Table:
     """Every campaign file with its checksum."""
     return Table(
@@ -362,6 +383,7 @@ BUILDERS: Final = (
     displacement_sites_table,
     displacement_table,
     snow_micro_pen_table,
+    published_relations_table,
     regressions_table,
     weather_table,
     group_comparison_table,
@@ -381,6 +403,7 @@ def campaign_tables(data: ReportData) -> dict[str, Table]:
     """
     absent = {
         snow_micro_pen_table: data.campaign.snow_micro_pen is None,
+        published_relations_table: not data.results.get("published_relations"),
         weather_table: data.campaign.weather is None,
     }
     builders = (build for build in BUILDERS if not absent.get(build, False))
