@@ -166,6 +166,10 @@ target = 11.0
     assert skisnow.read_ski(tmp_path / "out" / "ski.toml").tip_width == pytest.approx(
         printed["keys"]["tip_width_mm"] / 1e3, rel=1e-9
     )
+    assert main(["design", str(tmp_path / "eleven.toml"), "--out", str(tmp_path / "out"), "--language", "de"]) == 0
+    heading, row, *_ = capsys.readouterr().out.splitlines()
+    assert heading.split() == ["Variable", "Entwurf"]
+    assert row.split() == ["sidecut_mm", f"{printed['values']['sidecut_mm']:.6g}"]
 
 
 def test_command_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .._support.messages import Message, in_language
 from .options import add_language, number, whole_number
 from .output import Progress, announced, list_fonts, print_json
 
@@ -180,6 +181,7 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--front", type=whole_number(2, 1000), metavar="N", help="front.csv instead: N designs between two targets"
     )
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
+    add_language(parser, "the printed result")
     parser.set_defaults(run=design_ski)
 
 
@@ -197,7 +199,8 @@ def design_ski(options: argparse.Namespace) -> int:
     if options.json:
         print_json(design.as_dict())
     else:
-        print(_summary(design))
+        with in_language(options.language):
+            print(_summary(design))
         print("\n".join(f"written: {path}" for path in paths))
     return 0 if design.reached else 1
 
@@ -222,15 +225,18 @@ def _front(options: argparse.Namespace, task: DesignTask) -> int:
 
 
 def _summary(design: Design) -> str:
-    lines = [f"{'variable':24} {'design':>12}"]
+    names = (Message("before"), Message("design"), Message("change %"), Message("rounded"))
+    before, after, change, rounded = map(str, names)
+    condition, output = str(Message("condition")), str(Message("output"))
+    lines = [f"{Message('variable')!s:24} {after:>12}"]
     lines += [f"{name:24} {value:12.6g}" for name, value in design.values.items()]
-    lines += ["", f"{'condition':>9}  {'output':26} {'before':>11} {'design':>11} {'change %':>9} {'rounded':>11}"]
+    lines += ["", f"{condition:>9}  {output:26} {before:>11} {after:>11} {change:>10} {rounded:>11}"]
     for row in design.rows:
-        numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "9.3g"), _number(row.rounded))
+        numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "10.3g"), _number(row.rounded))
         lines.append("{:9}  {:26} {} {} {} {}".format(row.condition, row.output, *numbers))
-    lines += ["", "local optima, with the share of starts that reached them:"]
-    lines += [f"  {optimum.share:5.0%}  objective {optimum.result:.6g}" for optimum in design.optima]
-    lines += ["", *map(str, design.remarks), f"equilibria: {design.equilibria}"]
+    lines += ["", str(Message("local optima, with the share of starts that reached them, and their objective:"))]
+    lines += [f"  {optimum.share:5.0%}  {optimum.result:.6g}" for optimum in design.optima]
+    lines += ["", *map(str, design.remarks), str(Message("equilibria: {count}", count=design.equilibria))]
     return "\n".join(lines)
 
 
