@@ -63,8 +63,8 @@ def page_of_track(path: Path, name: str, language: str = ENGLISH) -> str:
     with in_language(language):
         count = counted(len(summary.turns), "{count} turn", "{count} turns")
         sections = [
-            *([Section("turns", Message("Turns"), tables=[turns_table(summary)])] if summary.turns else []),
             Section("pictures", Message("From above"), pictures=pictures),
+            *([Section("turns", Message("Turns"), tables=[turns_table(summary)])] if summary.turns else []),
         ]
         return sheet(Header(Message("Measured track"), name, [], headline=count), sections)
 
