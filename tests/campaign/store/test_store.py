@@ -9,6 +9,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import numpy as np
 import pytest
 from sqlalchemy import func, select, text
 from tests.coded import raises
@@ -28,7 +29,7 @@ FILES = {
     "windows.csv": "Schneehärte;1,5\r\n".encode("cp1252"),
     "empty.csv": b"",
     ".hidden/.DS_Store": b"\x00\x01",
-    "raw/day 1/SMP.PNT": b"".join(number.to_bytes(4) for number in range(600_000)),  # 2.3 MiB: three chunks
+    "raw/day 1/SMP.PNT": np.arange(600_000, dtype=">u4").tobytes(),  # 2.3 MiB: three chunks
     "raw/day 1/exactly one chunk": b"x" * (1 << 20),
     "ääkköset/雪.csv": b"\r\n\r",
     "Case.csv": b"upper",

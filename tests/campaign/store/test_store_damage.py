@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 
+import numpy as np
 import pytest
 from sqlalchemy import event
 from tests.coded import raises
@@ -25,7 +26,7 @@ FILES = {
     "empty.csv": b"",
     "windows.csv": "Schneehärte;1,5\r\n".encode("cp1252"),
     "case.csv": b"lower",
-    "raw/SMP.PNT": b"".join(number.to_bytes(4) for number in range(600_000)),  # 2.3 MiB: three chunks
+    "raw/SMP.PNT": np.arange(600_000, dtype=">u4").tobytes(),  # 2.3 MiB: three chunks
 }
 
 SMALL = {"campaign.toml": b"name = 'day'\n", "sub/a.csv": b"experiment,site\n" * 300, "b.bin": bytes(range(256)) * 9}
