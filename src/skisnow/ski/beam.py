@@ -216,7 +216,7 @@ class ClampedSki:
 
     @functools.cached_property
     def mass(self) -> FloatArray:
-        """Banded matrix (size, 11), relative to the boot."""
+        """Banded mass matrix (size, 11) of motions relative to the boot."""
         at = self.ski.at(places_within(self.node, GAUSS_POINTS))
         inertia = at.mass_per_length * at.width**2 / 12.0
         matrices = mass_matrices(self.node[:-1] - self.node[1:], at.mass_per_length, inertia)

@@ -263,7 +263,7 @@ def own_identity() -> Identity:
 
 
 def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
-    """The rows of some points."""
+    """Rows of some points, and the mean time of a point (s)."""
     start = time.perf_counter()
     rows = [(number, row_text(function(point))) for number, point in points]
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
