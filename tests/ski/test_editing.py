@@ -2,6 +2,7 @@ import dataclasses
 import math
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,19 @@ from tests.coded import raises
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning
 from skisnow._support.units import MM
 from skisnow.ski import Ski, read_ski, ski_named, ski_names, write_ski
-from skisnow.ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
+from skisnow.ski.editing import (
+    EDITED_COLUMNS,
+    SIDECUT,
+    SkiEdit,
+    edit_stations,
+    edited_ski,
+    shape_parameters,
+    shape_value,
+    table_growth,
+    values_at,
+    varied_ski,
+)
+from skisnow.ski.ski_file import ski_of_keys
 
 NAN = math.nan
 
@@ -175,3 +188,28 @@ def test_any_table_survives(
         warnings.simplefilter("ignore", RangeWarning)  # of bevels below a tenth of a degree
         write_ski(ski, path)
         require_same(read_ski(path), ski)
+
+
+def test_growth_with_each_key_is_that_of_differences() -> None:
+    keys: dict[str, Any] = dict(read_ski("slalom").keys or {}) | {
+        "tip_end_width_mm": 30.0, "tail_overhang_mm": 22.0, "boot_position_mm": 11.0, "camber_rounding_mm": 90.0,
+        "shovel_height_mm": 55.0, "tail_height_mm": 12.0, "tip_rocker_length_mm": 60.0, "tip_rocker_height_mm": 1.0,
+        "tail_rocker_length_mm": 40.0, "tail_rocker_height_mm": 0.7, "base_bevel_deg": 0.5, "edge_width_mm": 1.8,
+        "stiffness_station_mm": [700, 320, 20, -310, -690], "EI_N_m2": [110, 240, 430, 260, 120],
+    }  # fmt: skip
+    plain = {key: value for key, value in keys.items() if key not in ("tip_end_width_mm", "stiffness_station_mm")}
+    for each in (keys, plain):
+        ski = ski_of_keys(each)
+        for name in (name for name in shape_parameters(ski) if name.startswith("ski.")):
+            h = 1e-5 * max(abs(shape_value(ski, name)), 10.0)
+            ends = [varied_ski(ski, name, side * h) for side in (1.0, -1.0)]
+            growth = table_growth(ski, name)
+            for row, table in enumerate(("station", *EDITED_COLUMNS.values())):
+                differences = (getattr(ends[0], table) - getattr(ends[1], table)) / (2.0 * h)
+                size = np.max(np.abs(getattr(ski, table))) / max(abs(shape_value(ski, name)), 10.0)
+                assert growth.tables[row] == pytest.approx(differences, abs=1e-6 * size), (name, table)
+            numbers = [
+                (getattr(ends[0], key) - getattr(ends[1], key)) / (2.0 * h)
+                for key in ("running_length", "base_bevel", "edge_width")
+            ]
+            assert growth.numbers == pytest.approx(numbers, abs=1e-12)

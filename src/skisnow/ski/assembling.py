@@ -83,13 +83,7 @@ class SkiParts:
         )
 
     def _moved_grid(self, like: Ski) -> FloatArray:
-        if self.stations is not None:
-            return like.station
-        own = self.layout
-        before = np.array([like.station[-1], *like.sidecut_ends, *like.contact_points, 0.0, like.station[0]])
-        after = np.array([own.tail, *own.widest_points, *own.contact_points, 0.0, own.tip])
-        _, first = np.unique(np.round(before, 9), return_index=True)
-        return np.asarray(like.station + np.interp(like.station, before[first], after[first] - before[first]))
+        return like.station if self.stations is not None else moved_stations(like.station, like.layout, self.layout)
 
     def _grid(self) -> FloatArray:
         own_stations = np.empty(0) if self.stations is None else self.stations
@@ -105,6 +99,17 @@ class SkiParts:
             for start, end, count in zip(places[:-1], places[1:], counts, strict=True)
         ]
         return np.concatenate([*pieces, places[-1:]])
+
+
+def moved_stations(station: FloatArray, before: Layout, after: Layout) -> FloatArray:
+    """Stations (m) that move with tip, tail, contact points and widest points; the boot stays."""
+
+    def fixed(layout: Layout) -> FloatArray:
+        return np.array([layout.tail, *layout.widest_points, *layout.contact_points, 0.0, layout.tip])
+
+    _, first = np.unique(np.round(fixed(before), 9), return_index=True)
+    shift = (fixed(after) - fixed(before))[first]
+    return np.asarray(station + np.interp(station, fixed(before)[first], shift))
 
 
 def arc_ski(

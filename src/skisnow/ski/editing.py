@@ -16,9 +16,10 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import MM
 from ..parameters import nearest
-from .assembling import stiffness_table
-from .file_keys import COLUMNS, LISTS, SKI_KEYS, STIFFNESSES
-from .layout import Layout
+from .assembling import moved_stations, stiffness_table
+from .file_keys import BASE, COLUMNS, LISTS, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
+from .layout import BaseShape, Layout, layout_of_lengths
+from .outline import ArcOutline
 from .ski_file import MADE_OF_KEYS, ski_of_keys
 from .table_file import StationTable
 
@@ -180,7 +181,6 @@ LINEAR: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm", "camber_mm",
 _WITHOUT: Final = ("mass_kg", "side_edge_deg", "edge_radius_mm")  # no part in a carve, or no derivative
 _TABLES: Final = ("station", "width", "base_height", "bending_stiffness", "torsional_stiffness")
 _NUMBERS: Final = ("running_length", "base_bevel", "edge_width")
-_STEP: Final = 1e-5  # relative change of one row of a list: both errors of the difference are about 1e-10
 _ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
 
 
@@ -240,11 +240,6 @@ def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[s
     return out
 
 
-def is_linear(keys: Mapping[str, Any], key: str) -> bool:
-    """True if the tables of a ski are linear in a key; false for widths with a separate key for the tip's end."""
-    return key in LINEAR and not (key.endswith("width_mm") and "tip_end_width_mm" in keys)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class TableGrowth:
     """Growth of a ski with a parameter, SI per its unit, on rows that move with it.
@@ -257,40 +252,46 @@ class TableGrowth:
     numbers: FloatArray
 
 
-_LINEAR_GROWTHS: Final[dict[tuple[object, ...], TableGrowth]] = {}
-_MOST_KEPT: Final = 256
-_WITHOUT_EFFECT: Final = ("name", "source", "mass_kg", "EI_N_m2", "GJ_N_m2", *LINEAR)  # on growths with `LINEAR`
-_LENGTH_STEP: Final = 1e-3  # mm; of other parameters a ten thousandth
+_PARTS: Final = ("width", "base_height", *STIFFNESSES)
+_LENGTHS: Final = ("length_mm", "running_length_mm", "sidecut_length_mm", "tail_overhang_mm", "boot_position_mm")
+_OF_NUMBERS: Final = ("running_length_mm", "base_bevel_deg", "edge_width_mm")
+"""Keys of `_NUMBERS`."""
+_PLAIN: Final = BaseShape()
+_LENGTH_STEP: Final = 1e-3  # mm; of other keys a ten thousandth
 
 
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
-    """Growth of a ski with a parameter of `shape_parameters`, in closed form, otherwise by central differences."""
+    """Growth of a ski with a parameter of `shape_parameters`, of lengths and heights by central differences."""
     value, key = shape_value(ski, name), name.removeprefix("ski.")
-    row = _ROW.fullmatch(key)
     if name in FACTORS:
         column = name.removeprefix("edit.")
         if column == SIDECUT:
             return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
         return _of_table(EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column])))
-    require_own_tables(ski)
+    parsed, station = parsed_keys(ski), ski.station.tobytes()
+    widths = np.array([parsed.tip_width, parsed.waist_width, parsed.tail_width], float)
+    row = _ROW.fullmatch(key)
     if row and row[1] in STIFFNESSES:
-        return _of_table(EDITED_COLUMNS[row[1]], _growth_with_row(ski, row[1], int(row[2]) - 1))
-
-    def central(h: float) -> TableGrowth:
-        skis = [varied_ski(ski, name, side * h) for side in (1.0, -1.0)]
-        ends = [[np.array([getattr(each, field) for field in names]) for names in (_TABLES, _NUMBERS)] for each in skis]
-        return TableGrowth(*((upper - lower) / (2.0 * h) for upper, lower in zip(*ends, strict=True)))
-
-    if not is_linear(ski.keys or {}, key):
-        return central(_LENGTH_STEP if name.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP)
-    # the growth is the same for all skis of these lengths
-    same = (key, *((k, str(v)) for k, v in (ski.keys or {}).items() if k not in _WITHOUT_EFFECT))
-    if same not in _LINEAR_GROWTHS:
-        if len(_LINEAR_GROWTHS) >= _MOST_KEPT:
-            _LINEAR_GROWTHS.clear()
-        _LINEAR_GROWTHS[same] = central(1e-2 * abs(value) or _LENGTH_STEP)
-    return _LINEAR_GROWTHS[same]
+        return _with_row(parsed_part(ski, row[1]), row[1], int(row[2]) - 1, station)
+    if key in WIDTHS and parsed.tip_end_width is None:
+        return _with_width(parsed_part(ski, "width"), WIDTHS.index(key), station)
+    step = _LENGTH_STEP if key.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP
+    tables, numbers = np.zeros((len(_TABLES), len(ski.station))), np.zeros(len(_NUMBERS))
+    if key in _OF_NUMBERS:
+        numbers[_OF_NUMBERS.index(key)] = SKI_KEYS[key].factor
+    if key in (*WIDTHS, TIP_END):
+        sides = (_with_field(parsed, key, side * step * MM) for side in (1.0, -1.0))
+        ends = [_outline(side, _layout(side)).width_at(ski.station) for side in sides]
+        tables[1] = (ends[0] - ends[1]) / (2.0 * step)
+    elif key in BASE:
+        tables[2] = _part_growth(parsed_part(ski, "base_height"), key, step, "base_height", station)[1]
+    elif key in _LENGTHS or row:
+        for part in STIFFNESSES if row else _PARTS:
+            grown = _part_growth(parsed_part(ski, part), key, step, part, station)
+            tables[0] = grown[0]
+            tables[1 + _PARTS.index(part)] = widths @ grown[1:] if part == "width" else grown[1]
+    return TableGrowth(tables, numbers)
 
 
 def _of_table(table: str, growth: FloatArray) -> TableGrowth:
@@ -299,21 +300,96 @@ def _of_table(table: str, growth: FloatArray) -> TableGrowth:
     return TableGrowth(tables, np.zeros(len(_NUMBERS)))
 
 
-def _growth_with_row(ski: Ski, column: str, row: int) -> FloatArray:
-    """Growth of a stiffness at the stations with a row of its list."""
-    keys = ski.keys or {}
-    listed, stations = np.array(keys[column], float), keys.get("stiffness_station_mm")
-    layout = Layout(
-        tip=float(ski.station[0]),
-        tail=float(ski.station[-1]),
-        middle=ski.sidecut_middle,
-        running_length=ski.running_length,
-        sidecut_length=ski.sidecut_length,
+@functools.lru_cache(maxsize=256)
+def parsed_part(ski: Ski, part: str) -> SkiFile:
+    """The keys of a ski on which a table depends; widths are relative to that of the tip."""
+    keys = parsed_keys(ski)
+    end = None if keys.tip_end_width is None or part != "width" else keys.tip_end_width / (keys.tip_width or 1.0)
+    lengths = {field: getattr(keys, field) for field in (SKI_KEYS[key].field for key in _LENGTHS)}
+    if part == "base_height":
+        return SkiFile(**lengths, base=keys.base)
+    if part == "width":
+        return SkiFile(**lengths, base=_PLAIN, tip_end_width=end)
+    column = SKI_KEYS[part].field
+    return SkiFile(**lengths, base=_PLAIN, stiffness_station=keys.stiffness_station, **{column: getattr(keys, column)})
+
+
+def _layout(keys: SkiFile) -> Layout:
+    return layout_of_lengths(
+        length=keys.length or 0.0,
+        running_length=keys.running_length or 0.0,
+        sidecut_length=keys.sidecut_length or 0.0,
+        tail_overhang=keys.tail_overhang,
+        boot_position=keys.boot_position,
     )
-    table = stiffness_table(listed, None if stations is None else np.array(stations) * MM, layout)
-    # the slope of the curve changes its form where two neighbours are equal
-    apart = np.abs(np.delete(listed, row)[max(0, row - 1) : row + 1] - listed[row])
-    return table.growth(row, min([_STEP * listed[row], *(0.1 * apart[apart > 0.0])]), ski.station)
+
+
+def _outline(keys: SkiFile, layout: Layout) -> ArcOutline:
+    tip, waist, tail = (width or 0.0 for width in (keys.tip_width, keys.waist_width, keys.tail_width))
+    return ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=keys.tip_end_width)
+
+
+def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArray:
+    """Widths at stations (m) that the widths of tip, waist and tail are multiplied by, shape (3, n)."""
+    pairs = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    skis = [replace(keys, tip_width=1.0, waist_width=waist, tail_width=tail) for waist, tail in pairs]
+    tip, *others = (_outline(ski, layout).width_at(station) for ski in skis)
+    return np.array([tip, *(other - tip for other in others)])
+
+
+def _stiffness(keys: SkiFile, part: str, layout: Layout) -> StationTable | None:
+    listed = getattr(keys, SKI_KEYS[part].field)
+    return None if listed is None else stiffness_table(listed, keys.stiffness_station, layout)
+
+
+def _with_field(keys: SkiFile, key: str, change: float) -> SkiFile:
+    """Keys of which one is changed (SI)."""
+    row, owner = _ROW.fullmatch(key), keys.base if key in BASE else keys
+    name = SKI_KEYS[row[1] if row else key].field
+    value: Any = getattr(owner, name)
+    if row:
+        changed: Any = tuple(place + change * (n == int(row[2])) for n, place in enumerate(value, start=1))
+    else:
+        changed = value + change
+    return (
+        replace(keys, base=replace(keys.base, **{name: changed})) if key in BASE else replace(keys, **{name: changed})
+    )
+
+
+@functools.lru_cache(maxsize=256)
+def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: bytes) -> FloatArray:
+    """Growth of the stations, and of a table on them, for the width of its three units, with a key."""
+    rows, home, ends = np.frombuffer(station), _layout(keys), []
+    for change in (step, -step):
+        side = _with_field(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)
+        layout = _layout(side)
+        at = moved_stations(rows, home, layout)
+        if part == "width":
+            ends.append(np.vstack([at, _unit_widths(side, layout, at)]))
+        elif part == "base_height":
+            ends.append(np.vstack([at, side.base.height_at(at, layout)]))
+        else:
+            table = _stiffness(side, part, layout)
+            ends.append(np.vstack([at, 0.0 * at if table is None else table.at(at)]))
+    return np.asarray((ends[0] - ends[1]) / (2.0 * step))
+
+
+@functools.lru_cache(maxsize=64)
+def _with_width(keys: SkiFile, number: int, station: bytes) -> TableGrowth:
+    return _of_table("width", MM * _unit_widths(keys, _layout(keys), np.frombuffer(station))[number])
+
+
+@functools.lru_cache(maxsize=256)
+def _with_row(keys: SkiFile, part: str, row: int, station: bytes) -> TableGrowth:
+    return _of_table(EDITED_COLUMNS[part], _row_growths(keys, part, station)[row])
+
+
+@functools.lru_cache(maxsize=64)
+def _row_growths(keys: SkiFile, part: str, station: bytes) -> FloatArray:
+    """Growth of a stiffness at the stations with each row of its list."""
+    table = _stiffness(keys, part, _layout(keys))
+    assert table is not None
+    return table.growths(np.frombuffer(station))
 
 
 def varied_ski(ski: Ski, name: str, change: float) -> Ski:
@@ -323,16 +399,17 @@ def varied_ski(ski: Ski, name: str, change: float) -> Ski:
         column = name.removeprefix("edit.")
         edit = SkiEdit(edit_stations(ski), {column: value})
         return edited_ski(ski, edit, name=ski.name, source=ski.source)
-    require_own_tables(ski)
+    parsed_keys(ski)
     return ski_of_keys(changed_keys(ski.keys or {}, {name.removeprefix("ski."): value}), like=ski)
 
 
 @functools.lru_cache(maxsize=64)
-def require_own_tables(ski: Ski) -> None:
-    """Reject a ski whose tables were changed after it was read."""
+def parsed_keys(ski: Ski) -> SkiFile:
+    """Keys of a ski in SI; rejects a ski whose tables were changed after it was read."""
     if ski in MADE_OF_KEYS:
-        return
+        return MADE_OF_KEYS[ski]
     own = ski_of_keys(ski.keys or {}, like=ski)
     for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness"):
         if not np.allclose(getattr(own, table), getattr(ski, table), rtol=1e-9, atol=1e-12):
             raise ParameterError("the tables of the ski {ski} are not those of its keys.", code="no_keys", ski=ski.name)
+    return MADE_OF_KEYS[own]

@@ -127,6 +127,17 @@ class Ski(Shown):
         return EdgeShape(self.base_bevel, self.edge_width, self.side_edge, self.edge_radius)
 
     @property
+    def layout(self) -> Layout:
+        """Positions of tip, tail, widest and contact points."""
+        return Layout(
+            tip=float(self.station[0]),
+            tail=float(self.station[-1]),
+            middle=self.sidecut_middle,
+            running_length=self.running_length,
+            sidecut_length=self.sidecut_length,
+        )
+
+    @property
     def _tables(self) -> SkiSections:
         return SkiSections(*(getattr(self, field.name) for field in fields(SkiSections)))
 
@@ -166,14 +177,7 @@ class Ski(Shown):
             )
             raise ParameterError(problem, code="no_camber")
         base = replace(self.base, camber_rounding=length)
-        layout = Layout(
-            tip=float(self.station[0]),
-            tail=float(self.station[-1]),
-            middle=self.sidecut_middle,
-            running_length=self.running_length,
-            sidecut_length=self.sidecut_length,
-        )
-        height = base.height_at(self.station, layout)
+        height = base.height_at(self.station, self.layout)
         return replace(
             self, keys=None, base=base, base_height=height - np.interp(0.0, self.station[::-1], height[::-1])
         )

@@ -18,7 +18,7 @@ from .._support.user_files import is_file, toml_text
 from ..parameters import SMALLEST, nearest
 from ..snow import SnowProperties, published_snow, snow_from_results
 from ..snow.measured_range import with_range_warnings
-from .file_keys import COLUMNS, RIGID
+from .file_keys import COLUMNS, RIGID, SkiFile
 from .file_parts import FileParts
 from .file_values import file_values, values_of_keys
 from .ski import Ski
@@ -138,8 +138,8 @@ def _ski_in(path: Path) -> Ski:
         raise error.at(path) from error
 
 
-MADE_OF_KEYS: Final = weakref.WeakSet[Ski]()
-"""Skis whose tables are certainly those of their keys."""
+MADE_OF_KEYS: Final = weakref.WeakKeyDictionary[Ski, SkiFile]()
+"""Skis whose tables are certainly those of their keys, with these in SI."""
 
 
 def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like: Ski | None = None) -> Ski:
@@ -155,7 +155,7 @@ def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like:
         ski = FileParts(values, {}).ski(like=like)
     except ParameterError as error:
         raise (error if str(error).startswith(str(path)) else error.at(path)) from error
-    MADE_OF_KEYS.add(ski)
+    MADE_OF_KEYS[ski] = values.said
     return ski
 
 
