@@ -19,7 +19,7 @@ from ..parameters import nearest
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, varied_ski
 from .outputs import OUTPUTS, At, OutputGrowth, output_growth
-from .shape import Shape, beam_gradient, beam_moved, bent_by, curvature_and_turn, sections_growth, shape_growth
+from .shape import Shape, beam_gradient, beam_moved, bent_by, curvature_and_turn, shape_growth, stacked_shapes
 from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ _IN_CONDITIONS: Final = (
 )  # fmt: skip
 """Numbers of the core that are conditions, in their order."""
 _ANGLE, _HARDNESS, _EXCESS, _LOAD, _MOMENT, _SIDE_FORCE, _BEVEL, _BEVEL_WIDTH, _PITCH, _PITCH_OF_SHEAR = range(10)
-_RUNNING_LENGTH, _GREATEST_WIDTH = 10, 11  # numbers of the core
+_OF_SHAPE: Final = [10, 11, _BEVEL, _BEVEL_WIDTH]  # numbers of the core that are of the ski
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +100,6 @@ class _Direction:
     numbers: FloatArray
     strength: float = 0.0
     shape: Shape | None = None
-
-    @property
-    def moves(self) -> bool:
-        """Whether nodes of the beam move."""
-        return self.shape is not None and self.shape.moves
 
     def columns(self, model: ClampedSki) -> FloatArray:
         """Growth of the stations' place, weight, width, base height, and of their element's length over itself."""
@@ -209,8 +204,9 @@ class CarveDerivatives:
             An output or a parameter is unknown, or the output does not exist here.
         """
         of_output, out = self._gradient(output).output.value, []
-        for name in parameters:
-            value, growth = self.value(name), self.derivative(output, name)
+        values = {name: self.value(name) for name in parameters}
+        growths = self.derivatives(output, (*values,)).tolist()
+        for (name, value), growth in zip(values.items(), growths, strict=True):
             relative = growth * value / of_output if value and of_output else None
             kink = self._kink(name) / (abs(value) or 1.0) if kinks else math.inf
             step = (2.0 * kink + _BESIDE) * (abs(value) or 1.0)
@@ -321,25 +317,36 @@ class CarveDerivatives:
         ParameterError
             As `sensitivity`.
         """
-        gradient, direction = self._gradient(output), self._direction(name)
-        growth, shape = gradient.output, direction.shape
-        total = float(gradient.numbers @ direction.numbers) + growth.strength * direction.strength
-        total += float(growth.edge_angle * direction.numbers[_ANGLE] + growth.load * direction.numbers[_LOAD])
-        if shape is None:
-            return total
-        if shape.widens:
-            total += float(np.vdot(gradient.columns[2:4], shape.sections))
-            if growth.edge_by[:2].any():
-                sections = sections_growth(self.request.model.ski, name, growth.edge)
-                total += float(np.vdot(growth.edge_by[:2], sections))
-        if shape.moves:
-            total += self._moving(gradient, direction)
-        elif shape.stiffens:
-            total += float(np.vdot(gradient.stiffness, shape.stiffness))
-        return total
+        return float(self.derivatives(output, (name,))[0])
 
-    def _moving(self, gradient: _Gradient, direction: _Direction) -> float:
+    def derivatives(self, output: str, names: tuple[str, ...]) -> FloatArray:
+        """Growth of an output with each parameter, as `derivative`: one adjoint for all."""
+        gradient, model = self._gradient(output), self.request.model
+        growth = gradient.output
+        shapes = stacked_shapes(
+            model.ski,
+            tuple(name for name in names if name not in CONDITIONS),
+            model.clamp_length,
+            self.request.elements,
+        )
+        total = shapes.numbers @ gradient.numbers[_OF_SHAPE]
+        total += shapes.sections @ gradient.columns[2:4].ravel() + shapes.stiffness @ gradient.stiffness.ravel()
+        if len(growth.edge):
+            total += shapes.sections_at(growth.edge) @ growth.edge_by[:2].ravel()
+        by_shape = iter(total.tolist())
+        out = []
+        for name in names:
+            if name in CONDITIONS:
+                along = self._direction(name)
+                by_state = growth.edge_angle * along.numbers[_ANGLE] + growth.load * along.numbers[_LOAD]
+                out.append(gradient.numbers @ along.numbers + growth.strength * along.strength + by_state)
+            else:
+                out.append(next(by_shape) + (self._moving(gradient, name) if name in shapes.moving else 0.0))
+        return np.array(out)
+
+    def _moving(self, gradient: _Gradient, name: str) -> float:
         """Part of a derivative by which nodes and stations move and elements lengthen."""
+        direction = self._direction(name)
         assert direction.shape is not None
         growth, model, u = gradient.output, self.request.model, self.at.solution.u
         columns, along = gradient.columns, direction.columns(model)
@@ -371,7 +378,7 @@ class CarveDerivatives:
                 request = self.request
                 shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
                 numbers = np.zeros(12)
-                numbers[[_RUNNING_LENGTH, _GREATEST_WIDTH, _BEVEL, _BEVEL_WIDTH]] = shape.numbers
+                numbers[_OF_SHAPE] = shape.numbers
                 self._directions[name] = _Direction(numbers, 0.0, shape)
         return self._directions[name]
 

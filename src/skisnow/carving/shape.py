@@ -151,14 +151,51 @@ def _widest(ski: Ski, clamp_length: float, elements: int) -> int:
     return int(np.argmax(_mesh(ski.station.tobytes(), clamp_length, elements).stations.along(ski.width)))
 
 
-def sections_growth(ski: Ski, name: str, place: FloatArray) -> FloatArray:
-    """Growth of width and height of the base with a parameter of the ski at fixed places (2, k)."""
-    tables = table_growth(ski, name).tables
-    lines = _lines_at(ski.station.tobytes(), tuple(place.tolist()))
-    out = lines.along(tables[1:3])
-    if tables[0].any():
-        out += lines.moved(np.array([ski.width, ski.base_height]), tables[0], 0.0 * place)
-    return out
+@dataclass(frozen=True, slots=True, eq=False)
+class Shapes:
+    """Growth of a ski with several parameters, a row each: `Shape.numbers`, sections, stiffness of those at rest.
+
+    `moving`: names of the parameters that move nodes.
+    """
+
+    ski: Ski
+    names: tuple[str, ...]
+    moving: frozenset[str]
+    numbers: FloatArray
+    sections: FloatArray
+    stiffness: FloatArray
+
+    def sections_at(self, place: FloatArray) -> FloatArray:
+        """Growth of width and height of the base with each parameter at fixed places (p, 2 k)."""
+        lines, out = (
+            _lines_at(self.ski.station.tobytes(), tuple(place.tolist())),
+            np.zeros((len(self.names), 2, len(place))),
+        )
+        for row, name in enumerate(self.names):
+            by_station, *sections = table_growth(self.ski, name).tables[:3]
+            out[row] = lines.along(np.array(sections))
+            if name in self.moving:
+                out[row] += lines.moved(np.array([self.ski.width, self.ski.base_height]), by_station, 0.0 * place)
+        return out.reshape(len(out), 2 * len(place))
+
+
+@functools.lru_cache(maxsize=32)
+def stacked_shapes(ski: Ski, names: tuple[str, ...], clamp_length: float, elements: int) -> Shapes:
+    """Growth of the shape with each of the parameters."""
+    shapes = [shape_growth(ski, name, clamp_length, elements) for name in names]
+    stations = len(_mesh(ski.station.tobytes(), clamp_length, elements).stations.row)
+
+    def stacked(rows: list[FloatArray], size: int) -> FloatArray:
+        return np.array(rows, float).reshape(len(names), size)
+
+    return Shapes(
+        ski,
+        names,
+        frozenset(name for name, shape in zip(names, shapes, strict=True) if shape.moves),
+        stacked([shape.numbers for shape in shapes], 4),
+        stacked([shape.sections for shape in shapes], 2 * stations),
+        stacked([0.0 * shape.stiffness if shape.moves else shape.stiffness for shape in shapes], 4 * stations),
+    )
 
 
 @functools.lru_cache(maxsize=32)

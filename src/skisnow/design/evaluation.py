@@ -103,9 +103,11 @@ class Evaluator:
 
     def output_growth(self, point: CarveDerivatives, output: str, z: FloatArray) -> FloatArray:
         """Growth of an output at a condition with each variable, from 0 to 1 of its bounds."""
+        combined = [combined_names(variable.name) for variable in self.task.variables]
+        growths = iter(point.derivatives(output, tuple(name for names in combined for name in names)).tolist())
         out = []
-        for variable, value in zip(self.task.variables, self.values(z), strict=True):
-            growth = sum(point.derivative(output, name) for name in combined_names(variable.name))
+        for variable, names, value in zip(self.task.variables, combined, self.values(z), strict=True):
+            growth = sum(next(growths) for _ in names)
             out.append(growth * variable.width * self._factor(variable.name, value, z))
         return np.array(out)
 
