@@ -37,7 +37,7 @@ added = np.interp(
 predicted = -np.trapezoid(by_stiffness * added, place)
 carved = (carves[1].turn_radius_boot or 0.0) - (carves[0].turn_radius_boot or 0.0)
 print(f"radius {1e3 * carved:+.1f} mm, predicted {1e3 * predicted:+.1f} mm")
-force = [float(found.force_per_length.max()) for found in carves]
+force = [np.max(np.array(found.force_per_length, float)) for found in carves]
 print(f"largest force along the edge {force[0]:.0f} N/m, then {force[1]:.0f} N/m")
 
 figure, (upper, lower) = plt.subplots(2, sharex=True, figsize=(6.4, 5.4))
