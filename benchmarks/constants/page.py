@@ -100,7 +100,8 @@ def _head(count: int, varied: int) -> Iterator[str]:
     yield "* `MARGIN` moves the skid by at most 18 mm and the skier by 5 mm with fixed steps. `MOST_TURN`, halved,"
     yield "  still moves the skier by 57 mm: lines that are laid again."
     yield "* `MISSED` and `FULLY`, doubled together, move the skier by 36 mm: the miss of a bent edge from which its"
-    yield "  sections are corrected. Without a threshold, carves move by about 0.1 mm."
+    yield "  sections are corrected. Without a threshold, the carve moves by 1.5, the skier by 13"
+    yield "  and the skid by 226 mm. At a pitch of 3°, a shovel bent by 80 mm was cut 0.07 mm too shallow."
     yield ""
     yield from _parts()
 
