@@ -165,27 +165,27 @@ class _Section:
 
     def __init__(self, whole: ReferenceRunner, line: Line, pose: Pose) -> None:
         self.whole, self.line, self.pose = whole, line, pose
-        self.x, across, up = pose.rotation.T
+        self.x, _, up = pose.rotation.T
         n, y, ahead = line.out, line.left, line.ahead
         to_line = line.origin - pose.position
         self.gap = gap = float(to_line @ ahead / (self.x @ ahead))
         tail, tip = whole.runner.tail, whole.runner.tip
-        side = self._grip(to_line, across, up, n, min(max(gap, tail), tip))
-        half, height, flare, slope = (float(np.interp(gap, whole.table, column)) for column in whole.columns)
-        s, aside, above = gap, float(across @ ahead), float(up @ ahead)
-        for _ in range(2):  # the shape is that at `gap` and its slopes
-            edge, base = half + flare * (s - gap), height + slope * (s - gap)
-            s = gap - (side * edge * aside + base * above) / float(self.x @ ahead)
+        # The grip g(s) = s x + h(s) up + q(s) t(s), q = side W, lies over the line where (to_line - g(s))·ahead = 0.
+        # Newton's method with dg/ds at a fixed side, from the straight axis.
+        s = gap
+        for _ in range(3):
+            on_ski = min(max(s, tail), tip)
+            self._shape(on_ski)
+            side = self._grip(to_line, n, on_ski)
+            grip = on_ski * self.x + self.height * up + side * self.half * self.t
+            missed = float((to_line - grip) @ ahead / (self._direction(side) @ ahead))
+            s = on_ski + min(max(missed, -0.1), 0.1)
         self.station = s
         s = min(max(s, tail), tip)
-        half, height, flare, slope = (float(np.interp(s, whole.table, column)) for column in whole.columns)
-        self._bend(s)
-        height, slope = height + float(self.deflects @ self.beam), slope + float(self.deflects_s @ self.beam)
-        phi, self.twist_s = float(self.twists @ self.beam), float(self.twists_s @ self.beam)
-        self.t, self.r = math.cos(phi) * across - math.sin(phi) * up, math.cos(phi) * up + math.sin(phi) * across
-        axis = s * self.x + height * up
+        self._shape(s)
+        axis = s * self.x + self.height * up
         depth, self.sine = float((to_line - axis) @ n), float(-self.t @ n)
-        self.half, self.reach, self.flare, self.slope = half, side * half, flare, slope
+        self.reach = side * self.half
         along = self._direction(side)
         self.grip_at = axis + self.reach * self.t
         place = self._crossing(to_line, self.grip_at, along)
@@ -195,14 +195,14 @@ class _Section:
         grip_depth = depth + self.reach * self.sine
         self.edges = []
         for to in (1.0, -1.0):
-            at, direction = axis + to * half * self.t, self._direction(to)
+            at, direction = axis + to * self.half * self.t, self._direction(to)
             crossing = self._crossing(to_line, at, direction)
             across_edge = np.cross(n, direction)
             self.edges.append(
                 Edge(
                     crossing,
                     grip_depth + fall * (crossing - place),
-                    to * half,
+                    to * self.half,
                     at,
                     across_edge / float(np.linalg.norm(across_edge)),
                 )
@@ -218,18 +218,27 @@ class _Section:
         self.per_length = 1.0 / float(np.linalg.norm(u))
         self.u, self.up = u * self.per_length, up
 
-    def _grip(self, to_line: FloatArray, across: FloatArray, up: FloatArray, n: FloatArray, s: float) -> float:
-        """Mean place of the edges by their depths in the snow, over the half width, under the ski's axis at s."""
-        half, height, _, slope = (float(np.interp(s, self.whole.table, column)) for column in self.whole.columns)
+    def _shape(self, s: float) -> None:
+        """The bent base at a station: half width, height, their slopes, twist, directions across and off the base."""
+        _, across, up = self.pose.rotation.T
+        self.half, height, self.flare, slope = (
+            float(np.interp(s, self.whole.table, column)) for column in self.whole.columns
+        )
         self._bend(s)
-        phi = float(self.twists @ self.beam)
-        t = math.cos(phi) * across - math.sin(phi) * up
-        along = self.x + (slope + float(self.deflects_s @ self.beam)) * up
-        middle = to_line - s * self.x - (height + float(self.deflects @ self.beam)) * up
+        self.height = height + float(self.deflects @ self.beam)
+        self.slope = slope + float(self.deflects_s @ self.beam)
+        phi, self.twist_s = float(self.twists @ self.beam), float(self.twists_s @ self.beam)
+        self.t, self.r = math.cos(phi) * across - math.sin(phi) * up, math.cos(phi) * up + math.sin(phi) * across
+
+    def _grip(self, to_line: FloatArray, n: FloatArray, s: float) -> float:
+        """Mean place of the edges by their depths in the snow, over the half width."""
+        up = self.pose.rotation[:, 2]
+        along = self.x + self.slope * up
+        middle = to_line - s * self.x - self.height * up
         # depths of the base's plane where the edges, parallel to its middle, cross the line
         depths = []
         for to in (1.0, -1.0):
-            to_edge = middle - to * half * t
+            to_edge = middle - to * self.half * self.t
             depths.append(float((to_edge - float(to_edge @ self.line.ahead / (along @ self.line.ahead)) * along) @ n))
         left, right = (max(each, 0.0) for each in depths)
         return (left - right) / (left + right) if left + right > 0.0 else float(np.sign(depths[0] - depths[1]))

@@ -263,9 +263,10 @@ def test_loads_do_not_chatter_from_ski_to_ski() -> None:
 
     Legs that give way with 1/s take at least four fifths of that. Friction across the skis is left out of this
     comparison: it changes its side when a ski changes the direction in which it skids, and adds 5 N in each case.
+    Steps of the fast method add up to half a newton to the small swing, a twentieth of it: too much for the ratio.
     """
     assert swing(Skier().leg_yielding) < 20.0
-    along = {"friction.direction": "along-ski"}
+    along = {"friction.direction": "along-ski", "method": "default"}
     assert swing(1.0, **along) < 0.2 * swing(0.0, **along)
 
 

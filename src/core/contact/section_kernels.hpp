@@ -72,16 +72,14 @@ struct Shapes {
 // The base at one station of each lane, bent with the beam.
 template <class V>
 struct BentBase {
-  V shape[ROW];                      // half width, its slope, height of the base, its slope
-  V straight_height, straight_rise;  // height of the base before it is bent, its slope
-  V element, length, in_element;     // element of the beam, its length, place in it from the front
-  V sine{}, cosine, twist_slope{};   // sine, cosine and slope of the twist
+  V shape[ROW];                     // half width, its slope, height of the base, its slope
+  V element, length, in_element;    // element of the beam, its length, place in it from the front
+  V sine{}, cosine, twist_slope{};  // sine, cosine and slope of the twist
 
   SKISNOW_INLINE BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
     const V place = table_place(runner, station);
     const bool bends = !pose.beam.empty();
     look_up_shape<V>(runner, place, shape);
-    straight_height = shape[2], straight_rise = shape[3];
     Row nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
     const WholeParts<V> at(place);
     for (int lane = 0; lane < WIDTH<V>; lane++) {
@@ -132,12 +130,9 @@ SKISNOW_INLINE V grip_side(const BentBase<V>& base, V station, const Vector<V>& 
   return select(wet, (left - right) / select(wet, left + right, all<V>(1.0)), first);
 }
 
-// [take_lines, cross_axis, cross_edge] Lines in the ski's axes, and the station at which the base's grip passes each of
-// them: from the crossing of the straight axis, where the edges' depths give the grip, two fixed-point steps, of which
-// the second takes the slopes of width and height. The error falls with the sidecut's slope. GRIP_REACH is over the
-// half width until the base is cut.
+// [take_lines] Lines in the ski's axes.
 template <class V>
-void cross_lines(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
+void take_lines(const Pose& pose, const GrooveLines& lines, Base& s) {
   const auto& R = pose.rotation;
   const auto& c = pose.position;
   const auto turned = [&](const Vector<V>& a) -> Vector<V> {
@@ -156,15 +151,6 @@ void cross_lines(const Runner& runner, const Pose& pose, const GrooveLines& line
     store3(s, LINE_AHEAD_0, i, ahead);
     store3(s, LINE_NORMAL_0, i, normal);
     store3(s, LINE_LEFT_0, i, cross(normal, ahead));
-    const V forwards = 1.0 / ahead.x, crossing = from.x + (from.y * ahead.y + from.z * ahead.z) * forwards;
-    const V axis = within(crossing, runner.tail, runner.tip);
-    const BentBase<V> base(runner, pose, axis);
-    const V side = grip_side(base, axis, from, ahead, normal);
-    const V toward_grip = side * ahead.y * forwards, upward = ahead.z * forwards;
-    const V off = -toward_grip * base.shape[0] - upward * base.straight_height;
-    const V steeper = toward_grip * base.shape[1] + upward * base.straight_rise;
-    store(s[STATION] + i, crossing + off - steeper * off);
-    store(s[GRIP_REACH] + i, side);
   });
 }
 
@@ -386,35 +372,29 @@ struct BasePieces {
   }
 };
 
-// [cross_bent_edge] The straight ski's stations, which `cross_lines` gives, miss the lines under a bent ski that is
-// pitched against the surface: by its deflection times `ahead.z / ahead.x`. What is missed, m, leaves the place of a
-// curved edge wrong by ½ κ m², and its rate by m dκ/dt: a shovel or tail that ploughs would gain energy from the shear.
-// Newton's method on the bent edge corrects the stations. Below MISSED both are lost in the other errors of a place.
+// [cross_grip] The station at which the bent base's grip passes each line, by Newton's method from the crossing of the
+// ski's straight axis. A section that misses its line by m leaves the place of a curved edge wrong by ½ κ m², and its
+// rate by m dκ/dt: a shovel or tail that ploughs would gain energy from the shear. A line farther off than
+// LONGEST keeps the crossing: one across the ski has no other. GRIP_REACH is over the half width until the base is cut.
 template <class V>
-void cross_bent_edge(const Runner& runner, const Pose& pose, const GrooveLines& lines, Base& s) {
-  constexpr double MISSED = 0.005, FULLY = 0.007, LONGEST = 0.1;  // (m); LONGEST: of a correction
+void cross_grip(const Runner& runner, const Pose& pose, Base& s) {
+  constexpr double LONGEST = 0.1;  // correction (m)
   constexpr int STEPS = 3;
-  double most = 0.0;  // deflection
-  for (std::size_t i = 0; i < pose.beam.size(); i += 3) most = std::max(most, std::fabs(pose.beam[i]));
-  for_lanes<V>(s, lines, [&](int i, int) {
-    if (!s.wants(Base::STATIONS, i)) return;
-    const V up = load<V>(s[LINE_AHEAD_2] + i), forwards = load<V>(s[LINE_AHEAD_0] + i);
-    if (!any(most * absolute(up) > MISSED * absolute(forwards))) return;  // most lines: no division
-    const V missed = most * absolute(V(up / forwards));
-    const V straight = load<V>(s[STATION] + i), weight = within((missed - MISSED) / (FULLY - MISSED), 0.0, 1.0);
-    const V straight_side = load<V>(s[GRIP_REACH] + i);
-    V station = straight, side = straight_side;
+  for (int i = 0; i < s.count(); i += WIDTH<V>) {
+    if (!s.wants(Base::STATIONS, i)) continue;
+    const Vector<V> from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
+    const V crossing = from.x + (from.y * ahead.y + from.z * ahead.z) / ahead.x;
+    V station = crossing, side{}, way{};
     for (int step = 0; step < STEPS; step++) {
       const V on_ski = within(station, runner.tail, runner.tip);
       const BentBase<V> base(runner, pose, on_ski);
       Cut<V> c(base, on_ski, s, i);
       c.side = side = grip_side(base, on_ski, c.from, c.ahead, c.normal);
       c.find_grip();
-      station = on_ski + within(c.way_to_line(), -LONGEST, LONGEST);
+      way = c.way_to_line(), station = on_ski + within(way, -LONGEST, LONGEST);
     }
-    store(s[STATION] + i, straight + weight * (station - straight));
-    store(s[GRIP_REACH] + i, straight_side + weight * (side - straight_side));
-  });
+    store(s[STATION] + i, select(absolute(way) < LONGEST, station, crossing)), store(s[GRIP_REACH] + i, side);
+  }
 }
 
 // [cut_base] The bent base over each line and its plane section: grip and edges, directions, where the base is wet.
@@ -443,8 +423,8 @@ template <class V>
 void find_sections(const Runner& runner, const Pose& pose, const GrooveLines& lines, const double* of, Base& s) {
   s.cover(lines, of);
   s.edge_shape = runner.edge_shape;
-  cross_lines<V>(runner, pose, lines, s);
-  cross_bent_edge<V>(runner, pose, lines, s);
+  take_lines<V>(pose, lines, s);
+  cross_grip<V>(runner, pose, s);
   give_share<V>(runner, lines, s);
   cut_base<V>(runner, pose, lines, s);
 }
