@@ -379,7 +379,7 @@ struct BasePieces {
 template <class V>
 void cross_grip(const Runner& runner, const Pose& pose, Base& s) {
   constexpr double LONGEST = 0.1;  // correction (m)
-  constexpr int STEPS = 3;
+  constexpr int STEPS = 2;
   for (int i = 0; i < s.count(); i += WIDTH<V>) {
     if (!s.wants(Base::STATIONS, i)) continue;
     const Vector<V> from = load3<V>(s, FROM_BOOT_0, i), ahead = load3<V>(s, LINE_AHEAD_0, i);
