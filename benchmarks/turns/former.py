@@ -101,12 +101,13 @@ def _numbers(name: str, place: Path) -> list[float]:
 
 
 def print_ends(folder: Path) -> None:
-    """Print a Markdown table of the ends of built-in scenarios with both builds, and write it for the page."""
+    """Print a Markdown table of the ends of today's built-in scenarios with both builds, and write it for the page."""
     places = (build(COMMIT, folder / COMMIT), ROOT / "src")
     lines = [f"| scenario | {COMMIT} (m) | now (m) | moved by (m) | outcome |", "| --- | --- | --- | ---: | --- |"]
     print(*lines, sep="\n")
     for file in sorted((places[0] / "skisnow/scenario/catalogue").glob("*.toml")):
-        rows = [_numbers_and_outcome(file.stem, {}, place) for place in places]
+        today = str(ROOT / "src/skisnow/scenario/catalogue" / file.name)
+        rows = [_numbers_and_outcome(today, {}, place) for place in places]
         ends = [row[4:6] for row in rows]
         outcomes = " → ".join(dict.fromkeys(row[-1].replace("_", " ") for row in rows))
         cells = " | ".join(f"{x:.3f}, {y:.3f}" for x, y in ends)
