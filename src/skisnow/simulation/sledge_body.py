@@ -130,7 +130,7 @@ def sledge_body(
     gravity: in space (m/s²), (3,).
     drag, drag_height: ½ ρ C_d A (kg/m), height of the centre of pressure (m).
     asides: places of the boots to the left (m), one for each ski: one of 0 is a sledge on one ski, or on a monoski.
-        Left out: two, with the stance width between them.
+        By default two, with the stance width between them.
     """
     sides = (sledge.stance_width / 2.0, -sledge.stance_width / 2.0) if asides is None else asides
     inertia = sledge_inertia(sledge, ski, sides)
