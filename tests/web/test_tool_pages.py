@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import re
 import urllib.request
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
+import numpy as np
+import pandas
 import pytest
+from PIL import Image
 
 from skisnow.campaign import read_campaign, write_reference
 from skisnow.campaign.store import Journals, NewEntry, Store
@@ -18,7 +23,8 @@ from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.report.formatting import significant
 from skisnow.web.campaign_analysis import choosable_flags
-from skisnow.web.carved_turn import RATIOS, SLIDERS
+from skisnow.web.carved_turn import PANELS, RATIOS, SLIDERS
+from skisnow.web.widgets import STYLES
 
 from .conftest import DRAWING_MS, Served, downloaded_results, ready
 
@@ -206,12 +212,18 @@ def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page
 
 
 PARTS = ("forebody", "afterbody")
+SNOW = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
+"""That of the first sliders."""
 
 
-def radius(edge_angle_deg: float, **snow: object) -> str:
-    asked = {"ski": "carver", "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "unloading_ratio": 10.0}
-    numbers = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
-    answer = answer_dict(answered(carve_question({**asked, **(snow or numbers)})))
+def carve_answer(edge_angle_deg: float, snow: Mapping[str, object] = SNOW, *, ski: str = "carver") -> dict[str, Any]:
+    """The library's answer."""
+    asked = {"ski": ski, "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "unloading_ratio": 10.0}
+    return answer_dict(answered(carve_question({**asked, **snow})))
+
+
+def radius(edge_angle_deg: float, snow: Mapping[str, object] = SNOW) -> str:
+    answer = carve_answer(edge_angle_deg, snow)
     return f"carver: carved radius {significant(answer['turn_radius_boot_m'])} m"
 
 
@@ -245,33 +257,81 @@ def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
     page.get_by_label("Snow", exact=True).click()
     page.get_by_role("option", name="published: race-piste").click()
     page.get_by_text("Snow: H_V = 0.207 N/mm³").wait_for()
-    headline.get_by_text(radius(48.0, published="race-piste"), exact=True).wait_for()
+    headline.get_by_text(radius(48.0, {"published": "race-piste"}), exact=True).wait_for()
     assert page.get_by_role("slider", name="Snow hardness H_V (N/mm³)").is_hidden()
 
 
-def test_the_designed_ski_follows_and_the_charts_are_saved(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}design?ski=slalom")
+def saved(page: Page, button: str) -> tuple[str, bytes]:
+    """Name and contents of the file that a button saves."""
+    with page.expect_download() as download:
+        page.get_by_role("button", name=button).click()
+    return download.value.suggested_filename, download.value.path().read_bytes()
+
+
+def check_curves(page: Page, name: str, answers: list[dict[str, Any]]) -> None:
+    """The saved table has the answers' values, and both pictures have the lines of all charts."""
+    file, content = saved(page, "Curves as CSV")
+    assert file == f"{name}.csv"
+    table = pandas.read_csv(io.BytesIO(content))
+    skis = [each["ski"]["name"] for each in answers]
+    for ski, answer in zip(skis, answers, strict=True):
+        of_ski = table[table["ski"] == ski]
+        for key in ("station_m", *PANELS):
+            assert of_ski[key].tolist() == pytest.approx(answer[key], rel=1e-6, abs=1e-8), key
+    file, content = saved(page, "Curves as SVG")
+    assert file == f"{name}.svg"
+    root = ElementTree.fromstring(content)
+    charts, shown = root.findall("{*}svg"), page.locator("[data-drawn] > svg")
+    assert len(charts) == shown.count()
+    for number, chart in enumerate(charts):
+        lines = [each.get("d") for each in chart.iter() if each.get("class") == "line"]
+        assert lines == shown.nth(number).locator("path.line").evaluate_all("all => all.map(e => e.getAttribute('d'))")
+        assert [each.text for each in chart.iter() if each.get("class") == "name"] == skis
+    file, content = saved(page, "Curves as PNG")
+    assert file == f"{name}.png"
+    with Image.open(io.BytesIO(content)) as picture:
+        assert picture.size == (2 * int(root.get("width", 0)), 2 * int(root.get("height", 0)))
+        colours = set(map(tuple, np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0).tolist()))
+    assert {tuple(bytes.fromhex(str(style["colour"])[1:])) for style in STYLES[: len(skis)]} <= colours
+
+
+def fits(page: Page) -> bool:
+    return bool(page.evaluate("document.documentElement.scrollWidth") <= 390)
+
+
+def test_a_ski_is_designed_on_a_telephone(page: Page, served: Served, tmp_path: Path) -> None:
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.goto(f"{served.address}design?ski=slalom&other=carver")
     headline = page.get_by_role("region", name="Carved radius")
     headline.get_by_text("slalom, designed: carved radius 10.3 m").wait_for()
     ready(page)
     page.get_by_label("Wanted radius (m)").fill("12")
     page.get_by_role("button", name="Find the design").click()
     headline.get_by_text("slalom, designed: carved radius 12.0 m").wait_for()
-    slider = page.get_by_role("slider", name="Sidecut, tip and tail (mm)")
-    assert float(slider.input_value()) < 30  # narrower: it has moved from the middle
-    slider.press("ArrowLeft")
-    page.get_by_text(re.compile(r"tip and tail \(mm\): -6\.?5?$")).wait_for()
-    for kind, begin in (("SVG", b"<svg"), ("PNG", b"\x89PNG")):
-        with page.expect_download() as download:
-            page.get_by_role("button", name=f"Curves as {kind}").click()
-        content = download.value.path().read_bytes()
-        assert download.value.suggested_filename == f"design.{kind.lower()}"
-        assert content.startswith(begin)
-        assert len(content) > 10_000
-        if kind == "SVG":
-            root = ElementTree.fromstring(content)
-            assert len(root.findall("{*}svg")) == 2  # both charts
-            assert [each.text for each in root.iter() if each.get("class") == "name"] == [
-                "slalom, designed",
-                "slalom",
-            ] * 2
+    assert fits(page)
+    for slider, shown in (
+        ("Sidecut, tip and tail (mm)", re.compile(r"tip and tail \(mm\): -6\.?5?$")),
+        ("Waist (mm)", re.compile(r"Waist \(mm\): -0\.5$")),
+        ("Tip (mm)", re.compile(r"^Tip \(mm\): -0\.5$")),
+        ("Tail (mm)", re.compile(r"^Tail \(mm\): -0\.5$")),
+        ("EI before the middle ×", re.compile(r"before the middle ×: 0\.95$")),
+        ("Edge angle (°)", re.compile(r"angle \(°\): 44$")),
+    ):
+        page.get_by_role("slider", name=slider, exact=True).press("ArrowLeft")
+        page.get_by_text(shown).wait_for()
+    file, content = saved(page, "Download the file")
+    assert file == "ski.toml"
+    (tmp_path / file).write_bytes(content)
+    answers = [carve_answer(44.0, ski=ski) for ski in (str(tmp_path / file), "carver")]
+    for answer in answers:
+        radius_now = significant(answer["turn_radius_boot_m"])
+        headline.get_by_text(f"{answer['ski']['name']}: carved radius {radius_now} m", exact=True).wait_for()
+    check_curves(page, "design", answers)
+    assert fits(page)
+
+
+def test_the_curves_of_a_carve_are_saved(page: Page, served: Served) -> None:
+    page.goto(f"{served.address}carve?ski=slalom&other=carver")
+    page.get_by_role("region", name="Carved radius").get_by_text("slalom: carved radius").wait_for()
+    ready(page)
+    check_curves(page, "carve", [carve_answer(45.0, ski=ski) for ski in ("slalom", "carver")])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import threading
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
 
 from nicegui import background_tasks, run, ui
@@ -216,7 +217,7 @@ class CarvedTurn:
     def add_files(self, name: str) -> None:
         """Add buttons for the curves as files."""
         with ui.element("div").classes("acts"):
-            button(Message("Curves as CSV"), self._download)
+            button(Message("Curves as CSV"), partial(self._download, f"{name}.csv"))
             save_buttons(name)
 
     async def update_snow(self) -> None:
@@ -261,13 +262,13 @@ class CarvedTurn:
         finally:
             self._working = False
 
-    def _download(self) -> None:
+    def _download(self, file: str) -> None:
         """Hand the browser the curves of the answer that is shown, one row for each station of each ski."""
         rows: list[Sequence[Any]] = [["ski", "station_m", *PANELS]]
         for answer in self._answers:
             columns = [answer[key] or [None] * len(answer["station_m"]) for key in PANELS]
             rows += ([answer["ski"]["name"], *row] for row in zip(answer["station_m"], *columns, strict=True))
-        ui.download(csv_text(rows).encode(), "carve.csv")
+        ui.download(csv_text(rows).encode(), file)
 
     def _show(self, answers: list[dict[str, Any]]) -> None:
         self._answers = answers
