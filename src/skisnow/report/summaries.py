@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from .._support.errors import SkisnowWarning
 from ..simulation.run import OPEN_SHARE
 from ..track.course.gates_table import gate_rows
 from .formatting import aligned_rows, plain
@@ -37,10 +38,11 @@ def carve_summary(contents: Json) -> str:
 
     contents: JSON of `skisnow.carving.answer.answers_dict`.
     """
-    return "\n".join(_carve_lines(answers_of(contents)))
+    return "\n".join(_carve_lines(contents))
 
 
-def _carve_lines(answers: list[Json]) -> Iterator[str]:
+def _carve_lines(contents: Json) -> Iterator[str]:
+    answers = answers_of(contents)
     inputs, titles = answers[0]["inputs"], ski_titles(answers)
     for title, answer in zip(titles[1:], answers[1:], strict=True):
         yield ski_verdict(answers[0], answer, (titles[0], title))
@@ -54,7 +56,7 @@ def _carve_lines(answers: list[Json]) -> Iterator[str]:
     yield ""
     yield from _carve_table(answers)
     yield from _snow_intervals(answers)
-    yield from _ranks(answers)
+    yield from map(str, rank_warnings(contents))
     for title, answer in zip(titles, answers, strict=True):
         if answer["remedy"]:
             yield ""
@@ -165,16 +167,20 @@ def _snow_intervals(answers: list[Json]) -> Iterator[str]:
             yield f"95 % intervals by the snow, {title}: {words}"
 
 
-def _ranks(answers: list[Json]) -> Iterator[str]:
-    """A line for each pair of skis that two definitions of the radius rank differently."""
+def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
+    """A warning for each pair of skis that two definitions of the radius rank differently; contents as above."""
+    answers = answers_of(contents)
     for (one, first), (two, second) in itertools.combinations(zip(ski_titles(answers), answers, strict=True), 2):
         radii = [(name, of(first), of(second)) for name, of in _ROWS if "radius" in name]
         known = [(name, a, b) for name, a, b in radii if isinstance(a, float) and isinstance(b, float)]
         tighter, wider = ([(n, a, b) for n, a, b in known if (b - a) * side > 0.0] for side in (1.0, -1.0))
         if tighter and wider:
             (name, a, b), (other, c, d) = tighter[0], wider[0]
-            yield f"Definitions of the radius rank {one} and {two} differently: {name} {plain(a)} and {plain(b)},"
-            yield f"  {other} {plain(c)} and {plain(d)}."
+            yield SkisnowWarning(
+                "Definitions of the radius rank {one} and {two} differently: {name} {a} and {b}, {other} {c} and {d}.",
+                code="ranks_differ", one=one, two=two, name=name, a=plain(a), b=plain(b),
+                other=other, c=plain(c), d=plain(d),
+            )  # fmt: skip
 
 
 def identify_summary(result: Identification) -> str:
