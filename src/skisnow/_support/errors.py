@@ -75,17 +75,24 @@ class FieldDataError(SkisnowError):
     ----------
     problems
         Every problem found, errors and others, each printable as one sentence. The message holds the first of them.
+        A `sentence` of a problem is its text without its code.
     """
 
     SHOWN = 20
 
     def __init__(self, problems: Sequence[object], *, code: str = "") -> None:
         self.problems = tuple(problems)
-        shown = list(self.problems[: self.SHOWN])
-        more = len(self.problems) - len(shown)
-        if more:
-            shown.append(count_message("… and {count} more problem", "… and {count} more problems", count=more))
-        super().__init__(joined(shown, "\n"), code=code)
+        super().__init__(joined(self._first(self.problems), "\n"), code=code)
+
+    @property
+    def sentences(self) -> list[Any]:
+        """The first problems without their codes, for a page."""
+        return self._first([getattr(problem, "sentence", problem) for problem in self.problems])
+
+    def _first(self, problems: Sequence[object]) -> list[object]:
+        more = len(problems) - self.SHOWN
+        rest = [count_message("… and {count} more problem", "… and {count} more problems", count=more)]
+        return [*problems[: self.SHOWN], *(rest if more > 0 else [])]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.problems,), self.__dict__

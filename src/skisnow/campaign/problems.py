@@ -71,7 +71,13 @@ class Problem:
 
     @property
     def message(self) -> Message:
-        """The problem in one line, which can be translated."""
+        """The problem in one line with its severity and code."""
+        severity = _SEVERITIES[self.severity]
+        return Message("{severity} {code}: {problem}", severity=severity, code=self.code, problem=self.sentence)
+
+    @property
+    def sentence(self) -> Message:
+        """Place, problem, allowed values and fix."""
         place: str = self.file
         if self.row is not None:
             place = Message("{place}, row {row}", place=place, row=self.row)
@@ -79,14 +85,10 @@ class Problem:
             place = Message("{place}, column {column}", place=place, column=self.column)
         if self.experiment is not None:
             place = Message("{place} (experiment {experiment})", place=place, experiment=self.experiment)
-        fields = {"severity": _SEVERITIES[self.severity], "code": self.code, "place": place}
-        fields |= {"allowed": self.allowed, "action": self.action}
+        fields = {"place": place, "allowed": self.allowed, "action": self.action}
         if self.value is None:
-            return Message("{severity} {code}: {place}: allowed: {allowed}. {action}", **fields)
-        value = _shorten(self.value)
-        return Message(
-            "{severity} {code}: {place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=value
-        )
+            return Message("{place}: allowed: {allowed}. {action}", **fields)
+        return Message("{place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=_shorten(self.value))
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""

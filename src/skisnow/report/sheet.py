@@ -27,6 +27,7 @@ class Header:
     facts: names with texts.
     synthetic: sentence that the numbers were not measured (default: none).
     headline: key result as a sentence with one number and its uncertainty (default: none).
+    back: address of the page of the lab that links here (default: none).
     """
 
     eyebrow: str
@@ -34,6 +35,7 @@ class Header:
     facts: Sequence[tuple[str, str | Markup]]
     synthetic: str = ""
     headline: str | Markup = ""
+    back: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
+from .._support.messages import Message
 from .readers.conversion import build_track
 from .readers.fit import read_fit
 from .readers.gpx import read_gpx
@@ -132,13 +133,13 @@ def _bytes(path: Path) -> bytes:
     except OSError as error:
         raise _unreadable(path, error.strerror or str(error)) from error
     if data is None:
-        raise _unreadable(path, "it is not a plain file")
+        raise _unreadable(path, Message("it is not a plain file"))
     if not data.strip():
         raise track_error(
             "empty_file",
             path.name,
-            allowed="a track",
-            action="The file is empty; was anything recorded?",
+            allowed=Message("a track"),
+            action=Message("The file is empty; was anything recorded?"),
         )
     return data.decode("utf-16", errors="replace").encode() if data.startswith(_UTF_16) else data
 
@@ -148,8 +149,8 @@ def _unreadable(path: Path, reason: str) -> Exception:
         "unreadable_file",
         str(path),
         value=reason,
-        allowed="a plain file that may be read",
-        action="Check the path.",
+        allowed=Message("a plain file that may be read"),
+        action=Message("Check the path."),
     )
 
 

@@ -17,9 +17,9 @@ import numpy as np
 from nicegui import run
 
 from .._support.errors import FieldDataError, SkisnowError, StoreError
-from .._support.messages import Message, in_language, languages
+from .._support.messages import Message, in_language, joined, languages
 from ..campaign import QUALITY_FLAGS, campaign_of_files
-from ..campaign.problems import ALWAYS_EXCLUDE, Problem, lines_of
+from ..campaign.problems import ALWAYS_EXCLUDE, Problem
 from ..campaign.store import Journals
 from ..estimation import analyse
 from ..estimation.group_comparisons import DIFFERENCE
@@ -118,8 +118,8 @@ def analyse_files(files: FilesInMemory, choice: Choice) -> Numbers | Refusal:
         campaign = _select_data(campaign_of_files(files.contents, others=files.others), choice)
         analysis = analyse(campaign, difference=choice.difference)
     except FieldDataError as error:
-        errors = (problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error")
-        return Refusal(error.message, tuple(lines_of(errors)))
+        errors = [problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error"]
+        return Refusal(joined(error.sentences), tuple(FieldDataError(errors).sentences))
     except SkisnowError as error:
         return Refusal(error.message)
     data = ReportData(analysis)

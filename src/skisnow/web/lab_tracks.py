@@ -12,6 +12,7 @@ from tempfile import mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, ParameterError
+from .._support.messages import joined
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
 from .._support.user_files import GivenError, read_record
@@ -245,7 +246,7 @@ def _read_named(place: Path, placing: Placing) -> Track:
     try:
         return replace(read_track(place), name=placing.called)
     except FieldDataError as error:
-        raise ParameterError(_with_name(error.message, place, placing.called), code=error.code) from error
+        raise ParameterError(_with_name(joined(error.sentences), place, placing.called), code=error.code) from error
 
 
 def _with_name(message: str, place: Path, name: str) -> str:

@@ -16,7 +16,7 @@ from nicegui import app, ui
 from starlette.responses import HTMLResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError, SkisnowError, StoreError
-from .._support.messages import Message, languages, translated
+from .._support.messages import Message, joined, languages, translated
 from .elements import Words, named
 from .guard import STATUS
 from .pages import PAGES
@@ -153,7 +153,7 @@ def log_error(error: BaseException) -> str:
 def error_sentence(error: BaseException) -> str:
     """Sentence of an error: the message of skisnow's errors, a reference to the log for others."""
     if isinstance(error, FieldDataError):
-        return Message("The campaign cannot be used as it is: {error}", error=error)
+        return Message("The campaign cannot be used as it is: {error}", error=joined(error.sentences, "\n"))
     if isinstance(error, SkisnowError):
         return error.message
     return Message(

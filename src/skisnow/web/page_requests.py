@@ -210,7 +210,7 @@ def required_id(text: str) -> str:
     return text
 
 
-NOT_STORED = Message("This was not imported")
+NOT_STORED = Message("The file was rejected")
 ONE_FILE = Message("Nothing was stored: import one file at a time.")
 
 

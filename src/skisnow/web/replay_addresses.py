@@ -13,7 +13,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError
-from .._support.messages import ENGLISH, Message, translations
+from .._support.messages import ENGLISH, Message, joined, translations
 from .._support.user_files import GivenError, read_json, read_record
 from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
@@ -155,14 +155,14 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         language = language_of_request(request)
-        return _confined_page(request, page_of_folders, lambda: (runs.folder_of(run), runs.folder_of(ghost), language))
+        return _confined_page(request, _page_of_folders, lambda: (runs.folder_of(run), runs.folder_of(ghost), language))
 
     def turns(request: Request, track: str) -> Response:
         def arguments() -> tuple[Path, str, str]:
             path, placing = TrackFolders(runs.folder).file(track)
             return path, placing.called, language_of_request(request)
 
-        return _confined_page(request, page_of_track, arguments)
+        return _confined_page(request, _page_of_track, arguments)
 
     def track_file(request: Request, track: str, file: str) -> Response:
         def arguments() -> tuple[Path, str, str]:
@@ -204,8 +204,17 @@ def _confined_page(
     try:
         return answer(confined(BOUNDS, work, *arguments()))
     except (FieldDataError, ParameterError) as error:
-        sentence = error.text(language_of_request(request))
+        message = joined(error.sentences) if isinstance(error, FieldDataError) else error.message
+        sentence = message.text(language_of_request(request)) if isinstance(message, Message) else message
         return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
+
+
+def _page_of_folders(folder: Path, other: Path, language: str) -> str:
+    return page_of_folders(folder, other, language, back=LIST)
+
+
+def _page_of_track(path: Path, name: str, language: str) -> str:
+    return page_of_track(path, name, language, back=LIST)
 
 
 def _limit_exaggeration(exaggeration: float) -> float:

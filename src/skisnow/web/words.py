@@ -112,7 +112,7 @@ def _changed(value: object, change: Callable[[str], str]) -> object:
         value = value.message
     if isinstance(value, list):
         return [_changed(item, change) for item in value]
-    return reworded(str(value), change) if isinstance(value, str | Path) else value
+    return reworded(value if isinstance(value, str) else str(value), change) if isinstance(value, str | Path) else value
 
 
 def hardness_words(row: dict[str, Any]) -> str:

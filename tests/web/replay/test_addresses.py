@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import SkisnowError
+from skisnow._support.messages import translated
 from skisnow.replay import replay_of_run
 from skisnow.track.read import read_track
 from skisnow.web.lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, Placing, TrackFolders
@@ -29,6 +30,7 @@ from skisnow.replay import moving_replay_model, replay_model, replay_of_file
 from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
+from skisnow.web.layout import error_sentence
 from skisnow.web.replay_addresses import RunFolders, add_addresses, show_address
 
 from ..finished import finished
@@ -187,6 +189,14 @@ def test_what_is_no_track_is_rejected_and_leaves_nothing(
     assert list(tmp_path.glob("tracks/*")) == []
 
 
+def test_a_rejected_track_is_explained_in_german_without_a_code(tmp_path: Path) -> None:
+    with pytest.raises(ParameterError) as refused:
+        TrackFolders(tmp_path).keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,5,2,5\n"), Placing("Lauf 1.csv"))
+    german = translated(error_sentence(refused.value), "de")
+    assert german.startswith("Lauf 1.csv, Zeile 2: gefunden '2'; erlaubt: 3 Zellen")
+    assert "too_many" not in german + str(refused.value)
+
+
 def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
     tracks, replay = TrackFolders(tmp_path), replay_of_run(circle_run(count=21))
     tracks.keep(io.BytesIO(csv([(0, 0, 0, 0), (1, 1, 1, 0)])), Placing("x.csv"))
@@ -216,6 +226,7 @@ def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
         for each in (english, german)
     ]
     assert sides == [["left", "right"], ["links", "rechts"]]
+    assert 'href="/replay"' in english.text  # back to the list of tracks
     radii = [float(each) for each in re.findall(r'data-name="Minimum radius \(m\)">([\d.]+)', english.text)]
     assert radii == pytest.approx([12.0, 12.0], rel=0.05)
     table = client.get(f"/replay/turns/turns.csv?track={name}")

@@ -31,6 +31,7 @@ def comparison_page(
     verdict: Message | None = None,
     gaps: tuple[GateGap, ...] | None = None,
     language: str = ENGLISH,
+    back: str = "",
 ) -> str:
     """HTML of the page.
 
@@ -39,6 +40,7 @@ def comparison_page(
     verdict: verdict on the times of two computed runs (default: none).
     gaps: time lost from gate to gate (default: no gates in common).
     language: language of the page (en, de).
+    back: address of the page of the lab that links here (default: none).
     """
     names = comparison["simulated"]["name"], comparison["measured"]["name"]
     with in_language(language):
@@ -53,7 +55,7 @@ def comparison_page(
             sections.insert(0 if not measured else 1, gaps_section(gaps, names, of_gates))
         title = Message("{run} compared with {other}", run=names[0], other=names[1])
         headline = (gaps_headline(gaps) if gaps is not None else "") or next(iter(key), "")
-        return sheet(Header(Message("Two tracks"), title, [], headline=headline), sections)
+        return sheet(Header(Message("Two tracks"), title, [], headline=headline, back=back), sections)
 
 
 def _distances_table(comparison: Mapping[str, Any]) -> Table:
@@ -71,12 +73,13 @@ def _distances_table(comparison: Mapping[str, Any]) -> Table:
     return Table("distances", Message("Distances between the tracks."), columns, rows, note=note)
 
 
-def page_of_folders(folder: Path, other: Path, language: str = ENGLISH) -> str:
-    """HTML of the page that compares the runs of two folders; nothing is written."""
+def page_of_folders(folder: Path, other: Path, language: str = ENGLISH, *, back: str = "") -> str:
+    """HTML of the page that compares the runs of two folders, with a link back; nothing is written."""
     first, second = (replace(read_compared(path), name=path.name) for path in (folder, other))
     comparison, gaps = compare_tracks(first, second), read_gate_gaps(folder, other)
     pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
     if gaps is not None:
         pictures += render_pictures(gap_drawings(gaps, comparison.names), language=language)
     verdict = time_verdict(first, second)
-    return comparison_page(comparison_dict(comparison), pictures, verdict=verdict, gaps=gaps, language=language)
+    compared = comparison_dict(comparison)
+    return comparison_page(compared, pictures, verdict=verdict, gaps=gaps, language=language, back=back)

@@ -56,8 +56,8 @@ def _record(row: dict[str, Any]) -> dict[str, Any]:
     return known | {"side": outcome_words(row["side"])}
 
 
-def page_of_track(path: Path, name: str, language: str = ENGLISH) -> str:
-    """HTML of the page of a file; errors as in `read_track` and `track_summary`."""
+def page_of_track(path: Path, name: str, language: str = ENGLISH, *, back: str = "") -> str:
+    """HTML of the page of a file, with a link back to a page; errors as in `read_track` and `track_summary`."""
     summary = track_summary(replace(read_track(path), name=name))
     pictures = render_pictures(track_drawings(summary), language=language)
     with in_language(language):
@@ -66,7 +66,7 @@ def page_of_track(path: Path, name: str, language: str = ENGLISH) -> str:
             Section("pictures", Message("From above"), pictures=pictures),
             *([Section("turns", Message("Turns"), tables=[turns_table(summary)])] if summary.turns else []),
         ]
-        return sheet(Header(Message("Measured track"), name, [], headline=count), sections)
+        return sheet(Header(Message("Measured track"), name, [], headline=count, back=back), sections)
 
 
 def file_of_track(path: Path, name: str, file: str) -> str:

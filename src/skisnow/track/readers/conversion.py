@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
 from ..track import FASTEST, GAP_FACTOR, Track, point_flags
 from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
@@ -95,8 +96,8 @@ def _projected(
                 "no_place_on_earth",
                 recording.name,
                 value=str(origin),
-                allowed="an origin with a file that has latitude and longitude",
-                action="The file has local metres only; leave the origin out.",
+                allowed=Message("an origin with a file that has latitude and longitude"),
+                action=Message("The file has local metres only; leave the origin out."),
             )
         return recording.place, recording.velocity, None
     at = origin or recording.default_origin or _first(recording.place[fix])
@@ -123,16 +124,16 @@ def _require_points(recording: Recording) -> None:
         raise track_error(
             "empty_file",
             recording.name,
-            allowed="at least one point",
-            action="The file has no point; was anything recorded?",
+            allowed=Message("at least one point"),
+            action=Message("The file has no point; was anything recorded?"),
         )
     fix = _fix(recording)
     if not np.any(fix):
         raise track_error(
             "no_place",
             recording.name,
-            allowed="at least one point with a place and a fix",
-            action=f"None of the {len(fix)} points has one; was the receiver under a roof?",
+            allowed=Message("at least one point with a place and a fix"),
+            action=Message("None of the {points} points has one; was the receiver under a roof?", points=len(fix)),
         )
 
 
@@ -146,8 +147,8 @@ def _require_time(recording: Recording) -> None:
             place=recording.places_in_file[point],
             column="time",
             value=_time_text(recording, point),
-            allowed=f"a time not before the one of the point before, {_time_text(recording, point - 1)}",
-            action="Sort the points, or split the file where another recording begins.",
+            allowed=Message("a time not before the previous point's, {time}", time=_time_text(recording, point - 1)),
+            action=Message("Sort the points, or split the file where another recording begins."),
         )
 
 
@@ -183,8 +184,8 @@ def _require_within(recording: Recording, column: str, values: FloatArray, quant
             place=recording.places_in_file[point],
             column=column,
             value=f"{values[point]:.12g}",
-            allowed=f"a number {quantity.allowed} {quantity.unit}",
-            action="Correct the value; is it in another unit, or in another column?",
+            allowed=Message("a number {allowed} {unit}", allowed=quantity.allowed, unit=quantity.unit),
+            action=Message("Correct the value; is it in another unit, or in another column?"),
         )
 
 

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from .recording import Recording, track_error
 
 SEMICIRCLE: Final = 180.0 / 2**31
@@ -130,8 +131,10 @@ def _decode(data: bytes, name: str, records: _Records) -> None:
             "unreadable_file",
             name,
             value=f"{type(error).__name__}: {error}",
-            allowed="a whole FIT file with right checksums",
-            action=f"It is damaged or ends too early, after {read} records; copy it from the device again.",
+            allowed=Message("a whole FIT file with right checksums"),
+            action=Message(
+                "It is damaged or ends too early, after {read} records; copy it from the device again.", read=read
+            ),
         ) from error
 
 

@@ -67,12 +67,12 @@ class _Reader:
         if len(self._path) > DEEPEST:
             raise _TooMuchError(
                 Message("{count} elements within each other", count=len(self._path)),
-                f"at most {DEEPEST}",
+                Message("at most {most}", most=DEEPEST),
             )
         if self._count > MOST_ELEMENTS:
             raise _TooMuchError(
                 Message("more than {most} elements", most=MOST_ELEMENTS),
-                f"at most {MOST_ELEMENTS}",
+                Message("at most {most}", most=MOST_ELEMENTS),
             )
         if tuple(self._path) == _POINT[:3]:
             self._segment += 1
@@ -93,7 +93,7 @@ class _Reader:
         self._path.pop()
 
     def entity(self, name: str, *_rest: object) -> None:
-        raise _TooMuchError(Message("the declaration of an entity, {name}", name=name), "a file without them")
+        raise _TooMuchError(Message("the declaration of an entity, {name}", name=name), Message("a file without them"))
 
     def _key(self) -> str | None:
         """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
@@ -137,9 +137,11 @@ def _points(text: str, name: str) -> list[_Point]:
     try:
         parser.Parse(text.lstrip(), True)
     except _TooMuchError as error:
-        raise _damaged(name, error.value, error.allowed, "No device writes such a file; export it again.") from error
+        raise _damaged(
+            name, error.value, error.allowed, Message("No device writes such a file; export it again.")
+        ) from error
     except expat.ExpatError as error:
-        action = "The file is damaged or ends too early; export it again."
+        action = Message("The file is damaged or ends too early; export it again.")
         raise _damaged(name, str(error), "GPX 1.0 or 1.1", action) from error
     return reader.points
 
@@ -156,8 +158,8 @@ def _required_moment(point: _Point, name: str, place: int) -> datetime:
             name,
             place=f"point {place + 1}",
             column="time",
-            allowed="a time such as 2022-12-27T15:51:14Z in every point",
-            action="The point has no readable time. A drawn route is not a recorded track.",
+            allowed=Message("a time such as 2022-12-27T15:51:14Z in every point"),
+            action=Message("The point has no readable time. A drawn route is not a recorded track."),
         )
     return moment
 
@@ -209,8 +211,8 @@ def _number(text: str | None, name: str, place: int, column: str, unit: str) -> 
             place=f"point {place + 1}",
             column=column,
             value=text,
-            allowed=f"a finite number in {unit}",
-            action="Correct the point.",
+            allowed=Message("a finite number in {unit}", unit=unit),
+            action=Message("Correct the point."),
         )
     return value
 

@@ -20,6 +20,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.units import DEGREE
 from ..track import Solution, solution_array
 from .recording import NOT_FINITE_CELL, Recording, track_error
@@ -133,8 +134,8 @@ def read_nmea(data: bytes, name: str) -> Recording:
             "empty_file",
             name,
             value=", ".join(f"{count} {words}" for words, count in counts.items() if count),
-            allowed="sentences GGA, GNS, GLL or RMC with times, and with right checksums or none",
-            action="Switch these sentences on in the receiver, or copy the file again.",
+            allowed=Message("sentences GGA, GNS, GLL or RMC with times, and with right checksums or none"),
+            action=Message("Switch these sentences on in the receiver, or copy the file again."),
         )
     times, start = _times(epochs)
     placed = [number for number, epoch in enumerate(epochs) if _is_placed(epoch)]

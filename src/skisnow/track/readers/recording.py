@@ -9,6 +9,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Annotated, Final
 
 from ..._support.errors import FieldDataError
+from ..._support.messages import Message, current_language, template
 from ...parameters import Quantity, own_quantities
 from ..projection import HIGHEST, GeodeticPoint
 from ..track import Axes, SolutionArray
@@ -116,6 +117,14 @@ GEODETIC: Final = own_quantities(GeodeticPlace)
 MOTION: Final = {quantity.field: quantity for quantity in own_quantities(Motion)}
 
 
+_PLACES: Final = {
+    "row": template("{place}, row {number}"),
+    "point": template("{place}, point {number}"),
+    "record": template("{place}, record {number}"),
+    "byte": template("{place}, byte {number}"),
+}
+
+
 @dataclass(frozen=True, slots=True)
 class TrackProblem:
     """A problem in a file with a track, printable as one sentence.
@@ -132,10 +141,26 @@ class TrackProblem:
     action: str
 
     def __str__(self) -> str:
-        """The problem in one line."""
-        where = ", ".join(filter(None, (self.file, self.place, self.column and f"column {self.column}")))
-        value = "" if self.value is None else f" found {self.value!r};"
-        return f"error {self.code}: {where}:{value} allowed: {self.allowed}. {self.action}"
+        """The problem in one line with its code."""
+        return self.text(current_language())
+
+    def text(self, language: str) -> str:
+        """The same in a language."""
+        return Message("error {code}: {problem}", code=self.code, problem=self.sentence).text(language)
+
+    @property
+    def sentence(self) -> Message:
+        """Place, problem, allowed values and fix."""
+        place: str = self.file
+        if self.place is not None:
+            kind, number = self.place.split()
+            place = Message(_PLACES[kind], place=place, number=number)
+        if self.column is not None:
+            place = Message("{place}, column {column}", place=place, column=self.column)
+        fields = {"place": place, "allowed": self.allowed, "action": self.action}
+        if self.value is None:
+            return Message("{place}: allowed: {allowed}. {action}", **fields)
+        return Message("{place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=self.value)
 
 
 def track_error(

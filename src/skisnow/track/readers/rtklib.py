@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import FloatArray
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import number
 from ..projection import GeodeticPoint, earth_centred, east_north_up_axes, geodetic
 from ..track import Solution, solution_array
@@ -57,8 +58,10 @@ def parse_header(text: str, name: str) -> Header:
         raise track_error(
             "missing_column",
             name,
-            allowed="a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)",
-            action="Switch the output of the header on in RTKLIB, and solve again.",
+            allowed=Message(
+                "a header line such as: %  GPST  latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m)"
+            ),
+            action=Message("Switch the output of the header on in RTKLIB, and solve again."),
         )
     line, first = match[0], match[2].lower()
     kind = next(kind for kind, names in PLACES.items() if names[0] == first)
@@ -75,7 +78,7 @@ def parse_header(text: str, name: str) -> Header:
             column=absent[0],
             value=line,
             allowed=", ".join(PLACES[kind]),
-            action="The header line is damaged; solve again.",
+            action=Message("The header line is damaged; solve again."),
         )
     sexagesimal = kind == "geodetic" and unit is not None and "'" in unit[1]
     return Header(SCALES.get((match[1] or "").upper(), "local"), kind, sexagesimal, separator, columns)
@@ -167,8 +170,8 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
             place=f"row {row}",
             column=header.scale,
             value=" ".join(cells[:2]),
-            allowed="a time such as 2022/12/27 15:51:14.000, or week and seconds",
-            action="The row is damaged; solve again.",
+            allowed=Message("a time such as 2022/12/27 15:51:14.000, or week and seconds"),
+            action=Message("The row is damaged; solve again."),
         )
     cells = cells[2:]
     if len(cells) < header.width:
@@ -177,8 +180,8 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
             name,
             place=f"row {row}",
             value=line.strip(),
-            allowed=f"{header.width} numbers behind the time, as the header line says",
-            action="The row is cut short; solve again, or remove the row.",
+            allowed=Message("{count} numbers behind the time, as in the header line", count=header.width),
+            action=Message("The row is cut short; solve again, or remove the row."),
         )
     cells = cells[: header.width]
     values = [number(cell) for cell in cells]
@@ -197,8 +200,8 @@ def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list
                 name,
                 place=f"row {row}",
                 value=cell,
-                allowed=f"a finite number with a decimal point, at most {LARGEST:g}, or nan",
-                action="The row is damaged; solve again.",
+                allowed=Message("a finite number with a decimal point, at most {largest:g}, or nan", largest=LARGEST),
+                action=Message("The row is damaged; solve again."),
             )
     return moment, _degrees(cells, values) if header.sexagesimal else values, not_finite
 

@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray
+from ..._support.messages import Message, joined
 from ..._support.spreadsheet_text import number
 from .recording import FARTHEST, Recording, is_not_finite, track_error
 from .text import Cells, convert_serial_dates, decimal_mark_of, moment, require_width, split_cells
@@ -30,6 +31,7 @@ GEODETIC_SD: Final = ("east_sd_m", "north_sd_m", "up_sd_m")
 SPEED_SD: Final = "speed_sd_m_per_s"
 COLUMNS: Final = (*TIMES, *LOCAL, *GEODETIC, *SPEEDS, ODOMETER, *LOCAL_SD, *GEODETIC_SD, SPEED_SD)
 """Every column that is read."""
+_IN_EVERY_ROW: Final = Message("in every row")
 _FORMS: Final = "time_s, x_m, y_m[, z_m, speed_m_per_s] or time, lat, lon[, alt_m, speed_mps]"
 
 
@@ -102,8 +104,8 @@ class _Table:
                 "two_places",
                 self.name,
                 place=f"row {self.cells.header_line}",
-                allowed=f"the columns {_FORMS}",
-                action="The file has places in metres and in degrees; take one of them away.",
+                allowed=Message("the columns {forms}", forms=_FORMS),
+                action=Message("The file has places in metres and in degrees; take one of them away."),
             )
         for column in GEODETIC[:2] if geodetic else LOCAL[:2]:
             if column not in self.header:
@@ -115,17 +117,20 @@ class _Table:
     def _missing(self, column: str) -> Exception:
         near = difflib.get_close_matches(column, self.header, n=1, cutoff=0.6)
         likely = columns_by_synonym(self.header)
-        hint = f" Is {near[0]!r} meant to be it?" if near else ""
+        action = Message("Name the column in the header.")
         if likely:
-            hint = f" Likely {', '.join(f'{name} for {heading!r}' for heading, name in likely.items())}."
+            pairs = [Message("{name} for {heading!r}", name=name, heading=heading) for heading, name in likely.items()]
+            action = joined([action, Message("Likely {pairs}.", pairs=pairs)])
+        elif near:
+            action = joined([action, Message("Did you mean {similar!r}?", similar=near[0])])
         return track_error(
             "missing_column",
             self.name,
             place=f"row {self.cells.header_line}",
             column=column,
             value=", ".join(self.header),
-            allowed=f"the columns {_FORMS}",
-            action=f"Name the column in the header.{hint}",
+            allowed=Message("the columns {forms}", forms=_FORMS),
+            action=action,
         )
 
     def require_rows(self) -> None:
@@ -133,8 +138,8 @@ class _Table:
             raise track_error(
                 "empty_file",
                 self.name,
-                allowed="a row for each point below the header",
-                action="The file has a header only; was anything recorded?",
+                allowed=Message("a row for each point below the header"),
+                action=Message("The file has a header only; was anything recorded?"),
             )
 
     def column(self, name: str) -> list[str]:
@@ -175,7 +180,7 @@ class _Table:
         times = [read for read in moments if read is not None]
         for place, (one, other) in enumerate(itertools.pairwise(times)):
             if (one.tzinfo is None) != (other.tzinfo is None):
-                raise self._no_time(place + 1, name, cells[place + 1], "all with a zone, or all without")
+                raise self._no_time(place + 1, name, cells[place + 1], Message("all with a zone, or all without"))
         return np.array([(read - times[0]).total_seconds() for read in times]), times[0], None
 
     def _seconds(self, name: str, cells: list[str]) -> FloatArray:
@@ -184,28 +189,32 @@ class _Table:
             raise self._no_time(place, name, cells[place])
         return values
 
-    def _no_time(self, place: int, column: str, cell: str, also: str = "in every row") -> Exception:
-        what = "seconds" if column == "time_s" else "seconds, or a date and time such as 2022-12-27T15:51:14.2Z,"
+    def _no_time(self, place: int, column: str, cell: str, also: str = _IN_EVERY_ROW) -> Exception:
+        what = (
+            Message("seconds")
+            if column == "time_s"
+            else Message("seconds, or a date and time such as 2022-12-27T15:51:14.2Z,")
+        )
         return track_error(
             "not_a_number" if column == "time_s" else "not_a_time",
             self.name,
             place=f"row {self.cells.lines[place]}",
             column=column,
             value=cell,
-            allowed=f"{what} {also}",
-            action="A point without a time cannot be put on a track; correct the cell.",
+            allowed=joined([what, also]),
+            action=Message("A point without a time cannot be put on a track; correct the cell."),
         )
 
     def _no_number(self, place: int, column: str, cell: str) -> Exception:
-        mark = "a decimal comma" if self.mark == "," else "a decimal point"
+        mark = Message("a decimal comma") if self.mark == "," else Message("a decimal point")
         return track_error(
             "not_a_number",
             self.name,
             place=f"row {self.cells.lines[place]}",
             column=column,
             value=cell,
-            allowed=f"a finite number with {mark}, or nothing",
-            action="Correct the cell.",
+            allowed=Message("a finite number with {mark}, or nothing", mark=mark),
+            action=Message("Correct the cell."),
         )
 
 
@@ -227,8 +236,8 @@ def _require_header(cells: Cells, name: str) -> None:
             name,
             place=f"row {cells.header_line}",
             column=twice[0],
-            allowed="each column once",
-            action="Rename or remove one of them.",
+            allowed=Message("each column once"),
+            action=Message("Rename or remove one of them."),
         )
 
 

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray, IntArray
+from ..._support.messages import Message, count_message
 from ..._support.spreadsheet_text import (
     LONGEST_CELL,
     MOST_COLUMNS,
@@ -45,8 +46,8 @@ def _no_text(name: str, value: str) -> Exception:
         "unreadable_file",
         name,
         value=value,
-        allowed="text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX",
-        action="The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT.",
+        allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX"),
+        action=Message("The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT."),
     )
 
 
@@ -71,7 +72,9 @@ def split_cells(text: str, name: str) -> Cells:
     named = named_separator(lines[0])
     first = 1 if named in SEPARATOR_NAMES else 0
     if not any(re.sub('[,;"]', "", line).strip() for line in lines[first:]):
-        raise track_error("empty_file", name, allowed="a header and rows", action="The file is empty.")
+        raise track_error(
+            "empty_file", name, allowed=Message("a header and rows"), action=Message("The file is empty.")
+        )
     separator = named if first and named else most_frequent_separator(text[:_HEAD])
     reader = csv.reader(lines[first:], delimiter=separator, skipinitialspace=True, strict=True)
     numbers: list[int] = []
@@ -90,8 +93,8 @@ def split_cells(text: str, name: str) -> Cells:
             name,
             place=f"row {begun}",
             value=str(error),
-            allowed=f"cells with quotes in pairs, of at most {LONGEST_CELL} characters",
-            action="Close the quote, or take it away.",
+            allowed=Message("cells with quotes in pairs, of at most {most} characters", most=LONGEST_CELL),
+            action=Message("Close the quote, or take it away."),
         ) from error
     _require_size(rows, numbers, name)
     return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
@@ -105,9 +108,9 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
                 "too_many_cells",
                 name,
                 place=f"row {line}",
-                value=f"{len(row)} cells",
-                allowed=f"at most {MOST_COLUMNS} columns",
-                action="Remove the unused columns.",
+                value=Message("{count} cells", count=len(row)),
+                allowed=Message("at most {most} columns", most=MOST_COLUMNS),
+                action=Message("Remove the unused columns."),
             )
         if max(map(len, row)) > LONGEST_CELL:
             raise track_error(
@@ -115,8 +118,8 @@ def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> N
                 name,
                 place=f"row {line}",
                 value=max(row, key=len),
-                allowed=f"cells of at most {LONGEST_CELL} characters",
-                action="Shorten the cell; is a separator or a quote missing?",
+                allowed=Message("cells of at most {most} characters", most=LONGEST_CELL),
+                action=Message("Shorten the cell; is a separator or a quote missing?"),
             )
 
 
@@ -133,8 +136,10 @@ def require_width(cells: Cells, name: str) -> None:
                 name,
                 place=f"row {line}",
                 value=next(filter(None, row[width:])),
-                allowed=f"{width} {'cell' if width == 1 else 'cells'}, as in the header",
-                action="A decimal comma in a file separated by commas looks like this; separate by semicolons.",
+                allowed=count_message("{count} cell, as in the header", "{count} cells, as in the header", count=width),
+                action=Message(
+                    "A decimal comma in a file separated by commas looks like this; separate by semicolons."
+                ),
             )
 
 

@@ -16,6 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ..._support.messages import Message
 from ..._support.units import MM
 from ..track import Solution, solution_array
 from .nmea import SENTENCE
@@ -57,8 +58,8 @@ def read_ubx(data: bytes, name: str) -> Recording:
             "empty_file",
             name,
             value=counted,
-            allowed="messages NAV-PVT with right checksums and valid times",
-            action="Switch NAV-PVT on in the receiver, or copy the file again.",
+            allowed=Message("messages NAV-PVT with right checksums and valid times"),
+            action=Message("Switch NAV-PVT on in the receiver, or copy the file again."),
         )
     counts["NMEA sentences next to messages NAV-PVT"] = len(SENTENCE.findall(data))
     table = np.array([_row(epoch) for epoch in epochs])
