@@ -8,7 +8,7 @@ import pytest
 
 from skisnow._support.errors import FitError, ParameterError
 from skisnow.comparison import Comparison, compare_tracks
-from skisnow.comparison.alignment import Motion, _iterate, fit_motion
+from skisnow.comparison.alignment import HEADINGS, Motion, _iterate, fit_motion, start_motions
 from skisnow.comparison.distances import Polyline, polyline
 from skisnow.comparison.nearest_place import Path
 from skisnow.comparison.result import fit_time
@@ -110,7 +110,7 @@ def two_thirds_turned(angle: float) -> tuple[Polyline, Polyline]:
     return line_of(slalom(ALONG)[:, :2]), line_of(measured[len(ALONG) // 3 :])
 
 
-@pytest.mark.parametrize("angle", [-2.6, -1.3, 0.9, 1.7, 3.0])
+@pytest.mark.parametrize("angle", [-2.6, 0.9, 3.0])
 def test_a_heading_is_found_where_the_measured_track_begins_later(angle: float) -> None:
     simulated, measured = two_thirds_turned(angle)
     motion = fit_motion(simulated, measured, start=True, heading=True)
@@ -142,9 +142,9 @@ def test_an_alignment_with_less_overlap_is_not_preferred() -> None:
 
 
 def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> None:
-    """Of 20 intervals with a coverage of 95 % at least 16 contain the truth in 997 of 1000 cases."""
+    """Of 10 intervals with a coverage of 95 % at least 8 contain the truth in 988 of 1000 cases."""
     inside, errors = [], []
-    for seed in range(10):
+    for seed in range(5):
         for size in (0.01, 0.1):
             noise = size * np.random.default_rng(seed).normal(size=(100, 2))
             measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
@@ -152,7 +152,7 @@ def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> Non
             assert motion.turned_error is not None
             inside.append(abs(motion.turned - 0.4) < motion.turned_error)
             errors.append(motion.turned_error)
-    assert sum(inside) >= 16
+    assert sum(inside) >= 8
     assert np.mean(errors[1::2]) == pytest.approx(10.0 * np.mean(errors[::2]), rel=0.3)
 
 
@@ -188,6 +188,20 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
     assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
     assert 0.99 * motion.rms < motion.rival.rms < 2.0 * motion.rms
     assert motion.turned_error is None
+
+
+def test_a_search_begins_in_all_directions_and_all_along_the_track() -> None:
+    """Headings within one step of each other, and a piece of 20 % within its tenth of the whole wherever it belongs."""
+    place = slalom(ALONG)[:, :2]
+    whole = line_of(place)
+    headings = np.sort([each.turned % math.tau for each in start_motions(whole, whole, start=True, heading=True)])
+    assert np.diff(headings, append=headings[0] + math.tau).max() < 1.01 * math.tau / HEADINGS
+    for first in (0, 150, 300, 400):
+        begins = start_motions(whole, line_of(place[first : first + 100] - place[first]), start=True, heading=False)
+        assert {each.turned for each in begins} == {0.0}
+        away = min(float(np.linalg.norm(each.moved + place[first])) for each in begins)
+        assert away < 0.1 * whole.length
+    assert len(start_motions(whole, whole, start=False, heading=False)) == 2
 
 
 def test_an_answer_among_few_places_is_none_among_all_that_lie_beyond() -> None:
