@@ -236,7 +236,7 @@ def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
 
 @pytest.mark.parametrize(
     ("period", "rate"),
-    [*((period, 1.0) for period in (4.0, 5.0, 6.0, 10.0, 17.0)), (4.0, 2.0), (17.0, 2.0), (4.0, 10.0)],
+    [(4.0, 1.0), (6.0, 1.0), (17.0, 2.0), (4.0, 10.0)],
 )
 def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
     """No maximum at an end, and no length below the polyline's."""
@@ -256,15 +256,15 @@ def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
     "name", ["varied speed, noise 0.5 m", pytest.param("constant speed, noise 0.5 m", marks=pytest.mark.slow)]
 )
 def test_intervals_contain_the_truth(name: str) -> None:
-    """A short form of the benchmark: of 16 tracks chance leaves out at most 4 in 999 of 1000 cases."""
-    found = estimates(replace(KINDS[name], duration=15.0), range(16))
-    assert len(found) == 16
+    """A short form of the benchmark: of 10 tracks chance leaves out at most 3 in 987 of 1000 cases."""
+    found = estimates(replace(KINDS[name], duration=10.0), range(10))
+    assert len(found) == 10
     for truths, intervals in (
         ([each.track.max_speed for each in found], [each.max_speed for each in found]),
         ([each.track.length for each in found], [each.length for each in found]),
     ):
         inside = [low <= truth <= high for truth, (_, low, high) in zip(truths, intervals, strict=True)]
-        assert sum(inside) >= 12
+        assert sum(inside) >= 7
         widths = [(high - low) / truth for truth, (_, low, high) in zip(truths, intervals, strict=True)]
         assert 0.0 < float(np.median(widths)) < 0.15
 
@@ -289,14 +289,14 @@ def test_coverage_of_200_tracks(name: str) -> None:
 def test_more_noise_is_a_wider_interval() -> None:
     widths = []
     for noise in (0.05, 0.5, 2.0):
-        made = simulated_track(Kind(noise=noise, duration=20.0), 3)
+        made = simulated_track(Kind(noise=noise, duration=10.0), 3)
         length = estimate(made.place).length()
         widths.append(length.high - length.low)
     assert widths[0] < widths[1] < widths[2]
 
 
 def test_same_track_gives_the_same_numbers() -> None:
-    place = simulated_track(Kind(duration=10.0), 1).place
+    place = simulated_track(Kind(duration=6.0), 1).place
     assert estimate(place).max_speed() == estimate(place).max_speed()
 
 
@@ -329,14 +329,14 @@ def test_few_points(points: int) -> None:
     assert (found is None) == (points < 2)
 
 
-@pytest.mark.parametrize("interval", [0.001, 0.02, 30.0])
-def test_any_interval_between_points(interval: float) -> None:
-    made: Track = track(circle(15.0, 8.0, duration=400 * interval, interval=interval), interval=interval)
+@pytest.mark.parametrize(("interval", "count"), [(0.001, 400), (30.0, 100)])
+def test_any_interval_between_points(interval: float, count: int) -> None:
+    made: Track = track(circle(15.0, 8.0, duration=count * interval, interval=interval), interval=interval)
     summary = track_summary(made)
     assert summary.max_speed is not None
     if interval < 1.0:
         assert summary.max_speed == pytest.approx(8.0, rel=0.01)
-        assert summary.distances["places"] == pytest.approx(8.0 * 400 * interval, rel=0.01)
+        assert summary.distances["places"] == pytest.approx(8.0 * count * interval, rel=0.01)
 
 
 def test_recorded_speeds_have_no_interval() -> None:

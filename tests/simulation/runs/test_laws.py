@@ -75,13 +75,13 @@ def test_the_scenario_s_laws_from_python_give_its_run() -> None:
     sum of n such numbers is of the size of their root mean square, √n times that of one. The weight's work differs by
     as much times the weight.
     """
-    first = carve(1.0)
+    first = carve(0.3)
     weight = first.scenario.sledge.mass * first.scenario.gravity
     for laws, bound in (
         (Laws(penetration=HypoplasticPoint(H, 10.0)), 2e-8 * first.steps**0.5),
         (Laws(friction=Own(), shear=ConstantShear(S)), 1e-9),
     ):
-        again = carve(1.0, laws)
+        again = carve(0.3, laws)
         assert np.abs(again.place - first.place).max() < bound
         assert again.steps == first.steps
         for name, energy in first.energies.items():
@@ -105,7 +105,7 @@ def test_the_scenario_s_laws_from_python_give_its_run() -> None:
 )
 def test_other_laws_run_in_a_turn(laws: Laws) -> None:
     """To the end, elsewhere than the scenario's laws, and every joule is somewhere."""
-    run, usual = carve(0.5, laws), carve(0.5)
+    run, usual = carve(0.3, laws), carve(0.3)
     assert run.outcome == "finished"
     assert not run.has_residual_above(0.02)
     assert 1e-4 < np.linalg.norm(run.place[-1] - usual.place[-1]) < 0.5

@@ -40,8 +40,8 @@ def mirrored(changes: dict[str, float]) -> dict[str, float]:
 
 @pytest.mark.parametrize("changes", [CARVES, SKIDS], ids=["carves", "skids"])
 def test_mirror(changes: dict[str, float]) -> None:
-    """Left and right differ only by rounding; 1.5 s bring it to far less than 1e-9 m."""
-    given = {**changes, "start.y_m": 1.5, "run.duration_s": 1.5}
+    """Left and right differ only by rounding; 0.6 s bring it to far less than 1e-9 m."""
+    given = {**changes, "start.y_m": 1.5, "run.duration_s": 0.6}
     one, other = simulated(**given, **FIXED), simulated(**mirrored(given), **FIXED)
     assert other.place == pytest.approx(one.place * [1.0, -1.0, 1.0], abs=1e-9)
     assert other.heading == pytest.approx(-one.heading, abs=1e-9)
@@ -61,8 +61,8 @@ ACROSS = {"snow.S_f_N_per_mm2": 0.05, "sledge.edge_angle_deg": 10.0, "start.head
     [
         ({**CARVES, **ICE}, 0.3),
         ({**CARVES, **ICE}, 0.5e-3),
-        ({**CARVES, "snow.S_f_N_per_mm2": 0.02}, 1.0),
-        (ACROSS, 1.0),
+        ({**CARVES, "snow.S_f_N_per_mm2": 0.02}, 0.4),
+        (ACROSS, 0.4),
     ],
 )
 def test_mirrored_skids(changes: dict[str, float], duration: float) -> None:
@@ -72,14 +72,13 @@ def test_mirrored_skids(changes: dict[str, float], duration: float) -> None:
     assert other.place == pytest.approx(one.place * [1.0, -1.0, 1.0], abs=1e-11)
 
 
-@pytest.mark.parametrize("hardness", [0.03, 0.2])
-def test_straight_down_stays_straight(hardness: float) -> None:
+def test_straight_down_stays_straight() -> None:
     """Left and right differ by the rounding of places, 1e-16 m: the grounds of both edges lose the same knots.
 
     A flat ski is nearly neutral. An edge angle of 1e-7 measures how far that carries it, hundreds of metres for each
     radian; the run may drift by that times 1e-16 m over half the width. An unstable run would swing by millimetres.
     """
-    changes = {"start.heading_deg": 0.0, "snow.H_V_N_per_mm3": hardness, "run.duration_s": 1.0, **FIXED}
+    changes = {"start.heading_deg": 0.0, "snow.H_V_N_per_mm3": 0.03, "run.duration_s": 1.0, **FIXED}
     flat, tilted = (simulated(**changes, **{"sledge.edge_angle_deg": math.degrees(each)}) for each in (0.0, 1e-7))
     growth = np.abs(tilted.place[:, 1]).max() / 1e-7
     assert 100.0 < growth < 1e4
@@ -98,22 +97,22 @@ def test_mirror_of_the_whole_run(changes: dict[str, float]) -> None:
 
 def test_start_elsewhere() -> None:
     """A plane is the same everywhere."""
-    one = simulated(**{"run.duration_s": 1.0}, **FIXED)
-    other = simulated(**{"run.duration_s": 1.0, "start.x_m": 13.7, "start.y_m": -8.2}, **FIXED)
+    one = simulated(**{"run.duration_s": 0.4}, **FIXED)
+    other = simulated(**{"run.duration_s": 0.4, "start.x_m": 13.7, "start.y_m": -8.2}, **FIXED)
     assert other.place == pytest.approx(one.place + np.array([13.7, -8.2, 0.0]), abs=1e-9)
     assert other.groove.depth == pytest.approx(one.groove.depth, abs=1e-8)
 
 
 def test_level_slope_knows_no_direction() -> None:
     """Turned by 70° at the start, the whole track is turned by 70°."""
-    level = {"slope.angle_deg": 0.0, "run.duration_s": 1.0}
+    level = {"slope.angle_deg": 0.0, "run.duration_s": 0.4}
     one = simulated(**level, **{"start.heading_deg": 0.0}, **FIXED)
     other = simulated(**level, **{"start.heading_deg": 70.0}, **FIXED)
     c, s = math.cos(math.radians(70.0)), math.sin(math.radians(70.0))
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     assert other.place == pytest.approx(one.place @ turn.T, abs=1e-9)
     assert other.heading == pytest.approx(one.heading + math.radians(70.0), abs=1e-9)
-    assert one.place[-1, 1] > 0.5  # it does turn
+    assert one.place[-1, 1] > 0.1  # it does turn
 
 
 @pytest.mark.slow
@@ -314,9 +313,7 @@ def turned(degrees: float, **changes: object) -> Run:
     return simulate(load_scenario("carved-46m", changes=STRAIGHT | changes | {"sledge.edge_angle_deg": degrees}))
 
 
-@pytest.mark.parametrize(
-    ("degrees", "end"), [(0.5, (41.75, 24.47)), (1.0, (27.88, 33.15)), (2.0, (14.47, 32.41)), (3.0, (14.387, 32.395))]
-)
+@pytest.mark.parametrize(("degrees", "end"), [(0.5, (41.75, 24.47)), (3.0, (14.387, 32.395))])
 def test_it_ends_where_the_shear_moves_across_at_once(degrees: float, end: tuple[float, float]) -> None:
     """The former rule moved the place of the shear across the base over ±2°. Over ±0.02° its ends are these.
 
@@ -329,13 +326,13 @@ def test_it_ends_where_the_shear_moves_across_at_once(degrees: float, end: tuple
 
 @pytest.mark.parametrize("degrees", [0.05, 1.0])
 def test_mirrored_runs_end_at_mirrored_places(degrees: float) -> None:
-    one, other = turned(degrees), turned(-degrees)
+    one, other = (turned(each, **{"run.duration_s": 1.0}) for each in (degrees, -degrees))
     assert other.place[-1] == pytest.approx(one.place[-1] * [1.0, -1.0, 1.0], abs=1e-6)
-    assert one.place[-1, 1] > 1.0  # to the side of the edge
+    assert one.place[-1, 1] > 0.02  # to the side of the edge
 
 
-@pytest.mark.parametrize("degrees", [0.0, 0.02, 0.3, 1.0, 2.0])
-@pytest.mark.parametrize("hardness", [0.01, 0.2, 2.0])
+@pytest.mark.parametrize("degrees", [0.0, 0.02, 1.0])
+@pytest.mark.parametrize("hardness", [0.01, 2.0])
 def test_a_start_is_found(degrees: float, hardness: float) -> None:
     run = turned(degrees, **{"run.duration_s": 0.02, "snow.H_V_N_per_mm3": hardness})
     assert run.outcome == "finished"
@@ -348,9 +345,8 @@ def test_the_widening_tail_brakes() -> None:
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)
 
 
-@pytest.mark.parametrize("degrees", [0.0, 1.0])
-def test_half_the_step(degrees: float) -> None:
+def test_half_the_step() -> None:
     """Steps of 1 ms and 0.5 ms end within the method's error."""
     fixed = {"solver.fixed": True, "run.duration_s": 1.0}
-    one, other = (turned(degrees, **fixed, **{"solver.step_ms": step}) for step in (1.0, 0.5))
+    one, other = (turned(1.0, **fixed, **{"solver.step_ms": step}) for step in (1.0, 0.5))
     assert other.place[-1] == pytest.approx(one.place[-1], abs=1e-3)
