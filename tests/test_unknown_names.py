@@ -203,7 +203,7 @@ assert not heavy & set(sys.modules), heavy & set(sys.modules)
 
 
 def test_the_package_alone_imports_nothing_heavy() -> None:
-    subprocess.run([sys.executable, "-c", IMPORT_ALONE], check=True)
+    assert subprocess.run([sys.executable, "-c", IMPORT_ALONE], check=False).returncode == 0
 
 
 @pytest.mark.parametrize("name", ["carving.answer", "identification", "pipeline", "scenario.slope", "simulation.run"])

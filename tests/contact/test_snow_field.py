@@ -77,9 +77,14 @@ def test_snow_that_cannot_be(changes: dict[str, Any], words: str | Coded) -> Non
 
 
 def test_snow_at_the_edge_of_what_can_be() -> None:
-    snow(residual_ratio=1.0, friction=0.0, knot_area=0.0, damping=0.0, delayed_share=0.0, unloading_ratio=1.0)
-    snow(residual_ratio=0.0, failure_shear_stress=0.0)
-    snow(failure_shear_stress=GRID, shear=ConstantShear(S), strength_share=0.9)
+    smallest = dict.fromkeys(("friction", "knot_area", "damping", "delayed_share", "failure_shear_stress"), 0.0)
+    for changes in (
+        {"residual_ratio": 1.0, "unloading_ratio": 1.0, **smallest},
+        {"residual_ratio": 0.0},
+        {"failure_shear_stress": GRID, "shear": ConstantShear(S), "strength_share": 0.9},
+    ):
+        made = snow(**changes)
+        assert {name: getattr(made, name) for name in changes} == changes
 
 
 def coefficients(friction: Any) -> list[float]:

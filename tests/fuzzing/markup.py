@@ -97,12 +97,10 @@ def declaration(rng: Random, data: bytes) -> bytes:
     code = rng.choice(_ENCODINGS)
     body = re.sub(r"^<\?xml.*?\?>", "", text, flags=re.DOTALL)
     whole = f'<?xml version="{rng.choice(("1.0", "1.1", "x"))}" encoding="{code}"?>{body}'
-    if rng.random() < 0.4:
-        try:
-            return whole.encode(code, "replace")
-        except (LookupError, ValueError, TypeError):
-            pass
-    return bytes_of(whole)
+    try:
+        return whole.encode(code, "replace") if rng.random() < 0.4 else bytes_of(whole)
+    except (LookupError, ValueError, TypeError):  # a name of no encoding, or of one that is not for texts
+        return bytes_of(whole)
 
 
 XML: Final[tuple[Mutation, ...]] = (
