@@ -52,19 +52,6 @@ def package_tests(package: str, *, root: Path = ROOT) -> tuple[str, ...]:
     return tuple(name for name in named if (root / name).exists())
 
 
-def files_beside(parts: Iterable[str], files: list[Path]) -> list[Path]:
-    """Files that are in none of these folders and files of the program."""
-    return [path for path in files if not any(path.is_relative_to(SOURCE / part) for part in parts)]
-
-
-def left_out_tests(parts: Iterable[str]) -> tuple[str, ...]:
-    """The tests and doctests of these folders and files of the program, whether there are any or not."""
-    places = [Path(part) for part in parts]
-    tests = [f"tests/{place.parent / f'test_{place.name}' if place.suffix else place}" for place in places]
-    tests = [test.replace("_support", "support") for test in tests]
-    return (*tests, *(str(SOURCE / place) for place in places))
-
-
 def changed_lines(path: Path, mutant: Mutant, *, root: Path = ROOT) -> str:
     """The error as a diff without surroundings."""
     source = (root / path).read_text(encoding="utf-8")
@@ -130,15 +117,8 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="copies of the tree that are tested at once (1)")
     parser.add_argument("--only", nargs="*", type=int, default=[], help="numbers of the errors to plant (all)")
-    parser.add_argument("--only-reaching", action="store_true", help="run the tests alone that reach the error")
     parser.add_argument("--reach", type=Path, help="file of which test reaches what; kept for the next time")
     parser.add_argument("--tests", nargs="*", default=[], help="further test files and folders that count")
-    parser.add_argument(
-        "--leave-out",
-        nargs="*",
-        default=[],
-        help="folders and files of the package that count no more, with their tests",
-    )
     parser.add_argument("--file", default="", help="only files of the package whose path contains this")
     parser.add_argument(
         "--limit-s", type=float, help="time for each (default: a minute and five times what all tests take)"
@@ -149,14 +129,13 @@ def asked_of(words: list[str] | None) -> argparse.Namespace:
 def main(words: list[str] | None = None) -> int:
     """Number of errors that survived."""
     asked = asked_of(words)
-    files = files_beside(asked.leave_out, [path for path in files_of(asked.package) if asked.file in str(path)])
-    planted = drawn(files, asked.n, asked.seed)
+    planted = drawn([path for path in files_of(asked.package) if asked.file in str(path)], asked.n, asked.seed)
     planted = [one for number, one in enumerate(planted, 1) if number in (asked.only or [number])]
-    tests, left_out = (*package_tests(asked.package), *asked.tests), left_out_tests(asked.leave_out)
+    tests = (*package_tests(asked.package), *asked.tests)
     with ExitStack() as kept:
         trees = [kept.enter_context(copied_tree(ROOT)) for _ in range(asked.workers)]
         reach = asked.reach.resolve() if asked.reach else trees[0] / ".reach.json"
-        first = Trials(trees[0], tests, 3600.0, reach, asked.only_reaching, left_out)
+        first = Trials(trees[0], tests, 3600.0, reach)
         if not reach.exists() and first.look() != 0:
             reach.unlink(missing_ok=True)
             sys.exit(f"the tests fail without an error planted: {' '.join(tests)}")

@@ -1,7 +1,6 @@
 """A pytest plugin that writes down which functions of the program each test calls, and how long it takes.
 
-Calls of a fixture of a module or session count for all tests that use it. Processes that a test starts write down
-theirs by themselves (`children/sitecustomize.py`).
+Calls of a fixture of a module or session count for all tests that use it; those of other processes are not seen.
 """
 
 import ast
@@ -22,8 +21,6 @@ Function: TypeAlias = tuple[str, int]
 """File from the tree's top, and first line."""
 PLACE: Final = "SKISNOW_TESTS_REACH"
 """Variable of the environment with the path of the output."""
-CURRENT, CALLS, SOURCE = (f"{PLACE}_{name}" for name in ("CURRENT", "CALLS", "SOURCE"))
-"""Those of the test that runs now, of what other processes call, and of the folder that counts."""
 
 
 class Reach:
@@ -33,27 +30,25 @@ class Reach:
         self.source = f"{root / 'src'}{os.sep}"
         self.root = root
         self.calls: defaultdict[str, set[Function]] = defaultdict(set)
-        self.seconds: defaultdict[str, float] = defaultdict(float)
+        self.seconds: dict[str, float] = {}
         self.now: set[Function] = set()
 
     def seen(self, frame: FrameType, _event: str, _told: object) -> None:
         """Of each call; None: its lines are not traced."""
         code = frame.f_code
         if code.co_filename.startswith(self.source):
-            self.now.add((code.co_filename, code.co_firstlineno))
+            self.now.add((str(Path(code.co_filename).relative_to(self.root)), code.co_firstlineno))
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
-        name = item.nodeid
-        self.now, start = self.calls[name], time.monotonic()
-        Path(os.environ[CURRENT]).write_text(name, encoding="utf-8")
+        self.now, start = self.calls[item.nodeid], time.monotonic()
         sys.settrace(self.seen)
         threading.settrace(self.seen)
         yield
         sys.settrace(None)
-        self.seconds[name] += time.monotonic() - start
+        self.seconds[item.nodeid] = time.monotonic() - start
         for fixture in getattr(item, "fixturenames", ()):
-            self.calls[name] |= self.calls.get(f"fixture {fixture}", set())
+            self.calls[item.nodeid] |= self.calls.get(f"fixture {fixture}", set())
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
@@ -64,14 +59,7 @@ class Reach:
         self.now = before
 
     def pytest_sessionfinish(self) -> None:
-        for line in Path(os.environ[CALLS]).read_text(encoding="utf-8").splitlines():
-            name, file, first = line.split("\t")
-            self.calls[name].add((file, int(first)))
-        found = {
-            name: [self.seconds[name], sorted((str(Path(file).relative_to(self.root)), line) for file, line in calls)]
-            for name, calls in self.calls.items()
-            if name in self.seconds
-        }
+        found = {name: [seconds, sorted(self.calls[name])] for name, seconds in self.seconds.items()}
         Path(os.environ[PLACE]).write_text(json.dumps(found), encoding="utf-8")
 
 

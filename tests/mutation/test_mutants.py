@@ -13,9 +13,7 @@ from tests.mutation.__main__ import (
     EQUIVALENTS,
     changed_lines,
     drawn,
-    files_beside,
     files_of,
-    left_out_tests,
     package_tests,
     place_of,
     verdicts,
@@ -70,19 +68,6 @@ def test_errors_of_a_real_room_are_small_and_drawn_by_seed() -> None:
     for path, mutant in few:
         assert len([line for line in changed_lines(path, mutant).splitlines() if line[0] == "+"]) == 2  # file, line
     assert package_tests("track") == ("tests/track", "src/skisnow/track")
-
-
-def test_parts_that_are_left_out_have_no_tests_either() -> None:
-    files = files_of("track")
-    left = files_beside(["track/track.py"], files)
-    assert [path for path in files if path not in left] == [Path("src/skisnow/track/track.py")]
-    assert files_beside(["track"], files) == []
-    assert left_out_tests(["simulation/motion", "_support/processes/batch.py"]) == (
-        "tests/simulation/motion",
-        "tests/support/processes/test_batch.py",
-        "src/skisnow/simulation/motion",
-        "src/skisnow/_support/processes/batch.py",
-    )
 
 
 def test_the_function_around_a_character_is_found() -> None:

@@ -6,17 +6,15 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import pytest
 
-from .left_out import NAMES
 from .mutants import Mutant
-from .reach import CALLS, CURRENT, PLACE, SOURCE, function_at, nearest
+from .reach import PLACE, function_at, nearest
 
 OWN = Path(__file__).parent
 CAUGHT = "caught"
@@ -46,59 +44,35 @@ class Trials:
     tests: tuple[str, ...]  # files and folders below the tree
     limit: float  # s for each mutant
     reach: Path | None = None  # which functions each test calls, as `tests.mutation.reach` writes it
-    only_reaching: bool = False  # whether tests that do not call the changed function are left out
-    left_out: tuple[str, ...] = ()  # test files and folders that do not run
 
     def verdict(self, path: Path, mutant: Mutant) -> str:
         """Whether the tests catch the error in this file (given from the tree's top); the file is itself again.
 
-        The tests that call the changed function are asked before the others, the quick ones before the slow ones. What
+        The tests that call the changed function run before all others, the quick ones before the slow ones. What
         stands outside all functions, such as a constant, may be read by any test.
         """
         file = self.tree / path
         source = file.read_bytes()
         text = source.decode()
-        function = function_at(text, mutant.start)
-        first = nearest(self.reach, path, function) if self.reach else []
+        first = nearest(self.reach, path, function_at(text, mutant.start)) if self.reach else []
         try:
             file.write_text(mutant.planted(text), encoding="utf-8", newline="")
             status = self.status(first) if first else 0
-            if status == 0 and not (first and self.only_reaching and function is not None):
-                status = self._status_of_others(first)
+            status = self.status() if status == 0 else status
         finally:
             file.write_bytes(source)
         return OUT_OF_TIME if status is None else CAUGHT if status else SURVIVED
 
     def look(self) -> int | None:
         """Exit status of all tests; what they reach is written down."""
-        assert self.reach is not None
-        paths = os.pathsep.join(map(str, (self.tree / "src", OWN, OWN / "children")))
-        with tempfile.TemporaryDirectory(prefix="mutation-reach-") as folder:
-            calls = Path(folder) / "calls"
-            calls.touch()
-            told = {PLACE: self.reach, CURRENT: Path(folder) / "current", CALLS: calls, SOURCE: self.tree / "src"}
-            environment = {name: str(path) for name, path in told.items()}
-            return self.status(more=("-p", "reach"), environment={"PYTHONPATH": paths, **environment})
-
-    def _status_of_others(self, names: Collection[str]) -> int | None:
-        """Exit status of all tests but these."""
         paths = os.pathsep.join(map(str, (self.tree / "src", OWN)))
-        with tempfile.NamedTemporaryFile("w", encoding="utf-8", prefix="mutation-left-out-") as listed:
-            listed.writelines(f"{name}\n" for name in names)
-            listed.flush()
-            return self.status(more=("-p", "left_out"), environment={"PYTHONPATH": paths, NAMES: listed.name})
+        return self.status(more=("-p", "reach"), PYTHONPATH=paths, **{PLACE: str(self.reach)})
 
-    def status(
-        self,
-        tests: Collection[str] = (),
-        *,
-        more: Collection[str] = (),
-        environment: Mapping[str, str] = MappingProxyType({}),
-    ) -> int | None:
+    def status(self, tests: Collection[str] = (), *, more: Collection[str] = (), **environment: str) -> int | None:
         """Exit status of these tests or all, 0 if there are none; None where time ran out."""
         words = [sys.executable, "-m", "pytest", "-x", "-q", "--hypothesis-profile=ci", "--doctest-modules"]
         words += [word for name in ("cacheprovider", "xdist", "randomly") for word in ("-p", f"no:{name}")]
-        words += [*more, *(f"--ignore={name}" for name in self.left_out), *(tests or self.tests)]
+        words += [*more, *(tests or self.tests)]
         own = {"PYTHONPATH": str(self.tree / "src"), "PYTHONDONTWRITEBYTECODE": "1"}
         outer = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
         status = _status(words, self.tree, {**outer, **own, **environment}, self.limit)
