@@ -1,6 +1,5 @@
 """Mutated files of every reader are read or rejected in the project's own words, and single faults are noticed."""
 
-import json
 import os
 import signal
 import warnings
@@ -11,10 +10,10 @@ import pytest
 
 from skisnow._support.errors import ParameterError, RangeWarning
 
+from .batch import run_batch
 from .case import Fault, run_case
 from .reader import Reader
 from .registry import READERS
-from .shards import read_rows, run_batch, run_shard
 from .texts import TABLE
 
 READY = [reader for reader in READERS if reader.is_ready]
@@ -95,23 +94,3 @@ def test_a_case_that_kills_its_process_or_takes_memory_is_named_and_the_others_g
     faults = [(row["number"], row["kind"]) for row in rows if row["row"] == "fault"]
     assert faults == [(6, "crash"), (7, "memory")]
     assert (rows[-1]["first"], rows[-1]["count"], rows[-1]["read"]) == (5, 5, 4)
-
-
-def test_a_shard_continues_behind_the_rows_that_are_there(tmp_path: Path) -> None:
-    rows, said = tmp_path / "rows.jsonl", []
-    readers = [made_up(lambda _: 1, "one"), made_up(raising(KeyError("x")), "other")]
-
-    def say(text: str, **_: object) -> None:
-        said.append(text)
-
-    assert not run_shard(readers, 2, rows, minutes=0.0, say=say)
-    assert run_shard(readers[:1], 2, rows, minutes=5.0, say=say)
-    assert len(said) == 5
-    with rows.open("a") as file:
-        file.write('{"row": "batch", "rea')  # torn by a kill
-    rows.write_text("".join(f"{json.dumps(row)}\n" for row in read_rows([rows])))
-    assert run_shard(readers, 2, rows, minutes=5.0, say=say)
-    assert len(said) == 10
-    batches = [(row["reader"], row["first"]) for row in read_rows([rows]) if row["row"] == "batch"]
-    assert sorted(batches) == [(name, 1000 + 100 * i) for name in ("one", "other") for i in range(5)]
-    assert sum(row["row"] == "fault" for row in read_rows([rows])) == 500

@@ -1,12 +1,10 @@
-"""The long run in shards of some minutes: rows are kept as they come, and a shard goes on behind them."""
+"""Many cases of one reader in a process of their own, which may hang, crash or take memory."""
 
 import json
 import os
 import resource
 import signal
-import time
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
@@ -14,62 +12,12 @@ from typing import Any, Final
 from .case import Fault, run_case
 from .reader import Reader
 
-BATCH: Final = 100
-"""Cases of one reader that one process tries."""
-OF_A_SHARD: Final = 500
-"""Cases of each reader in a shard."""
 HANG_S: Final = 60.0
 """Processor time of a case after which it counts as hung."""
 WAIT_S: Final = 900.0
 """The same in elapsed time: a case that waits for something."""
 MEMORY_BYTES: Final = 6 << 30
 """Address space beyond which a process gets no more."""
-
-
-def run_shard(readers: Sequence[Reader], shard: int, rows: Path, *, minutes: float, say: Any = print) -> bool:
-    """Try the cases of a shard that no row lists yet; True if all of them are done.
-
-    Parameters
-    ----------
-    readers
-        Whose files are tried.
-    shard
-        From 0: the cases ``OF_A_SHARD * shard`` and following.
-    rows
-        JSON lines; one for each batch and each fault.
-    minutes
-        After which no new batch begins.
-    say
-        Called with a sentence now and then.
-    """
-    ends = time.monotonic() + 60.0 * minutes
-    done = _done(rows)
-    for first in range(OF_A_SHARD * shard, OF_A_SHARD * (shard + 1), BATCH):
-        for reader in readers:
-            if (reader.name, first) in done:
-                continue
-            if time.monotonic() > ends:
-                return False
-            found = list(run_batch(reader, range(first, first + BATCH)))
-            with rows.open("a", encoding="utf-8") as file:
-                file.writelines(json.dumps(row) + "\n" for row in found)
-            faults = Counter(row["kind"] for row in found if row["row"] == "fault")
-            say(f"{reader.name} {first}: {dict(faults) or 'sound'}, {found[-1]['seconds']:.1f} s", flush=True)
-    return True
-
-
-def _done(rows: Path) -> set[tuple[str, int]]:
-    return {(row["reader"], row["first"]) for row in read_rows([rows]) if row["row"] == "batch"}
-
-
-def read_rows(places: Sequence[Path]) -> Iterator[dict[str, Any]]:
-    """All rows of some files; a line that a kill tore is left out."""
-    for place in places:
-        for line in place.read_text(encoding="utf-8").splitlines() if place.is_file() else ():
-            try:
-                yield json.loads(line)
-            except ValueError:
-                continue
 
 
 def run_batch(reader: Reader, numbers: range) -> Iterator[dict[str, Any]]:
