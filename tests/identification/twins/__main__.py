@@ -5,6 +5,7 @@ and the same command goes on with those that are missing.
 """
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import Final
@@ -26,7 +27,7 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.identification.twins", description=__doc__)
     parser.add_argument("kinds", nargs="*", default=[], help=f"of {', '.join(KINDS)}; none: the tables alone")
     parser.add_argument("--seeds", type=int, default=len(SEEDS), help="from 0 up to this many")
-    parser.add_argument("--minutes", type=float, help="after which no further twin of a kind is begun")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="after which a kind ends with its next twin")
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args(words)
     if unknown := set(options.kinds) - set(KINDS):
@@ -40,12 +41,11 @@ def main(words: list[str] | None = None, *, docs: Path = DOCS) -> None:
         "shears": (shears.one_shear, [(shears.CASE, seed) for seed in seeds]),
         "turns": (one_turn, [(scenario, seed) for seed in seeds for scenario in SCENARIOS]),
     }
-    seconds = None if options.minutes is None else 60.0 * options.minutes
     try:
         for kind in options.kinds:
             twin, cases = asked[kind]
             kept = KeptTwins.opened(folder / f"{kind}.csv")
-            run_twins(twin, cases, kept, workers=options.workers, seconds=seconds)
+            run_twins(twin, cases, kept, workers=options.workers, seconds=60.0 * options.minutes)
     except KeyboardInterrupt:
         print(f"interrupted; finished twins are kept in {folder}, the tables are as they were", file=sys.stderr)
         raise SystemExit(130) from None

@@ -9,8 +9,7 @@ from skisnow.identification import Identification, PhotoCellRun, PhotoCells, ide
 from skisnow.scenario import scenario_file
 
 from .. import glide_in_closed_form as exact
-from .interval_row import interval_row
-from .kept import Row, number
+from .kept import Row, interval_row, number
 
 SCENARIO: Final = "carved-46m"
 STATION: Final = np.arange(10.0, 401.0, 15.0)

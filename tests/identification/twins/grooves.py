@@ -11,8 +11,7 @@ from skisnow._support.units import MM, N_PER_MM2, N_PER_MM3
 from skisnow.identification import MeasuredGrooves, identify
 from skisnow.scenario import scenario_file
 
-from .interval_row import interval_row
-from .kept import Row, number
+from .kept import Row, interval_row, number
 
 SCENARIO: Final = "carved-46m"
 CASES: Final = ("marks",)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from skisnow._support.staging import write_file
+from skisnow.identification import Identified
 
 Key: TypeAlias = tuple[str, int]
 Row: TypeAlias = Mapping[str, str]
@@ -50,3 +51,11 @@ class KeptTwins:
 def number(value: float | None) -> str:
     """Nine digits; empty for what does not exist."""
     return "" if value is None else f"{value:.9g}"
+
+
+def interval_row(each: Identified, truth: float) -> dict[str, str]:
+    """Truth, best value, ends of the 95 % interval, in the key's unit."""
+    low, high = each.interval or (None, None)
+    key = each.parameter.key
+    values = {"true": truth, "found": each.value, "low": low, "high": high}
+    return {f"{key} {name}": number(value) for name, value in values.items()}

@@ -9,8 +9,7 @@ from skisnow.report.turn.chain import used_grip
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate
 
-from .interval_row import interval_row
-from .kept import Row, number
+from .kept import Row, interval_row, number
 from .truth import Truth, finer, track_of
 
 CASE: Final = "carved-46m, shear"

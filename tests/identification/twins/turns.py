@@ -11,8 +11,7 @@ from skisnow.comparison import compare_tracks
 from skisnow.identification import Identification, identify
 from skisnow.track.track import Track
 
-from .interval_row import interval_row
-from .kept import Row, number
+from .kept import Row, interval_row, number
 from .truth import FREE, Truth, track_of, true_run, truth_of
 
 ELASTIC: Final = ", elastic"
