@@ -1,7 +1,4 @@
-"""Random combinations of layers of a scenario, and the origin of each quantity that a resolver chose.
-
-The module needs no skisnow, so that any version of the resolver can be asked (`record.py`).
-"""
+"""Random combinations of layers of a scenario, and the origin of each quantity that a resolver chose."""
 
 import json
 import random
@@ -10,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-NUMBER: Final = 500
+NUMBER: Final = 250
 
 FILES: Final = {
     "results.json": json.dumps(
