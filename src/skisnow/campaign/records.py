@@ -7,22 +7,19 @@ experiment.
 from __future__ import annotations
 
 import math
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeVar
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import DEGREE, MM, Facts, Shown, amount, ends
+from ..geometry import Tool
 from .problems import AppliedCorrection, Problem
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping, Sequence
-    from pathlib import Path
-
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from ..geometry import Tool
-    from .smet import CampaignWeather
-    from .snow_micro_pen_records import SnowMicroPenRecordings
+from .smet import CampaignWeather
+from .snow_micro_pen_records import SnowMicroPenRecordings
 
 Key = TypeVar("Key", bound="Hashable")
 

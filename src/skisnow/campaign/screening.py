@@ -5,10 +5,12 @@ The flags of `NEED_HARDNESS` are set where hardness is estimated.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, TypeAlias
+from collections.abc import Iterator, Mapping
+from typing import Final, TypeAlias
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.messages import Message
 from .._support.units import MM
 from ..geometry import GeometryForm, in_form
@@ -24,12 +26,7 @@ from .problems import (
     with_sheet_name,
 )
 from .reading.table_forms import PENETRATION, SHEAR
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from .records import Campaign, PenetrationTests, UnloadingReadings
+from .records import Campaign, PenetrationTests, UnloadingReadings
 
 __all__ = [
     "QUALITY_FLAGS",

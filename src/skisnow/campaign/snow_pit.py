@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import FloatArray, IntArray
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
 from ..parameters import Quantity
 from .problems import Problem, error
 from .reading.campaign_files import FilesOfFolder, RawFiles
+from .reading.columns import Table
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
 from .reading.text import UnreadableTextError, inspect_csv
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray, IntArray
-    from .reading.columns import Table
 
 
 @dataclass(frozen=True, slots=True)

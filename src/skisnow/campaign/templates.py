@@ -9,20 +9,18 @@ import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from .._support.errors import OutputError
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import prepare_folder, staged, write_file
+from ..parameters import Quantity
 from ..snow.published import moessner_2013
 from .reading.campaign import CAMPAIGN_FILES
 from .reading.campaign_file import CAMPAIGN_FILE, CAMPAIGN_KEYS
 from .reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, TableForm, allowed_words
 from .reading.workbook_files import CAMPAIGN, COLUMNS, PLATES, TOOLS, is_workbook
 from .reference import design
-
-if TYPE_CHECKING:
-    from ..parameters import Quantity
 
 EXAMPLE_STATUS: Final = "example: write over or delete this row"
 """A status cancels the experiment: the example is in no estimate even where it is left standing."""

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from ..parameters.json_schema import Schema
+from ..parameters.json_schema import Schema
 
 SHELLS: Final = ("bash", "zsh", "fish")
 WORDS: Final = "words"

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from .._support.small_figure import SmallFigure
 from .._support.units import MM, Facts, Shown, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
+from ..geometry import GeometryForm
 from ..snow import SnowProperties
 from .comparisons import Comparison, OwnValue, compare_with_published, own_mean, site_values
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness, volume_factor
@@ -43,12 +45,6 @@ from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
 from .spread_groups import scatter_warning
 from .unloading import site_unloading
 from .weather import WeatherAtTests, weather_at_tests
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from ..geometry import GeometryForm
-
 
 DEFAULT_RESAMPLES: Final = 2000
 """Bootstrap resamples; the ends of a 95 % interval then move by a few percent of its width between seeds."""

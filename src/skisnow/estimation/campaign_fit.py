@@ -8,16 +8,13 @@ EM algorithm of τ, σ_g and g_0 on the remaining 2 × 2 equations; they look at
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import MM
-
-if TYPE_CHECKING:
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from .readings import Readings, ReadingUncertainty
-
+from .readings import Readings, ReadingUncertainty
 
 _ROUNDS: Final = 40
 _SPREAD_ROUNDS: Final = 10

@@ -15,18 +15,15 @@ docs/methods/intervals.md derives it and reports its coverage.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import CONFIDENCE, ShownFields
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from .campaign_fit import Freedom, Priors, SeriesFit, Spreads
-
-if TYPE_CHECKING:
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from .readings import Readings, ReadingUncertainty
-
+from .readings import Readings, ReadingUncertainty
 
 FEWEST_READINGS: Final = 2
 """Readings in contact that a series needs."""

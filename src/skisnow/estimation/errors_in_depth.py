@@ -28,20 +28,18 @@ the force over depth changes with the angle, not how the force does.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.units import CONFIDENCE, ShownFields
 from ..statistics.bounded import condensed, non_negative_fits
 from ..statistics.combined_uncertainty import expanded_factor
 from .campaign_model import CONTACT_STEPS, CampaignModel
 from .hardness import DEFINITIONS, hardness_of_all_readings
 from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
-
-if TYPE_CHECKING:
-    from .._support.arrays import BoolArray, FloatArray
-    from .readings import Readings, ReadingUncertainty
+from .readings import Readings, ReadingUncertainty
 
 _EXACT_SHARE: Final = 1e-6
 """Smallest variance of a reading as a share of the median one (modelling assumption)."""

@@ -15,26 +15,22 @@ Satterthwaite. Two groups that were not tested at a common site have no ratio, u
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from scipy.special import stdtr
 
 from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.units import CONFIDENCE
+from ..campaign.records import Campaign, PenetrationTests, ShearTests
 from ..statistics.combined_uncertainty import expanded_factor, welch_satterthwaite
 from ..statistics.f_tests import compact_letters, holm_corrected, tests_per_group
 from .hardness import shear_stress
+from .screening import Screened
 from .spread_groups import bartlett
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..campaign.records import Campaign, PenetrationTests, ShearTests
-    from .screening import Screened
-
 
 DIFFERENCE: Final = 0.2
 """Relative difference of two groups that a campaign is to detect (default of `skisnow.analyse`)."""

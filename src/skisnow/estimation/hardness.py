@@ -14,22 +14,19 @@ step)/√12 of the depth. Student's factor has the degrees of freedom of s: τ²
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import CONFIDENCE, N_PER_MM, N_PER_MM2, N_PER_MM3, ShownFields
+from ..campaign.records import Campaign, ShearTests, TurningReadings
 from ..statistics.combined_uncertainty import expanded_factor
 from .campaign_model import CampaignModel, Parts
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from ..campaign.records import Campaign, ShearTests, TurningReadings
-    from .readings import Readings, ReadingUncertainty
+from .readings import Readings, ReadingUncertainty
 
 
 @dataclass(frozen=True, slots=True)

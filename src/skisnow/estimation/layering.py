@@ -17,21 +17,17 @@ narrower.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.units import CONFIDENCE, MM, ShownFields
 from ..statistics.combined_uncertainty import expanded_factor
 from .comparisons import SiteValue, site_values
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._support.arrays import BoolArray, FloatArray
-    from .readings import Readings, ReadingUncertainty
-
+from .readings import Readings, ReadingUncertainty
 
 SEATING_SD: Final = 0.1 * MM
 """Offsets of the depth zero that count as seating in a test for layering; more bends the curve too far."""

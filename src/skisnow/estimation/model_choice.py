@@ -7,22 +7,19 @@ bootstrap that draws whole experiments.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray
 from ..statistics.bounded import non_negative_fits
 from ..statistics.combined_uncertainty import percentile_interval, resampling_counts
 from ..statistics.f_tests import nested_f_test
 from .hardness import DEFINITIONS
 from .models import MODELS, NESTED_PAIRS, EndBasis, Model, ModelFit, end_basis
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from .._support.arrays import BoolArray, FloatArray
-    from .readings import Readings
+from .readings import Readings
 
 MINIMUM_DETERMINANT: Final = 1e-12
 """Smallest determinant of a normal matrix of columns of length one: below it, rounding alone determines some

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
@@ -18,9 +18,7 @@ from .._support.messages import Message
 from .._support.units import ShownFields
 from ..statistics.bounded import Condensed, condensed
 from .hardness import DEFINITIONS
-
-if TYPE_CHECKING:
-    from .readings import Readings
+from .readings import Readings
 
 Term: TypeAlias = Literal["none", "one", "constant", "linear"]
 

@@ -7,8 +7,8 @@ error.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ import numpy.typing as npt
 from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, ShownFields, amount, field_facts
+from ..campaign.records import Campaign
 from ..snow import SnowProperties
 from ..snow.mean_snow import (
     mean_snow,
@@ -36,11 +37,6 @@ from .models import Model, ModelFit
 from .readings import Readings
 from .screening import Screened
 from .unloading import SiteUnloading, Unloading
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from ..campaign.records import Campaign
 
 
 @dataclass(frozen=True, repr=False)

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import ShownFields
+from ..campaign.records import PenetrationTests
 from ..campaign.screening import reading_at_largest_load
 from ..geometry import GeometryForm, Tool, in_form
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from ..campaign.records import PenetrationTests
 
 _FEW_ANGLES = 16
 """Readings at up to so many angles are gone through angle by angle: each has one sine and one tangent."""

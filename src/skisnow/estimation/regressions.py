@@ -6,8 +6,9 @@ S_f and H_V on edge angle, density, drop-cone depth and on each other. A further
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
@@ -15,15 +16,11 @@ from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
 from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, ShownFields
+from ..campaign.records import Campaign, PenetrationTests, ShearTests
 from ..statistics.clusters import cluster_intervals
 from ..statistics.linear import LinearFit, linear_fit
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from ..campaign.records import Campaign, PenetrationTests, ShearTests
-    from .models import ModelFit
-    from .snow_micro_pen import SnowMicroPenAnalysis
+from .models import ModelFit
+from .snow_micro_pen import SnowMicroPenAnalysis
 
 HARDNESS_KEY = "H_V_N_per_mm3"
 STRESS_KEY = "S_f_N_per_mm2"

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.units import MM, MM2, MM3, N_PER_MM2, N_PER_MM3
+from ..campaign.records import Campaign, PenetrationTests, ShearTests
+from ..geometry import GeometryForm
+from .campaign_model import CampaignModel
 from .hardness import (
     DEFINITIONS,
     ShearDisplacement,
@@ -17,18 +21,12 @@ from .hardness import (
     shear_displacement,
     shear_stress,
 )
+from .model_choice import NestedRows
 from .models import MODELS, Model, ModelFit
+from .parts import ModelTable, PenetrationAnalysis
 from .readings import readings_of
 from .screening import Screened, SeriesEstimates, screened_both
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-    from ..campaign.records import Campaign, PenetrationTests, ShearTests
-    from ..geometry import GeometryForm
-    from .campaign_model import CampaignModel
-    from .model_choice import NestedRows
-    from .parts import ModelTable, PenetrationAnalysis
-    from .unloading import Unloading
+from .unloading import Unloading
 
 Json: TypeAlias = dict[str, Any]
 _SAME_PERCENT: Final = 0.005

@@ -7,16 +7,20 @@ rounded.
 from __future__ import annotations
 
 import platform
+from collections.abc import Iterator
 from dataclasses import asdict
 from importlib.metadata import version
 from math import fsum, isfinite
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..snow.published.moessner_2013 import SNOW_DENSITY_RANGE, failure_shear_stress_from_density
+from .analysis import Analysis
+from .errors_in_depth import VolumeFactor
 from .parts import PenetrationAnalysis, ShearAnalysis, SiteMean, campaign_notes
+from .regressions import Regression
 from .result_rows import (
     campaign_model_results,
     column_rows,
@@ -29,15 +33,8 @@ from .result_rows import (
     without_nan,
 )
 from .snow_micro_pen import snow_micro_pen_results
+from .unloading import SiteUnloading
 from .weather import weather_results
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from .analysis import Analysis
-    from .errors_in_depth import VolumeFactor
-    from .regressions import Regression
-    from .unloading import SiteUnloading
 
 Json: TypeAlias = dict[str, Any]
 

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.units import N_PER_MM3, ShownFields
+from ..campaign.problems import Problem
+from ..campaign.records import Campaign, PenetrationTests
 from ..campaign.screening import flag_problems, screen_penetration, screen_shear
+from ..geometry import GeometryForm
 from .campaign_model import DEFAULT_PRIORS, CampaignModel
 from .hardness import DEFINITIONS, Hardness, hardness, hardness_at_largest_load, shear_stress
 from .layering import layered
 from .readings import Readings, ReadingUncertainty, readings_of
 from .spread_groups import fit_in_groups
 from .unloading import NOT_FALLING, Unloading, unloading
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ..campaign.problems import Problem
-    from ..campaign.records import Campaign, PenetrationTests
-    from ..geometry import GeometryForm
 
 FEWEST_FOR_OUTLIERS: Final = 5
 OUTLIER_DISTANCE: Final = 3.5

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
+from .._support.arrays import BoolArray, FloatArray
 from .._support.units import MM, Facts, Shown
+from ..campaign.snow_micro_pen import SnowMicroPenProfile
 from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings, SnowSurface, snow_surface
 from ..parameters import values_of
 from ..snow.measured_range import PENETROMETER_RELATIONS
 from ..statistics.shot_noise import ShotNoise, shot_noise, windows_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from .._support.arrays import BoolArray, FloatArray
-    from ..campaign.snow_micro_pen import SnowMicroPenProfile
-
 
 OVERLAP: Final = 0.5
 """Share of a window that the next one begins in (modelling assumption, as in the instrument's own program)."""

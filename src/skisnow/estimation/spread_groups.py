@@ -12,22 +12,18 @@ and Rubin 1977, J. R. Stat. Soc. B 39, 1-38) sorts the series into two classes, 
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from scipy.special import chdtrc, expit, gammaln
 
 from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
 from .._support.messages import Message
+from .campaign_fit import Priors
 from .campaign_model import DEFAULT_PRIORS, CampaignModel, fit_campaign
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from .campaign_fit import Priors
-    from .readings import Readings, ReadingUncertainty
-
+from .readings import Readings, ReadingUncertainty
 
 LEVEL: Final = 1e-3
 """Spreads are compared at this level."""

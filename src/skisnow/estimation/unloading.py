@@ -22,25 +22,21 @@ assumption: the paper names the steepness and prints neither method nor value.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from .._support.arrays import BoolArray, FloatArray, IntArray
 from .._support.units import ShownFields
+from ..campaign.records import PenetrationTests, UnloadingReadings
 from ..statistics.combined_uncertainty import random_effects_mean
+from .campaign_model import CampaignModel
 from .comparisons import own_mean
+from .hardness import Hardness
 from .readings import Readings
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from .._support.arrays import BoolArray, FloatArray, IntArray
-    from ..campaign.records import PenetrationTests, UnloadingReadings
-    from .campaign_model import CampaignModel
-    from .hardness import Hardness
-
 
 NOT_FALLING: Final = "unloading_not_falling"
 """The quality flag that excludes a series here, and nowhere else."""

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from .._support.arrays import FloatArray, index_names
 from .._support.units import HOUR, PERCENT, ZERO_CELSIUS, Facts, Shown
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from ..campaign.records import Campaign
-    from ..campaign.smet import CampaignWeather
-
+from ..campaign.records import Campaign
+from ..campaign.smet import CampaignWeather
 
 QUANTITIES: Final = {
     "air_temperature_C": ("TA", 1.0, -ZERO_CELSIUS),

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from xml.sax.saxutils import escape, quoteattr
 
 from .._support.errors import ParameterError
@@ -12,11 +13,7 @@ from .._support.messages import Message
 from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.caaml import OWN_NAMESPACE
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
+from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
 
 VERSION: Final = "6.0.3"
 HAND_HARDNESSES: Final = (

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import io
 import json
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any, Final, cast
+from pathlib import Path
+from typing import Any, Final, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -18,13 +20,8 @@ from scipy.io import netcdf_file
 
 from .._support.arrays import IntArray
 from .._support.staging import write_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
-
-    from ..campaign import Campaign
-    from ..campaign.records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
+from ..campaign import Campaign
+from ..campaign.records import DensitySamples, DropConeTests, PenetrationTests, ShearTests
 
 CONVENTIONS: Final = "CF-1.11"
 MISSING: Final = 9.969209968386869e36

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from .._support.errors import ParameterError
 from .._support.staging import write_file
+from ..campaign.smet import StationSeries
 from ..estimation.weather import QUANTITIES
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from ..campaign.smet import StationSeries
 
 NO_DATA: Final = -999.0
 

@@ -6,8 +6,9 @@ Heights are above the ground in cm, as in SnowEx; -9999 means unknown.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -15,17 +16,12 @@ from .._support.errors import ParameterError
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import write_file
 from .._support.units import CM, MM
-from ..campaign.records import DensitySamples
+from ..campaign.records import Campaign, DensitySamples, PenetrationTests, ShearTests
+from ..campaign.snow_micro_pen import SnowMicroPenProfile
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
+from ..estimation import Analysis
 from ..estimation.regressions import HARDNESS_KEY, STRESS_KEY
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from ..campaign.records import Campaign, PenetrationTests, ShearTests
-    from ..campaign.snow_micro_pen import SnowMicroPenProfile
-    from ..estimation import Analysis
-    from ..estimation.snow_micro_pen import EvaluatedRecording
+from ..estimation.snow_micro_pen import EvaluatedRecording
 
 NO_DATA: Final = "-9999"
 DENSITY: Final = ("# Top (cm)", "Bottom (cm)", "Density A (kg/m3)", "Density B (kg/m3)", "Density C (kg/m3)")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +15,10 @@ from .._support.errors import ParameterError
 from .._support.messages import Message, outcome_words
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..scenario import Plane, Profile, Terrain
+from ..scenario.terrain import Slope
+from ..simulation.run import Run
 from ..simulation.run_summary import feet_and_tips
+from ..ski import Ski
 from ..skier.segments import height_of
 from ..track.course import Course, MovingPoint, passages
 from .replay import (
@@ -29,13 +33,6 @@ from .replay import (
     quaternions,
 )
 from .skier import replay_skier
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ..scenario.terrain import Slope
-    from ..simulation.run import Run
-    from ..ski import Ski
 
 _AROUND: Final = 30.0
 """Distance around a run with measured heights (m); beyond it the slope is a plane."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,10 +13,7 @@ from scipy.spatial.transform import Rotation
 from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
 from ..simulation.sledge_body import base_lateral, base_normal, rotation
-
-if TYPE_CHECKING:
-    from ..track.track import Track
-
+from ..track.track import Track
 
 FEWEST_POINTS: Final = 2
 SKI_NAMES: Final = ("left", "right")

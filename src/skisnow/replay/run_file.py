@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from scipy.io import netcdf_file
@@ -18,15 +18,12 @@ from ..geometry.boot_axes import axes_of
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
 from ..scenario.scenario import course_on_slope
+from ..scenario.terrain import Slope
 from ..ski import Ski, read_ski, ski_named
 from ..skier.segments import height_of
 from ..track.course import Course, read_course
 from .from_run import Setting, assemble_replay, facts_of, moving_boots, skis_words
-
-if TYPE_CHECKING:
-    from ..scenario.terrain import Slope
-    from .replay import Replay, ReplayBoots, ReplayTrack
-
+from .replay import Replay, ReplayBoots, ReplayTrack
 
 _DAMAGE: Final = (
     TypeError, ValueError, LookupError, AttributeError, ArithmeticError, AssertionError, MemoryError,

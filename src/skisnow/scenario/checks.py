@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from ..ski import Ski
+from .run_settings import Start
+from .skier import Skier
+from .sledge import RigidSledge, Shear
 from .terrain import Slope, reach_of
-
-if TYPE_CHECKING:
-    from ..ski import Ski
-    from .run_settings import Start
-    from .skier import Skier
-    from .sledge import RigidSledge, Shear
 
 
 def require_sound(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from .._support.errors import RangeWarning
 from .._support.messages import Message
@@ -16,14 +16,12 @@ from ..forces.measured_ranges import (
     PENETRATION_EDGE_ANGLE,
     SNOW_HARDNESS,
 )
+from ..ski import Ski
 from ..snow.properties import GREATEST_LIKELY_HARDNESS
 from ..track.course import course_warnings
 from .scenario import Scenario
 from .slope import Plane
 from .terrain import heights_of
-
-if TYPE_CHECKING:
-    from ..ski import Ski
 
 
 def implausible_values(scenario: Scenario) -> tuple[str, ...]:

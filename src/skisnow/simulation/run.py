@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from pathlib import Path
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.small_figure import SmallFigure
 from .._support.units import DEGREE, MM, Facts, Shown, amount, field_facts, name_with_values, span
+from ..contact import Laws
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
+from .moving_boots import BootHistory
 from .run_forces import BalanceHistory, node_lengths
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ..contact import Laws
-    from .moving_boots import BootHistory
 
 Outcome: TypeAlias = Literal[
     "finished",

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-
-if TYPE_CHECKING:
-    from .._support.arrays import FloatArray
-    from .layout import SkiSections
+from .layout import SkiSections
 
 GREATEST_SPACING: Final = 2.5e-3
 """Greatest distance of neighbouring stations (m): linear interpolation of a sidecut is then good to 0.1 micrometre."""

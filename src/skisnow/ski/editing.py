@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import functools
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -20,14 +21,9 @@ from .assembling import moved_stations, stiffness_table
 from .file_keys import BASE, COLUMNS, LISTS, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
 from .layout import BaseShape, Layout, layout_of_lengths
 from .outline import ArcOutline
+from .ski import Ski
 from .ski_file import MADE_OF_KEYS, ski_of_keys
 from .table_file import StationTable
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from .ski import Ski
-
 
 EDITED_COLUMNS: Final = {
     "width_mm": "width",

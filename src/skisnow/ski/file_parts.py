@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,14 +12,12 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, template
 from .assembling import SkiParts, stiffness_table
 from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, TIP_END, WIDTHS
+from .file_values import FileValues
 from .layout import BaseShape, Layout, StationFunction, layout_of_lengths
 from .monkeycam import monkeycam_shape
 from .outline import ArcOutline, width_of_table
-
-if TYPE_CHECKING:
-    from .file_values import FileValues
-    from .ski import Ski
-    from .table_file import StationTable
+from .ski import Ski
+from .table_file import StationTable
 
 _LEAST_LENGTH_IN_WIDTHS = 2.5  # 159.3 instead of 1593 beside a width of 116 is caught, the 200 × 62 of a tool passes
 _LEAST_SHARE_OF_LENGTH = 0.3  # of running and sidecut length: a tenth is another unit, a half a ski with long rocker

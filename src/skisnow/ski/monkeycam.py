@@ -11,7 +11,10 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Any, Final
+
+import numpy.typing as npt
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
@@ -21,13 +24,7 @@ from .assembling import SkiParts, stiffness_table
 from .file_values import refuse
 from .layout import BaseShape, layout_of_lengths
 from .outline import ArcOutline
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import numpy.typing as npt
-
-    from .ski import Ski
+from .ski import Ski
 
 STRAIGHTEST: Final = 1000.0
 """Sidecut radius (m) beyond which no ski with a sidecut is made."""

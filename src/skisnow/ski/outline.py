@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .checks import GREATEST_SPACING, STRAIGHT
+from .layout import Layout, StationFunction
 from .table_file import StationTable
-
-if TYPE_CHECKING:
-    from .layout import Layout, StationFunction
-
 
 TIP_END_SHARE: Final = 0.2
 """Width at the very tip as a share of the tip width, where it is not given. Modelling assumption: a blunt end, so that

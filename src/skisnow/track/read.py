@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 import stat
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal, TypeAlias, get_args
+from typing import Final, Literal, TypeAlias, get_args
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from .projection import GeodeticPoint
 from .readers.conversion import build_track
 from .readers.fit import read_fit
 from .readers.gpx import read_gpx
@@ -19,9 +20,6 @@ from .readers.table import read_table
 from .readers.text import decode_text
 from .readers.ubx import SYNC, has_places, read_ubx
 from .track import FASTEST, GAP_FACTOR, Track
-
-if TYPE_CHECKING:
-    from .projection import GeodeticPoint
 
 TrackFormat: TypeAlias = Literal["csv", "gpx", "fit", "nmea", "ubx", "rtklib"]
 SUFFIXES: Final[dict[str, TrackFormat]] = {

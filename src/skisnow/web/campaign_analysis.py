@@ -7,11 +7,12 @@ import secrets
 import shutil
 import weakref
 from collections import OrderedDict
+from collections.abc import AsyncIterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from nicegui import run
@@ -20,8 +21,10 @@ from .._support.errors import FieldDataError, SkisnowError, StoreError
 from .._support.messages import Message, in_language, joined, languages
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.problems import ALWAYS_EXCLUDE, Problem
+from ..campaign.reading import FilesInMemory
+from ..campaign.records import Campaign, PenetrationTests, ShearTests
 from ..campaign.store import Journals
-from ..estimation import analyse
+from ..estimation import Analysis, analyse
 from ..estimation.group_comparisons import DIFFERENCE
 from ..report import write_report
 from ..report.campaign.data import ReportData
@@ -31,16 +34,9 @@ from ..report.campaign.tables import campaign_tables
 from ..report.campaign.verdicts import verdicts
 from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, local_axes, site_styles
+from .settings import Lab
+from .subprocesses import Worker
 from .transfer import entry_files, kept_files
-
-if TYPE_CHECKING:
-    from collections.abc import AsyncIterator
-
-    from ..campaign.reading import FilesInMemory
-    from ..campaign.records import Campaign, PenetrationTests, ShearTests
-    from ..estimation import Analysis
-    from .settings import Lab
-    from .subprocesses import Worker
 
 LEFT_OUT: Final = Message("excluded by choice in the lab")
 N_FIGURES: Final = len(DRAWERS) + 2

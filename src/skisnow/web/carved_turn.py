@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import json
 import threading
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
+from typing import Any, ClassVar, Final, NamedTuple
 
 from nicegui import background_tasks, run, ui
+from nicegui.events import GenericEventArguments
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message, joined, outcome_words
@@ -16,17 +18,11 @@ from .._support.spreadsheet_text import csv_text
 from ..report.campaign.page import RESULTS
 from ..report.formatting import significant
 from ..report.pair_verdicts import ski_verdict
+from ..ski.ski_file import Sources
 from .elements import Words, button, named
+from .snow_choice import ChosenSnow, SnowChoice
 from .widgets import STYLES, ChartLine, LineChart, save_buttons
 from .words import number_said, said
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from nicegui.events import GenericEventArguments
-
-    from ..ski.ski_file import Sources
-    from .snow_choice import ChosenSnow, SnowChoice
 
 ALONG: Final = Message("Along the ski (m), boot = 0")
 ENDS: Final = (Message("tail"), Message("tip"))

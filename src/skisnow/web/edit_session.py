@@ -3,34 +3,39 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from .._support.errors import FieldDataError, StoreError
 from .._support.messages import Message, joined
-from ..campaign import QUALITY_FLAGS, campaign_of_files
+from ..campaign import QUALITY_FLAGS, Campaign, campaign_of_files
+from ..campaign.problems import Problem
 from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
 from ..campaign.reading.campaign import ATTACHMENTS
-from ..campaign.reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
+from ..campaign.reading.campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
 from ..campaign.reading.text import UnreadableTextError, decode
-from ..campaign.store import Journals, campaign_in_memory, corrected_files, replay_journal, stored_tables
+from ..campaign.store import (
+    JournalEntry,
+    Journals,
+    NewEntry,
+    ReplayedCampaign,
+    ReplayedTest,
+    StoredTable,
+    campaign_in_memory,
+    corrected_files,
+    replay_journal,
+    stored_tables,
+)
 from ..campaign.store.attachments import rows_of_file
-from ..campaign.store.journal_entry import JournalEntry
-from ..campaign.store.replayed import Reading, ReplayedTest
+from ..campaign.store.replayed import Reading
 from ..campaign.store.stored_tables import cell_key
 from ..estimation import quality_flags
 from ..estimation.result_rows import experiment_hardness, experiment_results
 from ..estimation.screening import screened_both
 from ..report.campaign.verdicts import quick_verdicts
 from ..report.charts import SeriesCurve, series_curves
+from .settings import Lab
 from .words import TABLES
-
-if TYPE_CHECKING:
-    from ..campaign import Campaign
-    from ..campaign.problems import Problem
-    from ..campaign.reading.campaign_file import CampaignFile
-    from ..campaign.store import JournalEntry, NewEntry, ReplayedCampaign, ReplayedTest, StoredTable
-    from .settings import Lab
 
 TestKey: TypeAlias = tuple[str, str]
 """File of the table and name of the test: tests of different tables may have the same name."""

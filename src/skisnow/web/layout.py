@@ -5,14 +5,18 @@ from __future__ import annotations
 import json
 import logging
 import secrets
+from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
 from importlib import import_module
 from logging.handlers import RotatingFileHandler
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 from urllib.parse import quote
 
+from fastapi import FastAPI
 from nicegui import app, ui
+from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError, SkisnowError, StoreError
@@ -21,13 +25,6 @@ from .elements import Words, named
 from .guard import STATUS
 from .pages import PAGES
 from .words import language_of, language_of_request, said
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from fastapi import FastAPI
-    from starlette.requests import Request
 
 STYLES = "/lab.css"
 SCRIPT = "/lab.js"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 from urllib.parse import quote
 
+from fastapi import FastAPI
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from starlette.datastructures import FormData
 from starlette.requests import Request
@@ -18,25 +20,18 @@ from .._support.user_files import GivenError, read_json, read_record
 from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
+from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
 from ..report.track.comparison_page import page_of_folders
 from ..report.track.page import file_of_track, page_of_track
 from ..report.track.summary import GPX_FILE, TURNS_FILE
-from ..ski import read_ski
+from ..ski import Ski, read_ski
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
 from .layout import plain_page
 from .page_requests import add_upload, uploaded_files
 from .runs import JOB, Job
 from .subprocesses import BOUNDS, confined
 from .words import language_of_request
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fastapi import FastAPI
-
-    from ..replay.replay import Replay
-    from ..ski import Ski
 
 LIST: Final = "/replay"
 SHOW: Final = f"{LIST}/show"

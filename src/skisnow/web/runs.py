@@ -18,16 +18,14 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from itertools import count
-from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
+from pathlib import Path
+from typing import Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, outcome_words, template
 from .._support.staging import write_file
 from .._support.user_files import GivenError, read_json, read_record
 from ..simulation.simulated_run import REMEDIES
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 NamedFile: TypeAlias = tuple[str, bytes]
 State: TypeAlias = Literal["waiting", "running", "done", "failed", "cancelled"]

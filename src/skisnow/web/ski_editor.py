@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 from nicegui import ui
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
+from ..ski import Ski
 from ..ski.editing import EDITED_COLUMNS, SIDECUT, SkiEdit, edit_stations, edited_ski, values_at
 from ..ski.file_keys import COLUMNS
 from .elements import Words, add_head, button, field, folded, named
-from .lab_skis import ski_of_texts
+from .lab_skis import LabSkis, ski_of_texts
 from .layout import heading, sentence
 from .words import number_said, said, typed_number
-
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-
-    from ..ski import Ski
-    from .lab_skis import LabSkis
 
 POSITION: Final = Message("Position (m)")
 ONE: Final = "1"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable
+from typing import Final
 from urllib.parse import quote
 
+from fastapi import FastAPI
 from nicegui import run, ui
 from starlette.datastructures import FormData
 
@@ -25,15 +27,9 @@ from .lab_skis import (
 )
 from .layout import error_sentence, heading, sentence
 from .page_requests import add_upload, file_input, submit_button, text_input, upload_form, uploaded_files
+from .settings import Lab
 from .subprocesses import SKI_BOUNDS, confined
 from .words import said
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fastapi import FastAPI
-
-    from .settings import Lab
 
 SKI_UPLOAD: Final = "/skis/add"
 MOST_FILES: Final = 3

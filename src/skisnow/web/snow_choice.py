@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nicegui import run
 
@@ -11,24 +12,19 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
 from ..campaign.store import Journals
+from ..estimation import Analysis
 from ..estimation.results import results_json
 from ..report.campaign.page import RESULTS
-from ..snow import published_names, published_snow
+from ..scenario.reading import ScenarioFile
+from ..ski.ski_file import Sources
+from ..snow import SnowProperties, published_names, published_snow
 from .campaign_analysis import Choice, Refusal, analyse_files
 from .edit_session import EditSession
 from .elements import Words, choice, option_texts
 from .layout import error_sentence
+from .settings import Lab
 from .transfer import entry_files, kept_files
 from .words import estimate_words
-
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable, Iterator, Mapping
-
-    from ..estimation import Analysis
-    from ..scenario.reading import ScenarioFile
-    from ..ski.ski_file import Sources
-    from ..snow import SnowProperties
-    from .settings import Lab
 
 PUBLISHED: Final = "published-"
 ALL_SITES: Final = ""

@@ -10,27 +10,23 @@ import asyncio
 import contextlib
 import re
 import shutil
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import ENGLISH, Message, in_language, joined, outcome_words
 from .._support.processes.batch import LOCAL, available_cores
 from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
+from ..studies import Study, StudyTable
 from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
-from .study_fields import CARVE, STUDY, TABLE, require_few_points
+from .study_fields import CARVE, STUDY, TABLE, StudyQuestion, require_few_points
 from .uploads import files_below
 from .words import reworded
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ..studies import Study, StudyTable
-    from .study_fields import StudyQuestion
 
 FOLDER: Final = "studies"
 FIGURE: Final = "map.svg"

@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from nicegui import ui
 
@@ -15,16 +16,11 @@ from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.user_files import natural_number
 from ..carving.question import CARVE_KEYS
+from ..parameters import Quantity
 from .elements import choice, field, named
 from .layout import sentence
 from .scenario_fields import called, with_point, written
 from .words import number_said, reworded, said, typed_number
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from ..parameters import Quantity
-
 
 CARVE: Final = "carved-turn"
 """Subject of a study of carved turns, instead of the name of a scenario."""

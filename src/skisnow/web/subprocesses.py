@@ -11,16 +11,13 @@ import signal
 import sys
 import threading
 import traceback
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing.connection import wait
-from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
+from multiprocessing.connection import Connection, wait
+from typing import Final, ParamSpec, TypeVar
 
 from .._support.errors import FieldDataError, OutputError, ParameterError, SkisnowError, StoreError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from multiprocessing.connection import Connection
 
 Given = ParamSpec("Given")
 Answer = TypeVar("Answer")

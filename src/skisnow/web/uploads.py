@@ -6,10 +6,11 @@ import errno
 import stat
 import struct
 import zipfile
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import IO, TYPE_CHECKING, Final
+from typing import IO, Final
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
@@ -18,12 +19,8 @@ from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import FilesOfFolder
 from ..campaign.store import Store
 from ..campaign.store.folder import unsafe_because
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from ..campaign.store.server import StorePlace
-    from .settings import Limits
+from ..campaign.store.server import StorePlace
+from .settings import Limits
 
 CHUNK_BYTES: Final = 1 << 18
 DEEPEST: Final = 32

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
+from starlette.requests import Request
 
 from .._support.errors import ParameterError, SkisnowError
 from .._support.messages import (
@@ -23,11 +25,6 @@ from .._support.messages import (
 )
 from .._support.units import KILOGRAM_FORCE
 from ..report.formatting import interval, significant
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from starlette.requests import Request
 
 LABELS: Final = {
     "experiment": Message("Name of the test"),

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, Self
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.staging import write_file
 from ..._support.user_files import read_toml, toml_text, toml_values
-from ..problems import error
+from ..problems import Problem, error
 from ..reading.campaign_file import CAMPAIGN_FILE, IMPORT_ANSWERS
 from ..reading.headings import plain_heading
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from ..problems import Problem
 
 SECTION: Final = "import"
 NONE: Final = "-"

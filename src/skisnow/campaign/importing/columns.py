@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..._support.messages import Message
-from ..problems import error
+from ..problems import Problem, error
 from ..reading.columns import iso_moment
 from ..reading.headings import (
     SYNONYMS,
+    UnitConversion,
     columns_by_synonym,
     conversion,
     known_unit,
@@ -23,18 +24,10 @@ from ..reading.headings import (
     unit_of_column,
     units_for,
 )
-from .answers import NONE, Question, ask
-from .sections import NO_UNIT
+from ..reading.table_forms import TableForm
+from .answers import NONE, Answers, Question, ask
+from .sections import NO_UNIT, Section
 from .sheets import column_letters
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from ..problems import Problem
-    from ..reading.headings import UnitConversion
-    from ..reading.table_forms import TableForm
-    from .answers import Answers
-    from .sections import Section
 
 FROM_NOTES: Final = ("site", "tool", "plate")
 """Columns that a note can replace."""

@@ -5,28 +5,22 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..._support.errors import OutputError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import own_json, toml_text
-from ..problems import error
+from ..problems import Problem, error
 from ..reading.campaign_file import CAMPAIGN_FILE
-from .answers import SECTION, Question, ask, is_asked
+from ..reading.table_forms import TableForm
+from .answers import SECTION, Answers, Question, ask, is_asked
 from .columns import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from ..problems import Problem
-    from ..reading.table_forms import TableForm
-    from .answers import Answers
-    from .rows import ImportedTable
+from .rows import ImportedTable
 
 ORIGINAL: Final = "original"
 RECORD: Final = f"{ORIGINAL}/import.json"

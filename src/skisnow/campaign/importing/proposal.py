@@ -7,21 +7,18 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
 from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
+from ..reading.table_forms import TableForm
 from .answers import NONE, Answers, Question, ask, is_asked
 from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
 from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
 from .rows import ImportedTable, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
 from .sheets import KINDS, Ignored, Sheet, read_sheets
-
-if TYPE_CHECKING:
-    from ..reading.table_forms import TableForm
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,23 +6,17 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
-from ..problems import error
+from ..problems import Problem, error
 from ..reading.headings import letters
-from .answers import Question, ask, is_asked
-from .columns import number_columns
-from .sheets import column_letters
-
-if TYPE_CHECKING:
-    from ..problems import Problem
-    from ..reading.table_forms import TableForm
-    from .answers import Answers
-    from .columns import ColumnChoice
-    from .sections import Section
-    from .sheets import Ignored
+from ..reading.table_forms import TableForm
+from .answers import Answers, Question, ask, is_asked
+from .columns import ColumnChoice, number_columns
+from .sections import Section
+from .sheets import Ignored, column_letters
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..reading.headings import (
     columns_by_synonym,
@@ -17,15 +17,9 @@ from ..reading.headings import (
     stated_column,
     unit_of_column,
 )
-from .answers import NONE
-from .sheets import KINDS, is_plain_number
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..reading.table_forms import TableForm
-    from .answers import Answers
-    from .sheets import Ignored, Sheet
+from ..reading.table_forms import TableForm
+from .answers import NONE, Answers
+from .sheets import KINDS, Ignored, Sheet, is_plain_number
 
 _FEWEST_HEADINGS: Final = 2
 NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})

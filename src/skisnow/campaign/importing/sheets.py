@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..._support.errors import ParameterError
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
 from ..._support.user_files import workbook_sheets
-from ..._support.user_files.workbook import merged_ranges
+from ..._support.user_files.workbook import Rows, merged_ranges
 from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
 from ..reading.text import CsvText, UnreadableTextError, decode
 from ..reading.workbook_files import is_workbook
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from ..._support.user_files.workbook import Rows
 
 _LETTERS: Final = 26
 

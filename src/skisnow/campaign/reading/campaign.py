@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
 from ..records import Campaign
+from ..smet import CampaignWeather
 from .campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
 from .campaign_files import (
     ENDING,
@@ -23,6 +24,7 @@ from .campaign_files import (
     recording_contents,
     snow_micro_pen_recordings,
 )
+from .columns import Table
 from .corrections import RowCorrections, corrections_by_file, report_missing_files
 from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .headings import Headings
@@ -31,10 +33,6 @@ from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SN
 from .tables import Cells, read_table, table_of_cells
 from .text import UnreadableTextError, decode, inspect_csv
 from .workbook_files import is_workbook, unfolded
-
-if TYPE_CHECKING:
-    from ..smet import CampaignWeather
-    from .columns import Table
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files of a campaign, in the order of reading; workbooks can replace them."""

@@ -7,7 +7,7 @@ import stat
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import Final, Protocol
 
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
@@ -17,12 +17,10 @@ from ..smet import CampaignWeather, WeatherSettings, parse_smet
 from ..snow_micro_pen import parse_snow_micro_pen
 from ..snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
 from .campaign_file import CAMPAIGN_FILE
+from .columns import Table
 from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN
-
-if TYPE_CHECKING:
-    from .columns import Table
-    from .text import UnreadableTextError
+from .text import UnreadableTextError
 
 
 class CampaignFiles(Protocol):

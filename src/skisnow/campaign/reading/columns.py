@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 
+from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import decimal_mark, is_number, number
+from ...parameters import Quantity
 from ...parameters.quantity import LARGEST, SMALLEST, beyond_reason
 from ..problems import Problem, error, warning
+from .headings import UnitConversion
 from .table_forms import UNLOADING, TableForm, allowed_words
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ..._support.arrays import BoolArray, FloatArray, IntArray
-    from ...parameters import Quantity
-    from .headings import UnitConversion
 
 
 @dataclass(frozen=True, slots=True)

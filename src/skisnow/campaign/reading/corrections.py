@@ -7,18 +7,15 @@ raw file or the correction is not the intended one.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from ..._support.messages import Message
 from ..problems import AppliedCorrection, Problem, error
 from .columns import Table, is_number, number
+from .header import Header
 from .table_forms import CORRECTIONS, TABLES, TableForm
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from .header import Header
 
 STATUS = "status"
 

@@ -8,7 +8,6 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 from ..._support.messages import Message, joined
 from ..problems import Problem, error, warning
@@ -23,9 +22,7 @@ from .headings import (
     unit_of_column,
     units_for,
 )
-
-if TYPE_CHECKING:
-    from .table_forms import TableForm
+from .table_forms import TableForm
 
 _MOST_TITLES = 20
 _FEWEST_UNITS = 2

@@ -7,16 +7,13 @@ import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message, joined
 from ..._support.units import DEGREE, KILOGRAM_FORCE, ZERO_CELSIUS
 from .table_forms import CORRECTIONS, TABLES, TableForm
-
-if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
-    from .toml_values import TomlValues
-
+from .toml_values import TomlValues
 
 KEY: Final = "columns"
 UNITS_KEY: Final = "units"

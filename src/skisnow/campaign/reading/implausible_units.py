@@ -7,23 +7,20 @@ their distance from it.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ..._support.units import DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
 from ..problems import Problem, warning
+from .campaign_file import CampaignFile
 from .columns import Table, is_unloading
 from .headings import conversion
 from .table_forms import BRANCH, PENETRATION, SHEAR
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from ..._support.arrays import FloatArray
-    from .campaign_file import CampaignFile
 
 FAR: Final = 500.0
 """Factor from the median of its column beyond which a number is reported: loads of one campaign span less."""

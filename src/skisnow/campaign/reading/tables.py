@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from ..._support.arrays import IntArray
 from ..._support.messages import Message
 from ..problems import Problem, error, warning
+from .campaign_files import RawFiles
 from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
 from .corrections import Corrector, RowCorrections, header_with_status
 from .header import ColumnUnits, Header, check_header, column_units, split_header
 from .headings import Headings
+from .table_forms import TableForm
 from .text import SEPARATOR_NAMES, CsvText, Records, UnreadableTextError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from ..._support.arrays import IntArray
-    from .campaign_files import RawFiles
-    from .table_forms import TableForm
-
 
 OWN_NAMES: Final = Headings()
 """Default mapping of headings: columns have their names as headings."""

@@ -9,19 +9,17 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
 from ..._support.user_files import GivenError, toml_text, workbook_sheets
+from ..._support.user_files.workbook import Rows
 from ..problems import Problem, error, warning
 from .campaign_file import CAMPAIGN_KEYS
+from .campaign_files import CampaignFiles
 from .headings import columns_by_synonym
 from .table_forms import CORRECTIONS, TABLES
-
-if TYPE_CHECKING:
-    from ..._support.user_files.workbook import Rows
-    from .campaign_files import CampaignFiles
 
 ENDINGS: Final = (".xlsx", ".xlsm")
 DESCRIPTION: Final = "campaign.toml"

@@ -6,10 +6,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ..._support.arrays import BoolArray, FloatArray
 from ..._support.units import DEGREE, MM
 from ...snow.published.moessner_2013 import failure_shear_stress_from_angle, failure_shear_stress_from_density
 from ..records import (
@@ -21,11 +22,7 @@ from ..records import (
     UnloadingReadings,
 )
 from . import design
-
-if TYPE_CHECKING:
-    from ..._support.arrays import BoolArray, FloatArray
-    from .design import ReferenceNoise
-
+from .design import ReferenceNoise
 
 _ANGLE_DECIMALS = 4
 """Decimals of a turning angle in degrees: finer than 0.001 mm at the plate."""

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.errors import OutputError
 from ..._support.spreadsheet_text import csv_text
 from ..._support.units import DEGREE, MM, N_PER_MM2
 from ..reading.table_forms import LOADING, UNLOADING
 from . import design
 from .campaign import DEFAULT_NOISE, ReferenceCampaign, reference_campaign
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from ..._support.arrays import FloatArray
-    from .design import ReferenceNoise
+from .design import ReferenceNoise
 
 _CAMPAIGN_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv", "corrections.csv", "campaign.toml")
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
-from typing import TYPE_CHECKING, TypeAlias
+from pathlib import Path
+from typing import TypeAlias
 
 from ..._support.staging import write_file
+from ..problems import AppliedCorrection
 from ..reading.campaign import ATTACHMENTS
 from ..reading.corrections import STATUS
 from ..reading.table_forms import CORRECTIONS
@@ -14,6 +17,7 @@ from .attachments import attachment_files, exported_files, with_rows, write_camp
 from .engine import database_errors, file_errors, reading
 from .folder import Progress, StoredFile, new_folder, no_progress
 from .journal import JournalHead, Journals
+from .journal_entry import JournalEntry
 from .replayed import (
     COLUMNS,
     ReplayedTest,
@@ -22,15 +26,8 @@ from .replayed import (
     replay_journal,
 )
 from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
+from .store import Store
 from .stored_tables import cell_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-    from pathlib import Path
-
-    from ..problems import AppliedCorrection
-    from .journal_entry import JournalEntry
-    from .store import Store, StoredCampaign
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,10 @@ test has the cells of the file.
 from __future__ import annotations
 
 import secrets
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from hashlib import sha256
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from sqlalchemy import ColumnElement, Connection, and_, func, insert, select
 from sqlalchemy.exc import DatabaseError
@@ -24,11 +25,7 @@ from .engine import apart, database_errors, reading, writing
 from .journal_entry import DESCRIPTION, JournalEntry, NewEntry, now, parse_entry, uid_of_file, write_entry
 from .rows import damage_error, require_integer, text_of
 from .schema import campaign, journal, journal_entry
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from .store import Store
+from .store import Store
 
 _IN_ENTRY: Final = journal.c.id.not_in(select(campaign.c.id))
 """Condition for journals of campaigns in entry; those of stored campaigns have corrections."""

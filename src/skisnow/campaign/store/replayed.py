@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import Final, TypeAlias
 
 from ..._support.errors import FieldDataError
 from ..._support.spreadsheet_text import csv_text, guarded
@@ -16,10 +16,8 @@ from ..reading.columns import is_unloading_cell
 from ..reading.corrections import STATUS
 from ..reading.table_forms import BRANCH, CORRECTIONS, TABLES, TableForm
 from ..reading.tables import Cells
+from ..records import Campaign
 from .journal_entry import DESCRIPTION, JournalEntry
-
-if TYPE_CHECKING:
-    from ..records import Campaign
 
 
 @dataclass(slots=True)

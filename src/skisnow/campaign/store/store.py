@@ -7,9 +7,13 @@ campaign's id is computed from its content, so the same files have the same id i
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from types import TracebackType
+from typing import Self
+
+from sqlalchemy import Engine
 
 from ..._support.errors import StoreError
 from ..._support.units import Facts, Shown
@@ -43,12 +47,6 @@ from .rows import (
 from .schema import CHUNK_BYTES
 from .server import ServerAddress, StorePlace, store_place
 from .verification import Finding, findings
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Mapping
-    from types import TracebackType
-
-    from sqlalchemy import Engine
 
 __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", "default_path"]
 

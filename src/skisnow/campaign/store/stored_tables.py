@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
 from ..._support.user_files import natural_number
+from ...parameters import Quantity
 from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
 from ..reading.campaign_files import CampaignFiles, FilesOfFolder, RawFiles
 from ..reading.columns import number
@@ -22,11 +24,6 @@ from ..reading.table_forms import BRANCH, BRANCHES, CORRECTIONS, TABLES, TableFo
 from ..reading.tables import decimal_mark_of, read_table
 from ..reading.text import CsvText, UnreadableTextError, decode, inspect_csv
 from .rows import damage_error
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ...parameters import Quantity
 
 
 @dataclass(frozen=True, slots=True)

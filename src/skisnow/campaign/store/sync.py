@@ -6,9 +6,10 @@ transferred in one transaction, so that an interrupted run can be repeated.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from sqlalchemy import Connection, insert, select
 
@@ -39,12 +40,8 @@ from .rows import (
     stored_hashes,
 )
 from .schema import campaign, journal, journal_entry
+from .store import Store
 from .stored_tables import FORMS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from .store import Store
 
 ALL: Final = "all"
 """Instead of a conflict's id: all open conflicts."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -13,14 +14,10 @@ import numpy.typing as npt
 from ..._support.arrays import BoolArray, FloatArray
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
+from ...campaign.records import Campaign
+from ...estimation import Analysis
 from ...estimation.regressions import DENSITY_KEY, Observations, Source
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ...campaign.records import Campaign
-    from ...estimation import Analysis
-    from ...geometry import GeometryForm
+from ...geometry import GeometryForm
 
 TextArray: TypeAlias = npt.NDArray[np.str_]
 Json: TypeAlias = dict[str, Any]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from markupsafe import Markup
 
@@ -10,11 +10,9 @@ from ..._support.messages import Message, template
 from ...estimation.comparisons import FEWEST_SITES
 from ...estimation.regressions import FEWEST_VALUES
 from ..formatting import counted, html, interval, p_equals, prose, significant, whole
+from .data import Json, ReportData, TextArray
 from .model_tables import formula, model_name
 from .tables import QUANTITY
-
-if TYPE_CHECKING:
-    from .data import Json, ReportData, TextArray
 
 SIGNIFICANT: Final = 0.05
 LISTED: Final = 12

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from ..._support.messages import Message, joined
 from ...estimation.models import MODELS
 from ...snow.published.moessner_2013 import PRINTED_RMSE_N
 from ..table import ROWS_IN_HTML, Column, Table, record_table
+from .data import Json, ReportData
 from .series_tables import EXPERIMENT, SITE, USED
-
-if TYPE_CHECKING:
-    from .data import Json, ReportData
 
 COEFFICIENTS: Final = ("a0", "a1", "b0", "b1")
 _COEFFICIENT_COLUMNS: Final = tuple(Column(name, f"{name[0]}_{name[1]}", "estimate") for name in COEFFICIENTS)

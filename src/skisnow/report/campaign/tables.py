@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
+from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ...campaign import QUALITY_FLAGS
 from ...estimation.comparisons import own_mean
 from ...snow.published.moessner_2013 import SNOW_DENSITY_RANGE
 from ..table import Column, Table, record_table
+from .data import Json, ReportData, TextArray
 from .model_tables import errors_in_depth_table, fitted_hardness_table, models_table, nested_table
 from .series_tables import (
     displacement_sites_table,
@@ -27,10 +29,6 @@ from .series_tables import (
     unloading_sites_table,
     unloading_table,
 )
-
-if TYPE_CHECKING:
-    from ..._support.arrays import FloatArray
-    from .data import Json, ReportData, TextArray
 
 QUANTITY: Final = {
     "S_f_N_per_mm2": ("S_f", "N/mm²"),

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from ..._support.messages import Message, template
+from ...campaign.records import Campaign
 from ...estimation.group_comparisons import DIFFERENCE, LEVEL, compare_campaign
 from ...estimation.screening import screened_both
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from ...campaign.records import Campaign
 
 Json = dict[str, Any]
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import io
 import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
+
+from matplotlib.figure import Figure
 
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language
@@ -13,11 +16,6 @@ from ..._support.staging import require_writable, write_file
 from .drawing import FORMS, UNDATED, Drawing, Picture, render
 from .figure_data import figure_data
 from .style import journal_style, local_axes
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from matplotlib.figure import Figure
 
 
 def picture_files(names: Iterable[str]) -> list[str]:

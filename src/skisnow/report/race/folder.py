@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from markupsafe import Markup
 
@@ -11,6 +12,7 @@ from ..._support.messages import ENGLISH, Message, local_number, outcome_words
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import write_file
 from ...racing import QuickestLine, Score, Worth, write_line
+from ...simulation.run import Run
 from ...track.course.gates_table import GAP_COLUMNS, GateGap, gap_rows, gaps_csv
 from ..figures.course import run_course
 from ..figures.drawing import FORMS, Drawing, Picture
@@ -19,12 +21,6 @@ from ..formatting import aligned_rows, html, json_text, prose
 from ..sheet import Section
 from ..table import Column, Table
 from .figures import gate_gaps_drawing, gate_gaps_figure, last_words, race_lines, race_worth
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from ...simulation.run import Run
-
 
 SUMMARY = "race.json"
 

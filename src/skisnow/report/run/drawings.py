@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, Final, NamedTuple
 
 from markupsafe import Markup
+from matplotlib.figure import Figure
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, template
 from ..._support.units import DEGREE, MM
 from ..._support.user_files.json_text import json_number
 from ...parameters import nearest
+from ...simulation.run import Run
 from ..figures.course import run_course
 from ..figures.drawing import Drawing
 from ..figures.style import journal_style
@@ -25,13 +28,6 @@ from .time_figures import (
     slip_of_a_place,
 )
 from .track_figure import CUTOUT, STEADY, run_track
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from matplotlib.figure import Figure
-
-    from ...simulation.run import Run
 
 
 class RunFigure(NamedTuple):

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from ..._support.errors import OutputError, require_language
 from ..._support.messages import ENGLISH, in_language, languages
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import GivenError, plain_text
 from ...scenario.plausibility import implausible_values
+from ...simulation.run import Run
 from ...simulation.run_summary import run_gates, summary_dict
 from ...simulation.run_tables import write_track
 from ...track.course.gates_table import gates_csv
 from ..figures.figure_files import picture_files, silent
 from ..formatting import json_text
 from .page import FIGURES, FURTHER, REPLAY, replay_fact, write_run_report
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from ...simulation.run import Run
 
 SUMMARY, GATES = "summary.json", "gates.csv"
 _STALE: Final = (*picture_files((*FIGURES, *FURTHER)), GATES, REPLAY, "replay.glb")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
@@ -13,23 +14,19 @@ from ..._support.messages import ENGLISH, Message, in_language, local_number, ou
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..._support.user_files.json_text import json_number
+from ...geometry.surfaces import Grid
 from ...scenario.plausibility import model_limits
+from ...simulation.run import Run
 from ...simulation.run_summary import run_gates, run_warnings
 from ...track.course.gates_table import time_warnings
 from ..figures.course import edge_angles_of_skis
+from ..figures.drawing import Picture
 from ..figures.figure_files import silent, write_pictures
 from ..formatting import counted, html, prose, significant, whole
 from ..sheet import Header, Section, sheet
 from .drawings import run_drawings
 from .file import write_run_file
 from .tables import energies_table, gates_table, scenario_table, skis_table, verification_table
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from ...geometry.surfaces import Grid
-    from ...simulation.run import Run
-    from ..figures.drawing import Picture
 
 Json = dict[str, Any]
 FIGURES: Final = ("track", "motion", "along_ski", "grip", "energies")

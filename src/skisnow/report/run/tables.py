@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -11,15 +11,12 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import Message, outcome_words
 from ...scenario.keys import SCENARIO_KEYS
 from ...simulation.run import OPEN_SHARE, Run
+from ...track.course import CourseResult
 from ...track.course.gates_table import COLUMNS, gate_rows
 from ..formatting import significant
 from ..table import Column, Table
 from .time_figures import grip_utilisation, gross_grip_utilisation
 from .track_figure import SKIS
-
-if TYPE_CHECKING:
-    from ...track.course import CourseResult
-
 
 Json = Mapping[str, Any]
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..._support.messages import ENGLISH, Message, in_language
 from ...comparison import compare_tracks, comparison_dict
 from ...track.course.gates_table import GateGap, read_gate_gaps
+from ..figures.drawing import Picture
 from ..figures.figure_files import render_pictures
 from ..formatting import html
 from ..pair_verdicts import read_compared, time_verdict
@@ -17,11 +19,6 @@ from ..sheet import Header, Section, sheet
 from ..table import Column, Table
 from .report import comparison_drawing
 from .summary import TITLES, track_verdict
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ..figures.drawing import Picture
 
 
 def comparison_page(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -15,19 +15,17 @@ from ..._support.messages import ENGLISH, Message, outcome_words
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount
 from ..._support.user_files.json_text import json_number
 from ...comparison.nearest_place import distance_from_path
+from ...estimation import Analysis
 from ...parameters import values_of
+from ...scenario.identify_section import Measured, Prior
 from ...scenario.plausibility import implausible_values
+from ...simulation.run import Run
 from ...simulation.run_summary import summary_dict
+from ...snow import SnowProperties
 from ...snow.from_results import snow_dict
 from ...statistics import VarianceShares, variance_shares
 from ..run.time_figures import grip_utilisation
 from .figures import FEWEST, TimedTrack, band_of, offsets
-
-if TYPE_CHECKING:
-    from ...estimation import Analysis
-    from ...scenario.identify_section import Measured, Prior
-    from ...simulation.run import Run
-    from ...snow import SnowProperties
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from markupsafe import Markup
@@ -16,6 +16,8 @@ from ..._support.messages import ENGLISH, Message, in_language, outcome_words
 from ..._support.staging import require_writable, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
+from ...simulation.run import Run
+from ...snow import SnowProperties
 from ..figures.drawing import Drawing, Picture
 from ..figures.figure_files import write_pictures
 from ..formatting import counted, html, json_text, prose, significant
@@ -37,10 +39,6 @@ from .chain import (
 )
 from .figures import FEWEST, draw_runs, track_band
 from .sentences import ensemble_accuracy, ensemble_sentence, headline, key_sentences, meaning
-
-if TYPE_CHECKING:
-    from ...simulation.run import Run
-    from ...snow import SnowProperties
 
 FIGURES: Final = ("contacts", "along_ski", "grip", "band")
 """Names of the figures of such a report, in figures/ as .png and .svg."""

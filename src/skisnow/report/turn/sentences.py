@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from markupsafe import Markup
 
 from ..._support.messages import Message, outcome_words, template
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
+from ...simulation.run import Run
 from ..formatting import counted, html, interval, prose, significant
 from .chain import (
     BandShares,
@@ -22,11 +24,6 @@ from .chain import (
     middle_track,
     used_grip,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ...simulation.run import Run
 
 ALIKE: Final = 0.002
 """Relative difference below which two numbers are called the same."""

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
+from ..._support.arrays import BoolArray, FloatArray
 from ..._support.messages import Message
+from ...parameters import Quantity
 from ..projection import GeodeticPoint, east_north_up, rotate_to_origin
 from ..track import FASTEST, GAP_FACTOR, Track, point_flags
 from .recording import GEODETIC, LOCAL, MOTION, Recording, track_error
 from .text import spread_times
-
-if TYPE_CHECKING:
-    from ..._support.arrays import BoolArray, FloatArray
-    from ...parameters import Quantity
 
 
 def build_track(

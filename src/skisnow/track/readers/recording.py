@@ -6,16 +6,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
+from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, current_language, template
 from ...parameters import Quantity, own_quantities
 from ..projection import HIGHEST, GeodeticPoint
 from ..track import Axes, SolutionArray
-
-if TYPE_CHECKING:
-    from ..._support.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(eq=False)

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Callable
+from typing import Any, Final
 
 from nicegui import ui
 
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message
-from ...campaign.store import NewEntry, Position, attachments_of, photo_entry, position_entry
+from ...campaign.store import NewEntry, Position, ReplayedTest, attachments_of, photo_entry, position_entry
 from ...campaign.store.attachments import photo_of
 from ..elements import Words, button
 from ..layout import heading
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ...campaign.store import ReplayedTest
-    from .table_view import TableView
+from .table_view import TableView
 
 ON_PHOTO: Final = "(event) => lab.photo(event, emit)"
 ON_POSITION: Final = "(event) => lab.position(event, emit)"

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Sequence
+from typing import Final
 
 from nicegui import ui
 
 from ..._support.messages import Message, joined, template
 from ...campaign.reading.columns import is_unloading_cell
 from ...campaign.reading.table_forms import BRANCH
+from ...campaign.store import JournalEntry, ReplayedTest
 from ...campaign.store.stored_tables import cell_of
 from ..elements import add_items, button, field, folded
 from ..page_requests import asking_button, form
 from ..words import label, minute_words, number_said, said
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from ...campaign.store import JournalEntry, ReplayedTest
-    from .table_view import TableView
+from .table_view import TableView
 
 USUAL_REASON: Final = Message("typing error")
 ASKED: Final = Message("Not corrected yet. Give the reason below.")

@@ -3,30 +3,23 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 from nicegui import ui
+from nicegui.events import GenericEventArguments
 
-from ..._support.errors import ParameterError, StoreError
+from ..._support.errors import ParameterError, SkisnowError, StoreError
 from ..._support.messages import Message
-from ...campaign.reading.table_forms import BRANCH
-from ...campaign.store import NewEntry
+from ...campaign.reading.headings import UnitConversion
+from ...campaign.reading.table_forms import BRANCH, TableForm
+from ...campaign.store import NewEntry, Reading
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
+from ..edit_session import EditSession
 from ..elements import Words
 from ..page_requests import LONGEST
 from ..words import in_words, label, load_words, number_said, said
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from nicegui.events import GenericEventArguments
-
-    from ..._support.errors import SkisnowError
-    from ...campaign.reading.headings import UnitConversion
-    from ...campaign.reading.table_forms import TableForm
-    from ...campaign.store import Reading
-    from ..edit_session import EditSession
 
 CHANGED: Final = Message("changed, not stored")
 STORED: Final = Message("stored")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterable, Mapping
+from typing import Final
 
 from nicegui import ui
 
 from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
+from ...campaign.store import ReplayedTest
 from ..elements import Words, button, choice, field, folded, named
 from ..layout import heading, sentence
 from ..page_requests import answering, asking_button, current_request, entering, form
@@ -16,12 +18,7 @@ from ..words import label, number_said
 from .changes import changes, focus_button
 from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
 from .series_corrections import AfterWaiting, SeriesCorrections
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from ...campaign.store import ReplayedTest
-    from .table_view import LiveResults, Places, SeriesList, TableView
+from .table_view import LiveResults, Places, SeriesList, TableView
 
 ON_ENTER: Final = "(event) => lab.reading(event, emit)"
 ON_BLUR: Final = "(event) => lab.leaving(event, emit)"

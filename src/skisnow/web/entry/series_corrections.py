@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Iterable, Mapping
+from typing import Final
 
 from nicegui import ui
 
 from ..._support.messages import Message, template
+from ...campaign.store import ReplayedTest
 from ..elements import Words, field, folded, named
 from ..entry.readings import STORED
 from ..page_requests import asking_button, form
 from ..words import label, number_said
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
-from .readings import CHANGED, add_load, checked_fields, faults, is_other, refuse, show_state, stored_depth
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-
-    from ...campaign.store import ReplayedTest
-    from .readings import ReadingField, Step
-    from .table_view import TableView
+from .readings import (
+    CHANGED,
+    ReadingField,
+    Step,
+    add_load,
+    checked_fields,
+    faults,
+    is_other,
+    refuse,
+    show_state,
+    stored_depth,
+)
+from .table_view import TableView
 
 
 class SeriesCorrections:

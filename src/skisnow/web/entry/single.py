@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nicegui import ui
 
 from ..._support.messages import Message, joined
 from ...campaign.reading.experiments import TURNING
+from ...campaign.store import Reading, ReplayedTest
 from ..elements import Words, choice, field, named
 from ..layout import heading, sentence
 from ..page_requests import asking_button, entering, form
 from ..words import label, number_said
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
-
-if TYPE_CHECKING:
-    from ...campaign.store import Reading, ReplayedTest
-    from .table_view import LiveResults, Places, TableView
+from .table_view import LiveResults, Places, TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot", TURNING)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")

@@ -6,7 +6,7 @@ import io
 import secrets
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nicegui import app, background_tasks, ui
 from starlette.concurrency import run_in_threadpool
@@ -15,17 +15,14 @@ from starlette.responses import FileResponse, Response
 
 from ..._support.messages import Message
 from ..analysis_view import AnalysisView, OpenAnalysis
-from ..campaign_analysis import AnalysisCache, load_drawing, write_whole_report
+from ..campaign_analysis import AnalysisCache, CampaignSource, load_drawing, write_whole_report
 from ..elements import link
 from ..layout import framed, plain_page
 from ..page_requests import entering, export, required_id
+from ..settings import Lab
 from ..subprocesses import Worker
 from ..uploads import files_below, write_zip
 from ..words import language_of_request
-
-if TYPE_CHECKING:
-    from ..campaign_analysis import CampaignSource
-    from ..settings import Lab
 
 HERE: Final = "/"
 REPORT_POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox"

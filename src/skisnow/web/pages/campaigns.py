@@ -7,7 +7,7 @@ from functools import partial
 from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nicegui import run, ui
 
@@ -15,7 +15,7 @@ from ..._support.errors import StoreError
 from ..._support.messages import Message
 from ...campaign import write_reference
 from ...campaign.importing import RECORD
-from ...campaign.store import Journals
+from ...campaign.store import Journals, StoredCampaign
 from ...replay.page import STYLE, page_words
 from ...report.formatting import counted
 from ..edit_session import EditSession
@@ -24,12 +24,9 @@ from ..layout import framed, heading, sentence
 from ..page_requests import analysis, correcting, entering, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..replay_addresses import LIST as REPLAYS
+from ..settings import Lab
 from ..transfer import IMPORT
 from ..words import TABLES, language_of, minute_words, said
-
-if TYPE_CHECKING:
-    from ...campaign.store import StoredCampaign
-    from ..settings import Lab
 
 PATH: Final = "/"
 TITLE: Final = Message("Campaigns")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nicegui import ui
 
@@ -11,10 +11,8 @@ from ..carved_turn import NUMBERS, RATIOS, SLIDERS, Asked, CarvedTurn, Solver
 from ..elements import choice, link
 from ..lab_skis import NOTHING, LabSkis
 from ..layout import framed
+from ..settings import Lab
 from ..snow_choice import SnowChoice
-
-if TYPE_CHECKING:
-    from ..settings import Lab
 
 PATH: Final = "/carve"
 TITLE: Final = Message("Carve")

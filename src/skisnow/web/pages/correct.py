@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterable, Mapping
+from typing import Final
 
 from nicegui import run, ui
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
+from ...campaign.store import ReplayedTest
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import choice, field, folded, link
 from ..entry.attachments import Attachments
 from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from ..entry.readings import Field, checked_fields, faults
-from ..entry.table_view import table_links, table_view
+from ..entry.table_view import LiveResults, Places, TableView, table_links, table_view
 from ..layout import framed, heading, sentence
 from ..page_requests import analysis, asking_button, correcting, export, form, required_id
-from ..settings import BUILD_S
+from ..settings import BUILD_S, Lab
 from ..words import number_said
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from ...campaign.store import ReplayedTest
-    from ..edit_session import CorrectionSession
-    from ..entry.table_view import LiveResults, Places, TableView
-    from ..settings import Lab
 
 HERE = "/"
 UNREAD = Message("no table of this campaign can be read; its errors are listed under Analysis in the list of campaigns")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from nicegui import ui
+from nicegui.events import GenericEventArguments
 
 from ..._support.errors import FieldDataError, ParameterError, SkisnowError
 from ..._support.messages import Message, template
@@ -15,16 +16,11 @@ from ...campaign.store import Journals, NewEntry, OvertakenError
 from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import Description, description_text
 from ..edit_session import EditSession
-from ..elements import StatusLine, choice, field
+from ..elements import StatusLine, TypedField, choice, field
 from ..layout import framed, heading, sentence
 from ..page_requests import asking_button, current_request, entering, form, go_on, required_id, row_button
+from ..settings import Lab
 from ..words import language_of, number_said, said, typed_number
-
-if TYPE_CHECKING:
-    from nicegui.events import GenericEventArguments
-
-    from ..elements import TypedField
-    from ..settings import Lab
 
 HERE: Final = "/"
 NUMBERS: Final = {

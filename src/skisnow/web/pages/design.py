@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Mapping
+from typing import Any, Final
 
 from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message, joined
 from ...carving.edge_line import BOOT_REACH
+from ...design import Design
 from ...ski.ski_file import keys_text
 from ..carved_turn import NUMBERS, SLIDERS, Asked, CarvedTurn, Solver, taken
 from ..elements import Outcome, button, choice, field, option_texts
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
 from ..layout import error_sentence, framed
+from ..settings import Lab
 from ..snow_choice import SnowChoice
 from ..words import said, typed_number
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from ...design import Design
-    from ..settings import Lab
 
 PATH: Final = "/design"
 TITLE: Final = Message("Design")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nicegui import ui
 
 from ..._support.errors import ParameterError
@@ -14,14 +12,11 @@ from ..entry.attachments import Attachments
 from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
-from ..entry.table_view import SeriesList, table_links, table_view
+from ..entry.table_view import LiveResults, Places, SeriesList, TableView, table_links, table_view
 from ..layout import framed
 from ..page_requests import analysis, entering, required_id
+from ..settings import Lab
 from ..words import TABLES
-
-if TYPE_CHECKING:
-    from ..entry.table_view import LiveResults, Places, TableView
-    from ..settings import Lab
 
 HERE = "/"
 

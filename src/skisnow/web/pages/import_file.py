@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from nicegui import run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, template
-from ...campaign.importing import Answers
+from ...campaign.importing import Answers, ColumnChoice, ImportedTable, Proposal, Question
 from ...campaign.importing.columns import FROM_NOTES, number_columns
 from ...campaign.reading.headings import units_for
 from ..elements import Outcome, Words, add_head, add_items, button, choice, field
 from ..layout import error_sentence, framed, heading, sentence
-from ..settings import BUILD_S
+from ..settings import BUILD_S, Lab
 from ..subprocesses import BOUNDS, confined
 from ..transfer import FileImports, TriedImport, try_import
 from ..words import TABLES, label, number_said, said
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ...campaign.importing import ColumnChoice, ImportedTable, Proposal, Question
-    from ..settings import Lab
 
 PATH: Final = "/import/{id_}"
 HERE: Final = "/"

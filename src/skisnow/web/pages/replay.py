@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 from urllib.parse import quote
 
 from nicegui import app, ui
@@ -27,12 +28,8 @@ from ..replay_addresses import (
     show_address,
 )
 from ..runs import FinishedRun
+from ..settings import Lab
 from ..words import said
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ..settings import Lab
 
 PATH: Final = LIST
 TITLE: Final = Message("Replay")

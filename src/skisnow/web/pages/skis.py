@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator, Sequence
+from typing import Final
 from urllib.parse import quote
 
 from nicegui import run, ui
@@ -14,17 +15,12 @@ from ..elements import Outcome, Words, button, choice, field, link, named, optio
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import carving
-from ..settings import BUILD_S
+from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, edit_ski_texts
 from ..ski_uploads import SkiImportForms
 from ..subprocesses import SKI_BOUNDS, confined
 from ..widgets import STYLES, ChartLine, LineChart
 from ..words import said
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from ..settings import Lab
 
 PATH: Final = "/skis"
 TITLE: Final = Message("Skis")

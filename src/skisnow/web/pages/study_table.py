@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 from urllib.parse import quote
 
 from nicegui import app, run, ui
@@ -14,19 +14,17 @@ from starlette.responses import FileResponse, Response
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, outcome_words
 from ...report.formatting import significant
+from ...studies import Study, StudyTable
 from ..elements import Words, add_head, choice, link, named
 from ..layout import error_sentence, framed, heading, plain_page, sentence
+from ..runs import Job
 from ..scenario_fields import called, written
+from ..settings import Lab
 from ..studies import FIGURE, Studies
 from ..study_fields import CARVE, STUDY, TABLE, study_keys
 from ..uploads import write_zip
 from ..widgets import BEHIND, ChartLine, LineChart
 from ..words import language_of, number_said, said
-
-if TYPE_CHECKING:
-    from ...studies import Study, StudyTable
-    from ..runs import Job
-    from ..settings import Lab
 
 HERE: Final = "/study"
 FILES: Final = f"{HERE}/files"
