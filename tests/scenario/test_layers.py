@@ -14,7 +14,7 @@ from skisnow._support.errors import ParameterError, RangeWarning
 from .layers.combinations import Combination, answer, combinations, write_files
 
 ANSWERS = Path(__file__).parent / "layers" / "answers.json"
-"""Nine in ten are those of an earlier resolver; each other one follows from a rule: the last layer that gives a quantity
+"""Nine in ten are those of an earlier resolver; the others follow from rules: the last layer that gives a quantity
 counts, two keys of one layer for one quantity are an error, and so is a key without effect."""
 H_V, S_F = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2"
 

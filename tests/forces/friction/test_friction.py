@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from tests.coded import raises, warns
 from tests.key_names import IGNORE_RANGE_WARNING
@@ -30,6 +30,8 @@ class Sample:
     outside: tuple[Callable[[], object], ...]
 
 
+FEW = settings(max_examples=25)
+"""For each of many laws."""
 SAMPLES = (
     Sample(
         ConstantFriction(0.05),
@@ -66,6 +68,7 @@ def test_never_negative_and_continuous_in_speed(sample: Sample) -> None:
 
 
 @EVERY_SAMPLE
+@FEW
 @given(st.floats(0.0, 3000.0), st.tuples(COMPONENT, COMPONENT, COMPONENT))
 def test_against_the_sliding_and_of_the_right_size(sample: Sample, load: float, velocity: tuple[float, ...]) -> None:
     force = sample.law.friction_force(load, velocity)
@@ -78,6 +81,7 @@ def test_against_the_sliding_and_of_the_right_size(sample: Sample, load: float, 
 
 
 @EVERY_SAMPLE
+@FEW
 @given(st.floats(0.0, 2 * math.pi), COMPONENT, COMPONENT)
 @example(1.0, 3e-160, 0.0)
 def test_rotation_of_the_frame(sample: Sample, turn: float, along: float, across: float) -> None:
@@ -94,6 +98,7 @@ def test_at_rest_and_without_contact_the_force_is_zero(sample: Sample) -> None:
 
 
 @EVERY_SAMPLE
+@FEW
 @given(st.floats(0.0, 40.0))
 def test_scaling_with_the_parameters(sample: Sample, speed: float) -> None:
     assert float(sample.stronger.coefficient(speed)) == pytest.approx(2 * float(sample.law.coefficient(speed)))

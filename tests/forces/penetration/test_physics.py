@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.coded import raises, warns
 
@@ -30,6 +30,8 @@ from skisnow.geometry import Disc, LyingCylinder, PlainWedge, SkiPiece, Tool
 from skisnow.snow import published_snow
 from skisnow.snow.published import federolf_2006, moessner_2013
 
+FEW = settings(max_examples=25)
+"""For each of many laws."""
 FloatArray = npt.NDArray[np.float64]
 
 SKI = SkiPiece(length=0.2, width=0.062)
@@ -191,6 +193,7 @@ def work(law: PenetrationLaw, start: float, end: float, angle: float) -> float:
 DEPTHS = st.lists(st.floats(-0.01, 0.06), min_size=1, max_size=12)
 
 
+@FEW
 @given(DEPTHS, st.floats(0.0, math.radians(60.0)))
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
 def test_no_energy_gained_over_any_load_path(sample: Sample, depths: list[float], angle: float) -> None:
@@ -203,6 +206,7 @@ def test_no_energy_gained_over_any_load_path(sample: Sample, depths: list[float]
     assert abs(math.fsum(steps) + back) <= 1e-9 * scale
 
 
+@FEW
 @given(st.floats(1e-6, 0.06), st.floats(0.0, math.radians(60.0)))
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: repr(sample.law))
 def test_scaling_with_the_parameter(sample: Sample, depth: float, angle: float) -> None:

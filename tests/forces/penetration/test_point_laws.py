@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.coded import raises, warns
 
@@ -24,6 +24,8 @@ from skisnow.forces.penetration import (
     VolumeWithAnglePoint,
 )
 
+FEW = settings(max_examples=25)
+"""For each of many laws."""
 H_V = 0.2e9
 RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0, math.inf)
 A, B, RAMP = 0.034e9, 0.35e6, 1e-3
@@ -143,6 +145,7 @@ PATHS = st.lists(st.floats(-0.02, 0.08), min_size=1, max_size=20)
 
 
 @EVERY_LAW
+@FEW
 @given(PATHS)
 def test_work_is_stored_plus_lost_on_any_load_path(law: PointLaw, path: list[float]) -> None:
     """The first law of thermodynamics at one place, and no energy back beyond what is stored."""
@@ -159,6 +162,7 @@ def test_work_is_stored_plus_lost_on_any_load_path(law: PointLaw, path: list[flo
 
 
 @EVERY_LAW
+@FEW
 @given(PATHS)
 def test_a_closed_loop_gives_nothing(law: PointLaw, path: list[float]) -> None:
     depth = deepest = done = 0.0
@@ -170,6 +174,7 @@ def test_a_closed_loop_gives_nothing(law: PointLaw, path: list[float]) -> None:
 
 
 @EVERY_LAW
+@FEW
 @given(PATHS)
 def test_a_second_round_over_the_same_groove_costs_nothing(law: PointLaw, path: list[float]) -> None:
     deepest = max(0.0, *path)
@@ -179,6 +184,7 @@ def test_a_second_round_over_the_same_groove_costs_nothing(law: PointLaw, path: 
 
 
 @EVERY_LAW
+@FEW
 @given(st.floats(-0.01, 0.06), st.floats(0.0, 0.06))
 def test_scaling_with_the_hardness(law: PointLaw, depth: float, deepest: float) -> None:
     assert float(stronger(law).stress(depth, deepest)) == pytest.approx(

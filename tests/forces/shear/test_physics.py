@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.coded import raises, warns
 
@@ -23,6 +23,8 @@ from skisnow.forces.shear import (
 )
 from skisnow.snow import published_snow
 
+FEW = settings(max_examples=25)
+"""For each of many laws."""
 ALL_ANGLES = np.radians(np.linspace(0.0, 90.0, 91))
 LEAST, MOST = math.radians(30.0), math.radians(75.0)
 """Edge angles at which every law is finite and none is outside its range."""
@@ -155,6 +157,7 @@ def test_exceptions_name_checks(sample: Sample) -> None:
 
 
 @EVERY_SAMPLE
+@FEW
 @given(st.floats(0.01, 1.0), st.floats(LEAST, MOST), st.floats(0.01, 2.0))
 def test_scaling(sample: Sample, share: float, angle: float, length: float) -> None:
     """With the parameter, and with the length of the edge."""
@@ -168,6 +171,7 @@ def test_scaling(sample: Sample, share: float, angle: float, length: float) -> N
 
 
 @EVERY_SAMPLE
+@FEW
 @given(st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(0.0, 1.0)), min_size=1, max_size=12))
 def test_no_energy_gained_over_any_path(sample: Sample, path: list[tuple[float, float]]) -> None:
     """Sliding sideways against F_t at any sequence of depths costs work, there and back."""
