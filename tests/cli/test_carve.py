@@ -69,20 +69,6 @@ def test_json_has_the_keys_of_the_contract_and_one_number_for_each_station(capsy
     assert found["provenance"]["skisnow"]
 
 
-def test_snow_carries_the_load_and_the_limit_is_the_shear_strength_of_the_held_depth(capsys: Printed) -> None:
-    """∫ p ds is the load and S_f ∫ e ds the limit; the trapezoids over 1 cm are good to some per mille."""
-    found = answer([*ASKED, *SNOW], capsys)
-    station = found["station_m"]
-
-    def integral(values: list[float]) -> float:
-        pairs = zip(values, values[1:], station, station[1:], strict=False)
-        return sum((a + b) / 2.0 * (s - t) for a, b, s, t in pairs)
-
-    assert integral(found[FORCE_PER_LENGTH]) == pytest.approx(800.0, rel=5e-3)
-    depth_mm = integral([max(depth, 0.0) for depth in found["edge_depth_mm"]]) * 1e3  # mm²
-    assert found["side_force_limit_N"] == pytest.approx(0.35 * depth_mm, rel=5e-3)
-
-
 def test_rigid_tool_at_rest_is_as_deep_as_the_closed_form(capsys: Printed) -> None:
     """e = sqrt(2 F tan ϑ/(H_V L)) for a rigid edge of length L: 11.07 mm at 490 N, 45°, 0.04 N/mm³, 200 mm."""
     words = ["--ski", "paper-tool", "--edge-angle-deg", "45", "--load-N", "490", "--H-V-N-per-mm3", "0.04"]
@@ -93,27 +79,6 @@ def test_rigid_tool_at_rest_is_as_deep_as_the_closed_form(capsys: Printed) -> No
     assert found[FORCE_PER_LENGTH] == pytest.approx([490.0 / 0.2] * len(found["station_m"]), rel=1e-5)
     assert (found["side_force_N"], found["holds"]) == (0.0, True)
     assert found["side_force_limit_N"] is found["inputs"]["S_f_N_per_mm2"] is None
-
-
-def test_rigid_ski_of_a_file_carves_as_deep_as_the_closed_form_on_elastic_snow(tmp_path: Path, capsys: Printed) -> None:
-    """A straight rigid ski file: the same equation at another angle, so that tangent and length differ."""
-    path = tmp_path / "plank.toml"
-    shape = "length_mm = 1000\nrunning_length_mm = 1000\nsidecut_length_mm = 1000\ntail_overhang_mm = 0\n"
-    widths = "tip_width_mm = 80\nwaist_width_mm = 80\ntail_width_mm = 80\nmass_kg = 2\nrigid = true\n"
-    path.write_text(shape + widths + "shovel_height_mm = 0\ntail_height_mm = 0\n", encoding="utf-8")
-    words = ["--ski", str(path), "--edge-angle-deg", "30", "--load-N", "600", "--H-V-N-per-mm3", "0.5"]
-    found = answer([*words, "--S-f-N-per-mm2", "0.3", "--unloading-ratio", "1"], capsys)
-    expected = math.sqrt(2.0 * 600.0 * math.tan(math.radians(30.0)) / (0.5 * 1000.0))
-    # EI = 10⁶ N m² is not quite rigid
-    assert found["edge_depth_mm"] == pytest.approx([expected] * len(found["station_m"]), rel=1e-3)
-    assert found["side_force_N"] == pytest.approx(600.0 / math.sqrt(3.0), rel=1e-12)
-    assert found["side_force_limit_N"] == pytest.approx(0.3 * expected * 1000.0, rel=1e-3)
-
-
-def test_flat_ski_has_no_radius_and_no_side_force(capsys: Printed) -> None:
-    found = answer(["--ski", "slalom", "--edge-angle-deg", "0", "--load-N", "800", *SNOW], capsys)
-    assert (found["side_force_N"], found["holds"]) == (0.0, True)
-    assert found["turn_radius_boot_m"] is found["turn_radius_chord_m"] is None
 
 
 def test_slipping_edge_is_an_answer(capsys: Printed) -> None:
@@ -204,18 +169,6 @@ def test_each_choice_is_in_force_and_named(switch: list[str], key: str, value: o
         assert set(switched["twist_deg"]) == {0.0}
 
 
-def test_moment_presses_the_tip_down(capsys: Printed) -> None:
-    rests = [*ASKED, "--H-V-N-per-mm3", "0.2", "--at-rest"]
-    plain, pressed = answer(rests, capsys), answer([*rests, "--moment-Nm", "40"], capsys)
-
-    def centre(found: Any) -> float:
-        pairs = list(zip(found["station_m"], found["force_per_length_N_per_m"], strict=True))
-        return sum(s * p for s, p in pairs) / sum(p for _, p in pairs)
-
-    # 40 N m on 800 N move the snow's force by 50 mm; plain sums over stations of nearly even spacing
-    assert centre(pressed) - centre(plain) == pytest.approx(0.05, rel=0.05)
-
-
 def test_infinite_unloading_ratio_is_rigid_plastic_snow(capsys: Printed) -> None:
     found = answer([*ASKED, *SNOW[:-1], "inf"], capsys)
     assert found["inputs"]["unloading_ratio"] == 1000.0
@@ -262,35 +215,6 @@ def test_stress_is_given_beside_a_campaign_exactly_where_it_has_none(
     assert answer([*words, "site A", "--at-rest"], capsys)["holds"] is True
 
 
-@pytest.mark.parametrize(
-    ("load", "hardness", "told"),
-    [
-        ("8", "0.2", "load_N is 8:"),
-        ("19", "0.2", "load_N is 19:"),
-        ("8000", "0.2", "load_N is 8000:"),
-        ("800", "2e8", "write 0.2"),
-        ("20", "0.2", None),
-        ("5000", "0.2", None),
-    ],
-)
-def test_numbers_that_look_like_another_unit_are_warned_of(
-    load: str, hardness: str, told: str | None, capsys: Printed
-) -> None:
-    words = ["--ski", "slalom", "--edge-angle-deg", "45", "--load-N", load, "--H-V-N-per-mm3", hardness, *SNOW[2:]]
-    main(["carve", *words])
-    err = capsys.readouterr().err
-    assert (told in err) if told else ("load_N is" not in err)
-
-
-def test_angle_that_looks_like_radians_is_warned_of(capsys: Printed) -> None:
-    words = ["--ski", "slalom", "--load-N", "800", *SNOW, "--edge-angle-deg"]
-    assert main(["carve", *words, "0.785"]) == 0
-    assert "write 44.98" in capsys.readouterr().err
-    for angle in ("0", "1.6", "45"):
-        assert main(["carve", *words, angle]) == 0
-        assert "radians" not in capsys.readouterr().err
-
-
 def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed) -> None:
     words = [*ASKED, "--H-V-N-per-mm3", "120", "--S-f-N-per-mm2", "0.9", "--unloading-ratio", "10"]
     assert main(["carve", *words, "--json"]) == 0
@@ -305,25 +229,12 @@ def test_values_beyond_what_was_measured_are_warned_of_and_used(capsys: Printed)
     ("words", "code"),
     [
         ([*ASKED, "--unloading-ratio", "10"], "missing"),
-        ([*ASKED, *SNOW[:2], "--unloading-ratio", "10"], "missing"),
-        ([*ASKED, *SNOW[:4]], "missing"),
-        ([*ASKED, *SNOW, "--published", "race-piste"], "contradiction"),
         ([*ASKED, "--published", "race-piste", *SNOW[2:]], "contradiction"),
-        ([*ASKED, "--published", "race-pist", *SNOW[4:]], "unknown_name"),
-        ([*ASKED, "--published", "race-piste", "--site", "A", *SNOW[4:]], "contradiction"),
         ([*ASKED, "--results", "nowhere.json", *SNOW[4:]], "wrong_kind"),
         ([*ASKED[2:], "--ski", "slalon", *SNOW], "unknown_name"),
         ([*ASKED[2:], "--ski", "mine/ski.toml", *SNOW], "cannot_read"),
         ([*ASKED[:3], "95", *ASKED[4:], *SNOW], "out_of_range"),
-        ([*ASKED[:3], "-5", *ASKED[4:], *SNOW], "out_of_range"),
-        ([*ASKED[:3], "nan", *ASKED[4:], *SNOW], "out_of_range"),
-        ([*ASKED[:5], "0", *SNOW], "out_of_range"),
-        ([*ASKED[:5], "inf", *SNOW], "out_of_range"),
-        ([*ASKED, "--H-V-N-per-mm3", "-1", *SNOW[2:]], "out_of_range"),
-        ([*ASKED, *SNOW[:-1], "0.5"], "out_of_range"),
         ([*ASKED, *SNOW, "--elements", "3"], "out_of_range"),
-        ([*ASKED, *SNOW, "--clamp-length-m", "5"], "out_of_range"),
-        ([*ASKED, *SNOW, "--clamp-length-m", "300"], "out_of_range"),
         ([*ASKED[2:], "--ski", "paper-tool", *SNOW], "out_of_range"),
         ([*ASKED, *SNOW, "--figure", "picture.bmp"], "unknown_ending"),
     ],

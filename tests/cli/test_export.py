@@ -101,8 +101,8 @@ def test_a_part_of_our_own_is_not_to_be_installed(
 MAKEFILE = Path(__file__).parents[2] / "Makefile"
 REDUCED = {
     "analyse": ["--resamples", "100"],
-    "turn": ["--runs", "3", "--workers", "1", "--set", "run.duration_s=0.5"],
-    "simulate": ["--set", "run.duration_s=0.5"],
+    "turn": ["--runs", "3", "--workers", "1", "--set", "run.duration_s=0.2"],
+    "simulate": ["--set", "run.duration_s=0.2"],
 }
 """Further options with which each command is quick."""
 

@@ -13,14 +13,17 @@ import pytest
 from skisnow.cli import main
 from skisnow.cli.shell import json_schema
 
+from ..campaign.conftest import FILES
+
 CHECK_SCHEMA = json_schema("check")
 
 
 @pytest.fixture
-def campaign(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+def campaign(tmp_path: Path) -> Path:
     folder = tmp_path / "campaign"
-    assert main(["reference", str(folder), "--seed", "3"]) == 0
-    assert "ynthetic" in capsys.readouterr().out
+    folder.mkdir()
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding="utf-8")
     return folder
 
 
@@ -145,9 +148,10 @@ def test_a_misspelt_command(words: list[str], told: str, capsys: pytest.CaptureF
 def test_help_imports_nothing_heavy() -> None:
     code = (
         "import sys, skisnow.cli\n"
-        "try: skisnow.cli.main(['--help'])\n"
-        "except SystemExit: pass\n"
-        "heavy = {'numpy', 'scipy', 'matplotlib', 'sqlalchemy', 'jinja2'} & set(sys.modules)\n"
+        "for words in ['--help'], ['store', '--help']:\n"
+        "    try: skisnow.cli.main(words)\n"
+        "    except SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'matplotlib', 'sqlalchemy', 'alembic', 'jinja2'} & set(sys.modules)\n"
         "assert not heavy, heavy"
     )
     done = subprocess.run([sys.executable, "-c", code], check=False, capture_output=True, env=os.environ)
@@ -261,11 +265,10 @@ def run_program(*words: str, encoding: str = "utf-8", stdout: int | IO[bytes] = 
     return subprocess.run(command, env=environment, stdout=stdout, stderr=subprocess.PIPE, check=False)
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_json_is_utf_8_whatever_the_terminal(campaign: Path, encoding: str) -> None:
+def test_json_is_utf_8_whatever_the_terminal(campaign: Path) -> None:
     toml = campaign / "campaign.toml"
     toml.write_text(toml.read_text(encoding="utf-8").replace("place = ", 'place = "Kühtai ϑ" # ', 1), encoding="utf-8")
-    done = run_program("analyse", str(campaign), "--json", "--resamples", "100", encoding=encoding)
+    done = run_program("analyse", str(campaign), "--json", "--resamples", "100", encoding="ascii")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout.decode("utf-8"))["campaign"]["place"] == "Kühtai ϑ"
 
@@ -299,7 +302,8 @@ def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
 
 def test_the_reference_campaign_has_a_seed_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["reference", str(tmp_path / "a")]) == 0
-    assert "seed 1" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "ynthetic" in printed and "seed 1" in printed
     assert main(["reference", str(tmp_path / "b"), "--seed", "1"]) == 0
     same = [(tmp_path / name / "penetration.csv").read_bytes() for name in ("a", "b")]
     assert same[0] == same[1]

@@ -277,6 +277,7 @@ def test_print_defines_its_numbers(turn: Path, capsys: Printed) -> None:
         assert words in printed
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_figures_and_json_are_written(turn: Path, tmp_path: Path, capsys: Printed) -> None:
     out = tmp_path / "out"
     assert main(["track", str(turn), "--json", "--out", str(out)]) == 0

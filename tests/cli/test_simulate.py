@@ -221,7 +221,6 @@ def test_run_that_the_system_ends_is_kept_and_says_so(tmp_path: Path, replaced: 
     ("signals", "status", "is_kept"),
     [
         ((signal.SIGTERM,), 143, True),
-        ((signal.SIGINT,), 130, True),
         ((signal.SIGINT, signal.SIGTERM), 143, False),
         ((signal.SIGTERM, signal.SIGINT), 130, False),
     ],

@@ -3,8 +3,6 @@
 import csv
 import hashlib
 import json
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -168,17 +166,6 @@ def test_a_check_that_breaks_is_reported(shell: Shell, folder: Path, monkeypatch
     assert "not checked" in shell.text("list")[0]
 
 
-def test_help_needs_no_database() -> None:
-    check = (
-        "import sys, skisnow.cli\n"
-        "try: skisnow.cli.main(['store', '--help'])\n"
-        "except SystemExit: pass\n"
-        "assert not {'sqlalchemy', 'alembic', 'numpy'} & set(sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", check], check=False, capture_output=True)
-    assert done.returncode == 0, done.stderr
-
-
 def test_store_and_json_stand_before_the_action_or_behind_it(
     folder: Path, place: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -239,18 +226,6 @@ def test_a_campaign_of_lab_entries_is_listed_with_their_number_and_exported(
         {"path": path.name, "size": path.stat().st_size, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
         for path in sorted((tmp_path / "out").iterdir())
     ]
-
-
-def test_a_campaign_that_came_by_a_sync_is_exported_alike(shell: Shell, place: Path, tmp_path: Path) -> None:
-    lab, group = entered(place, "1.5", "2.25", "3"), tmp_path / "group.sqlite3"
-    shell.json("sync", group)
-    there = Shell(group, shell.capsys)
-    assert there.json("list") == shell.json("list")
-    for name, each in (("here", shell), ("there", there)):
-        each.text("export", lab, "--out", tmp_path / name)
-    for path in (tmp_path / "here").iterdir():
-        assert (tmp_path / "there" / path.name).read_bytes() == path.read_bytes()
-    assert_read(tmp_path / "there", 1.5, 2.25, 3.0)
 
 
 def test_export_of_lab_entries_never_overwrites_and_has_nothing_as_added(

@@ -207,7 +207,6 @@ while line := sys.stdin.readline():
     sys.stdin.readline()  # until then the number stays the child's, even if it has ended
     print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), flush=True)
 """
-SLOW = [pytest.param(*each, marks=pytest.mark.slow) for each in product(("file", "server"), range(2, 22))]
 N_SERIES, N_CAMPAIGNS, SYNCED_BYTES = 3, 3, 300_000
 
 
