@@ -10,9 +10,10 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario import Solver, keys, load_scenario, scenario_names, scenario_text
-from skisnow.scenario.identify_section import Prior, prior_of
+from skisnow.scenario.identify_section import Prior, measured_of, prior_of
 from skisnow.scenario.keys import FREE_KEYS, SCENARIO_KEYS, free_key, free_keys, short_name
 from skisnow.scenario.schema import scenario_schema
+from skisnow.snow import SnowProperties
 from tests.coded import Coded, coded, raises
 from tests.key_names import DELAYED_SPACING, EDGE_ANGLE
 
@@ -221,6 +222,24 @@ def test_about_the_scenarios_own_value() -> None:
 def test_what_is_no_prior_is_rejected(word: str, told: str | Coded) -> None:
     with raises(ParameterError, told):
         prior_of(word)
+
+
+def test_measured_quantities_are_in_the_units_of_their_keys_and_spread_as_their_intervals() -> None:
+    """An interval down to 0 has no logarithm; a key's range cuts what lies beyond it."""
+    snow = SnowProperties(
+        2e8, 5e5, source="mine", snow_hardness_interval=(1e8, 4e8), failure_shear_stress_interval=(0.0, 1e6),
+        shear_displacement=2e-4, shear_displacement_interval=(1e-4, 4e-4), unloading_ratio=2.0,
+        unloading_ratio_interval=(0.8, 5.0),
+    )  # fmt: skip
+    found = {each.key: each for each in measured_of(snow)}
+    expected = {"snow.H_V_N_per_mm3": [0.1, 0.2, 0.4], "snow.unloading_ratio": [0.8, 2.0, 5.0]}
+    expected["snow.shear_displacement_mm"] = [0.1, 0.2, 0.4]
+    assert found.keys() == expected.keys()
+    for key, numbers in expected.items():
+        assert [found[key].low, found[key].value, found[key].high] == pytest.approx(numbers)
+    ends = np.array([0.025, 0.5, 0.975])
+    assert found["snow.H_V_N_per_mm3"].at(ends, 7.0) == pytest.approx([0.1, 0.2, 0.4], rel=1e-6)
+    assert found["snow.unloading_ratio"].at(ends, 7.0) == pytest.approx([1.0, 2.0, 5.0], rel=1e-6)
 
 
 SEARCHED = {name: key for name, key in SCENARIO_KEYS.items() if key.search is not None and not key.search.about}

@@ -127,6 +127,13 @@ def test_all_on_their_bounds() -> None:
     assert fit.sse == 10.0
 
 
+def test_given_coefficients_and_a_projection_leave_the_rest_to_the_fit() -> None:
+    A, _ = problem(4, 25, 3, 0.5)
+    offset, projection = np.array([0.3, 0.0, -0.2]), np.array([[1.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    few = condensed(A, A @ (offset + projection @ [2.0, 3.0]))
+    np.testing.assert_allclose(few.solved(projection, offset).coefficients, [2.0, 3.0], rtol=1e-10)
+
+
 def test_weights_count_as_repeated_rows() -> None:
     A, y = problem(11, 12, 2, -1.0)
     times = np.arange(12) % 4
@@ -176,8 +183,9 @@ def test_larger_models_never_fit_worse() -> None:
 def test_bad_input() -> None:
     with raises(ParameterError, "too_many"):
         BoundedFit(np.ones((9, 7)), np.ones(9))
-    with raises(ParameterError, "wrong_shape"):
-        BoundedFit([1.0, 2.0], [1.0, 2.0], weights=[1.0, -1.0])
+    for weights in ([1.0, -1.0], [1.0, np.nan], [1.0]):
+        with raises(ParameterError, "wrong_shape"):
+            BoundedFit([1.0, 2.0], [1.0, 2.0], weights=weights)
     with raises(ParameterError, "wrong_shape"):
         non_negative_fits(np.ones((3, 2, 2)), np.ones((3, 3)))
     with raises(ParameterError, "too_many", p=7):
