@@ -180,7 +180,11 @@ def compared(path: Path) -> Checked:
 
 def gates(path: Path) -> Checked:
     profile = path.parent / "slope-8-12-8.csv"
-    keys = (f"course.file={path}", "slope.kind=profile", f"slope.profile={profile}")
+    # a carve does not brake: on 12° the skier has to skid
+    keys = (
+        *(f"course.file={path}", "slope.kind=profile", f"slope.profile={profile}"),
+        *("start.speed_m_per_s=6", "skier.brakes_to_m_per_s=6"),
+    )
     answer = command("simulate", "slalom-20-gates", *(word for key in keys for word in ("--set", key)), "--json")
     return answer.get("gates_passed") == 10, f"{answer.get('outcome')}, {answer.get('gates_passed')} of 10 gates"
 

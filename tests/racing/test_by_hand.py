@@ -184,7 +184,7 @@ def test_the_time_of_a_race_that_failed() -> None:
     early = scored(0.0, last - 15.0, finished=False)
     assert (early.value, early.passed) == (pytest.approx(2000.0 + 15.0), 1)
     assert early.words == "fell"
-    assert scored(0.0, last - 15.0).words.startswith("gate 20 ")
+    assert scored(0.0, last - 15.0).words.startswith("Gate 20 ")
     assert scored(0.0, last + 5.0, finished=False).value == pytest.approx(1000.0)
     through = scored(0.0, last + 5.0)
     assert through.time == through.value == pytest.approx(10.0 * (last + 5.0) / (last + 10.0))

@@ -1,4 +1,4 @@
-"""The cause that a fall is given."""
+"""The cause that a fall or a missed gate is given."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow import Course, Gate, load_scenario
 from skisnow.scenario.skier import Skier
+from skisnow.simulation.simulated_run import _through_gates
 from skisnow.skier import BalanceRecord
 from skisnow.skier.control import Balance
 from skisnow.skier.failure import cause_of
+from tests.simulation.straight_run import STRAIGHT, straight_run
 
 from .test_steps import HEIGHT, saw
 
@@ -67,3 +70,13 @@ def test_who_stays_within_all_limits_or_was_beyond_one_long_ago_has_no_cause() -
     assert cause_of([], skier, WEIGHT) is None
     carving = records((2.0, {"slip": 0.0}))  # a carve follows its edges
     assert cause_of(carving, Skier(), WEIGHT) is None
+
+
+@pytest.mark.parametrize(("since", "named"), [(0.2, True), (1.8, False)])
+def test_a_missed_gate_names_a_limit_that_was_crossed_before_it(since: float, named: bool) -> None:
+    """The second gate, at about 1.5 s, is on the other side; a limit that is crossed behind it does not count."""
+    gates = tuple(Gate(name=str(x), turning=(x, y), side="left") for x, y in ((4.0, -1.0), (8.0, 1.0)))
+    scenario = load_scenario("skier-10deg").with_(course=Course(gates=gates), skier=Skier(brakes_to=6.0), **STRAIGHT)
+    found = _through_gates(straight_run(scenario), records((since, {"body_heading": 2.0})))
+    assert found.outcome == "missed_gate"
+    assert ("skier.greatest_hip_deg" in found.remedy) is named

@@ -319,5 +319,5 @@ def gates_text(result: CourseResult) -> str:
         speed, clearance = (plain(row[name], 3) for name in ("speed_m_per_s", "clearance_m"))
         rows.append((row["gate"], row["outcome"].replace("_", " "), time, split, speed, clearance))
     fault = result.fault
-    end = [] if fault is None else [f"{fault.words[0].upper()}{fault.words[1:]}."]
+    end = [] if fault is None else [str(fault.words)]
     return "\n".join([f"{result.passed} of {len(result.passages)} gates passed", *aligned_rows(rows), *end])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, TypeAlias
 
@@ -18,6 +18,7 @@ from ..contact import Laws
 from ..scenario import Scenario
 from ..scenario.plausibility import model_limits
 from ..skier import BalancedSkier, Controller
+from ..skier.balance import BalanceRecord
 from ..skier.failure import cause_of
 from .moving_boots import SAME_TIME, BootControl
 from .run import OPEN_SHARE, Groove, Outcome, Run, Strength
@@ -70,8 +71,10 @@ REMEDIES: Final[dict[Outcome, str]] = {
         "harder snow, less mass or a wider ski."
     ),
     "missed_gate": Message("Change line or start, or the course; gates.csv lists the result at each gate."),
-    "straddled": "By the rules this is not a passage. Change line or start, or the course; gates.csv says of each gate "
-    "what became of it.",
+    "straddled": Message(
+        "By the rules this is not a passage. Change line or start, or the course; gates.csv lists the result at each "
+        "gate."
+    ),
     "energy_open": Message(
         "The energy residual is more than 0.5 % of the energy exchanged: the numbers are not reliable. Use smaller "
         "steps, or the error control (solver.fixed false); on very hard snow, or at more than 50° of edge angle, a "
@@ -330,28 +333,30 @@ def computed_run(setup: Setup, record: Record, outcome: Outcome, wall: float) ->
         return run
     if run.has_residual_above(OPEN_SHARE):
         return replace(run, outcome="energy_open", remedy=REMEDIES["energy_open"])
-    if outcome == "fell":
-        return _with_cause(run, setup)
-    return _through_gates(run) if outcome in ("finished", "distance_reached") else run
-
-
-def _with_cause(run: Run, setup: Setup) -> Run:
-    """A run that ended in a fall, its remedy with the first limit that the skier crossed."""
     skier = None if setup.drive is None else setup.drive.control
-    if not isinstance(skier, BalancedSkier):
-        return run
-    cause = cause_of(skier.records, skier.skier, run.scenario.sledge.mass * run.scenario.gravity)
-    return run if cause is None else replace(run, remedy=joined([cause.message, run.remedy]))
+    records = skier.records if isinstance(skier, BalancedSkier) else []
+    if outcome == "fell":
+        return replace(run, remedy=joined([*_cause(run, records), run.remedy]))
+    return _through_gates(run, records) if outcome in ("finished", "distance_reached") else run
 
 
-def _through_gates(run: Run) -> Run:
+def _cause(run: Run, records: Sequence[BalanceRecord]) -> list[Message]:
+    """The first limit that the skier crossed before the last of the records, if any."""
+    skier, weight = run.scenario.skier, run.scenario.sledge.mass * run.scenario.gravity
+    cause = None if skier is None else cause_of(records, skier, weight)
+    return [] if cause is None else [cause.message]
+
+
+def _through_gates(run: Run, records: Sequence[BalanceRecord] = ()) -> Run:
     """A run that ends well, but not through all gates of its course, missed or straddled one."""
     result = run_gates(run)
     fault = None if result is None else result.fault
     if fault is None:
         return run
     outcome: Outcome = "straddled" if fault.outcome == "straddled" else "missed_gate"
-    return replace(run, outcome=outcome, remedy=f"{fault.words[0].upper()}{fault.words[1:]}. {REMEDIES[outcome]}")
+    until = float("inf") if fault.time is None else fault.time
+    cause = _cause(run, [each for each in records if each.seen.time <= until])
+    return replace(run, outcome=outcome, remedy=joined([fault.words, *cause, REMEDIES[outcome]]))
 
 
 def _groove(setup: Setup) -> Groove:

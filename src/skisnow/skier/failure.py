@@ -1,4 +1,4 @@
-"""Cause of a skier's fall: the first limit that was crossed in its last seconds."""
+"""Cause of a skier's fall or of a missed gate: the first limit that was crossed in the seconds before."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..scenario.skier import Skier
 from .balance import BalanceRecord
 
 LOOKS_BACK: Final = 1.5
-"""Time (s) before a fall in which its cause is looked for (modelling assumption)."""
+"""Time (s) before a fall or a missed gate in which its cause is looked for (modelling assumption)."""
 MOST_LOAD, LEAST_LOAD = 3.0, 0.2
 """Body weights on both legs above and below which a load throws the skier off balance (modelling assumption)."""
 GRIPS, EDGED = math.radians(1.0), math.radians(1.0)
@@ -29,7 +29,7 @@ LASTS: Final = 0.05
 CAUSES: Final[dict[str, str]] = {
     "speed": template(
         "First cause, at {time:.2f} s and {way:.1f} m: speed. At {speed:.1f} m/s the turn asked for a lean beyond "
-        "skier.greatest_lean_deg."
+        "skier.greatest_lean_deg. Start more slowly, or set skier.brakes_to_m_per_s: the skier then skids to brake."
     ),
     "hips": template(
         "First cause, at {time:.2f} s and {way:.1f} m: hips. The skis resisted the pivot, and the body was turned "
@@ -51,7 +51,7 @@ CAUSES: Final[dict[str, str]] = {
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """First limit that was crossed before a fall.
+    """First limit that was crossed before a fall or a missed gate.
 
     Attributes
     ----------
@@ -70,12 +70,12 @@ class Cause:
 
 
 def cause_of(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> Cause | None:
-    """The earliest of the causes of `CAUSES` in the last seconds of a run that ended in a fall; None without one.
+    """The earliest of the causes of `CAUSES` in the last seconds before a fall or a missed gate; None without one.
 
     Parameters
     ----------
     records
-        Of the run.
+        Of the run, up to then.
     skier
         Its limits.
     weight

@@ -16,7 +16,7 @@ from skisnow.report.track.comparison_page import page_of_folders
 from skisnow.track.course import Course, CourseResult, Gate, MovingPoint, passages
 from skisnow.track.course.course import Point, Side
 from skisnow.track.course.gates_table import COLUMNS, gaps_csv, gates_csv, gates_dict, read_gate_gaps, time_warnings
-from skisnow.track.course.passages import track_point
+from skisnow.track.course.passages import BEYOND, STRADDLED, STRADDLED_OUTER, TO_THE_RIGHT, track_point
 from skisnow.track.track import Axes, Track
 from tests.coded import raises
 
@@ -143,13 +143,13 @@ def test_a_course_that_is_gone_up_is_not_passed() -> None:
     assert outcomes(passages(WIDE, along_x(y=-3.0, start=40.0, speed=-10.0), {}))[0] == "not_reached"
 
 
-@pytest.mark.parametrize(("y", "side"), [(-1.0, "turning pole"), (4.0, "outer pole")])
-def test_over_a_pole_is_not_between_the_poles(y: float, side: str) -> None:
+@pytest.mark.parametrize(("y", "words"), [(-1.0, TO_THE_RIGHT), (4.0, BEYOND)])
+def test_over_a_pole_is_not_between_the_poles(y: float, words: str) -> None:
     """A point of the track is on the pole itself: nothing is rounded."""
     time, down = np.array([0.0, 1.0, 2.0]), np.array([(9.0, y), (10.0, y), (11.0, y)])
     found = passages(WIDE, MovingPoint(time, down), {}).passages[0]
     assert (found.outcome, found.clearance) == ("missed", 0.0)
-    assert "0.00 m" in found.words and found.words.endswith(side)
+    assert (found.words.template, found.words.fields["distance"]) == (words, 0.0)
     assert passages(WIDE, MovingPoint(time, down[::-1]), {}).passages[0].outcome == "not_reached"
 
 
@@ -210,7 +210,7 @@ def test_feet_and_tips_on_both_sides_of_a_pole_straddle_it(
     assert found.time == pytest.approx(1.5, abs=1e-12)
     if outcome == "straddled":
         pole = "outer" if places[0][1] > 0.0 else "turning"
-        assert f"{pole} pole" in found.words
+        assert found.words.template == (STRADDLED_OUTER if pole == "outer" else STRADDLED)
 
 
 def test_a_vertical_gate_has_its_own_direction() -> None:

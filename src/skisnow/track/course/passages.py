@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.messages import template
+from ..._support.messages import Message, template
 from ..._support.units import Facts, Shown, ShownFields, amount
 from ..projection import GeodeticPoint
 from ..track import Track
@@ -24,6 +24,11 @@ CLIMB_BACK: Final = 120.0
 """Longest time (s) after a missed gate within which it can still be passed (modelling assumption)."""
 BESIDE: Final = 2.0
 """Time (s) between the crossings of the parts of one racer."""
+STRADDLED: Final = template("The turning pole of gate {gate} was straddled: it passed between the skis.")
+STRADDLED_OUTER: Final = template("The outer pole of gate {gate} was straddled: it passed between the skis.")
+TO_THE_RIGHT: Final = template("Gate {gate} was missed: {distance:.2f} m to the right of its turning pole.")
+TO_THE_LEFT: Final = template("Gate {gate} was missed: {distance:.2f} m to the left of its turning pole.")
+BEYOND: Final = template("Gate {gate} was missed: {distance:.2f} m beyond its outer pole.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -51,7 +56,7 @@ class Passage(ShownFields):
 
     gate: Gate
     outcome: GateOutcome
-    words: str
+    words: Message
     time: float | None = None
     speed: float | None = None
     clearance: float | None = None
@@ -148,10 +153,10 @@ def _passage(
     if not tried:
         backwards = any(0.0 < crossing.aside < line.width for crossing in near)
         if backwards:
-            return Passage(
-                gate=gate, outcome="backwards", words=f"gate {gate.name} was crossed against the course only"
-            )
-        return Passage(gate=gate, outcome="not_reached", words=f"gate {gate.name} was not reached")
+            words = Message("Gate {gate} was crossed against the course only.", gate=gate.name)
+            return Passage(gate=gate, outcome="backwards", words=words)
+        words = Message("Gate {gate} was not reached.", gate=gate.name)
+        return Passage(gate=gate, outcome="not_reached", words=words)
     results = [_judge(gate, line, crossing, parts) for crossing in tried]
     return next((crossing for crossing in results if crossing.outcome == "passed"), results[0])
 
@@ -175,17 +180,16 @@ def _lateral_position(line: GateLine, at: Crossing, part: MovingPoint) -> float:
     return min(crossings, key=lambda crossing: abs(crossing.time - at.time)).aside if crossings else at.aside
 
 
-def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateOutcome, str]:
+def _verdict(gate: Gate, line: GateLine, low: float, high: float) -> tuple[GateOutcome, Message]:
     """Outcome and sentence, from the places (m) along the gate's line between which the skier crossed it."""
     if low > 0.0 and high < line.width:
-        return "passed", f"gate {gate.name} was passed"
-    for place, pole in ((0.0, "turning"), (line.width, "outer")):
+        return "passed", Message("Gate {gate} was passed.", gate=gate.name)
+    for place, straddled in ((0.0, STRADDLED), (line.width, STRADDLED_OUTER)):
         if low <= place <= high and low < high:
-            return "straddled", f"the {pole} pole of gate {gate.name} was straddled: it passed between the skis"
-    if high <= 0.0:
-        other = "right" if gate.side == "left" else "left"
-        return "missed", f"gate {gate.name} was missed: {abs(high):.2f} m to the {other} of its turning pole"
-    return "missed", f"gate {gate.name} was missed: {low - line.width:.2f} m beyond its outer pole"
+            return "straddled", Message(straddled, gate=gate.name)
+    if high > 0.0:
+        return "missed", Message(BEYOND, gate=gate.name, distance=low - line.width)
+    return "missed", Message(TO_THE_RIGHT if gate.side == "left" else TO_THE_LEFT, gate=gate.name, distance=abs(high))
 
 
 HALVINGS: Final = 60
