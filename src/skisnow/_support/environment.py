@@ -17,11 +17,8 @@ from .messages import Message, joined
 def needed(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
     """The module of a package that an extra installs.
 
-    module: module to import.
-    extra: the name of the extra in ``pyproject.toml``.
     what: work that is impossible without it, a noun phrase.
     instead: another way, a whole sentence.
-    Raises ParameterError: it is not installed, or cannot be loaded.
     """
     try:
         return import_module(module)

@@ -157,10 +157,7 @@ def most_like(word: str, words_allowed: Iterable[str]) -> str | None:
 
 
 def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
-    """Reject a value that is not one of a parameter's choices.
-
-    Raises ParameterError: with the choice that is most like the value.
-    """
+    """Reject a value that is not one of a parameter's choices."""
     words = list(choices)
     if value not in words:
         raise ParameterError(

@@ -67,10 +67,7 @@ def encoding_of(data: bytes) -> tuple[str, str | None]:
 
 
 def decoded(data: bytes) -> DecodedText:
-    """Decode a text file, without byte order marks.
-
-    Raises NoTextError: the bytes are not text in UTF-8, UTF-16 with byte order mark, or Windows-1252.
-    """
+    """Decode a text file, without byte order marks."""
     codec, foreign = encoding_of(data)
     try:
         text = data.decode(codec)
@@ -226,10 +223,7 @@ class CsvRow:
     mark: str = "."
 
     def number(self, column: str) -> float:
-        """A finite number.
-
-        Raises ParameterError: it is not a number.
-        """
+        """A finite number."""
         value = number(self.cells[column], self.mark)
         if not math.isfinite(value):
             raise self.refused(column, Message("A finite number is needed."), code="not_a_number")
@@ -258,7 +252,6 @@ def csv_rows(
         decimal point or comma.
     columns, further: columns that must be there, and those that may be, in any case of letters; others are not read.
     action: action that errors recommend.
-    Raises ParameterError: the file cannot be read, is not CSV, lacks a column, or has more cells in a row than columns.
     """
     path = Path(path)
     text = plain_text(path, most_bytes=MOST_CSV_BYTES)

@@ -50,10 +50,7 @@ def _address(place: Path, mode: Mode) -> str:
 
 
 def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
-    """Check that tables are there, as tables and with all of their columns.
-
-    Raises sqlite3.DatabaseError: one is missing.
-    """
+    """Check that tables are there, as tables and with all of their columns."""
     for table, columns in tables.items():
         query = "select count(*) from sqlite_master where type = 'table' and name = ?"
         if database.execute(query, (table,)).fetchone() != (1,):
@@ -65,10 +62,7 @@ def require_schema(database: sqlite3.Connection, tables: Tables) -> None:
 
 
 def require_sound_pages(database: sqlite3.Connection) -> None:
-    """Check the file's pages by SQLite's quick check, which reads all of them once.
-
-    Raises sqlite3.DatabaseError: a page is damaged.
-    """
+    """Check the file's pages by SQLite's quick check, which reads all of them once."""
     (message,) = database.execute("pragma quick_check(1)").fetchone()
     if message != "ok":
         raise sqlite3.DatabaseError(str(message))

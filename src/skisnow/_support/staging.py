@@ -48,9 +48,7 @@ class Stage:
 def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     """Stage whose files are moved into a folder at the end of the block; an error before changes nothing.
 
-    folder: the place, which is there; other files in it stay.
     last: file whose presence shows that all others are complete: removed first, moved last.
-    Raises OutputError: the place cannot be written.
     """
     try:
         hidden, lock = _new_hidden(folder)
@@ -186,10 +184,7 @@ def _locked(hidden: Path) -> int | None:
 
 
 def write_file(path: str | Path, content: str | bytes) -> None:
-    """Write a file in one piece; text as UTF-8 with plain line ends. An existing file is replaced.
-
-    Raises OutputError: the place cannot be written or is full; an earlier file is unchanged.
-    """
+    """Write a file in one piece; text as UTF-8 with plain line ends. An existing file is replaced."""
     data = content.encode("utf-8") if isinstance(content, str) else content
     with place_to_write(path) as place:
         place.write_bytes(data)
@@ -197,10 +192,7 @@ def write_file(path: str | Path, content: str | bytes) -> None:
 
 @contextmanager
 def place_to_write(path: str | Path) -> Iterator[Path]:
-    """An empty file to be filled by its name, which has its name when the block ends well, and else nowhere.
-
-    Raises OutputError: the place cannot be written or is full; an earlier file is unchanged.
-    """
+    """An empty file to be filled by its name, which has its name when the block ends well, and else nowhere."""
     path = Path(path)
     temporary: Path | None = None
     try:
@@ -222,10 +214,7 @@ def place_to_write(path: str | Path) -> Iterator[Path]:
 
 
 def require_writable(folder: str | Path) -> None:
-    """Make a folder where it is missing and try a file in it, so that long work is not done for nothing.
-
-    Raises OutputError: the folder cannot be made or written.
-    """
+    """Make a folder where it is missing and try a file in it, so that long work is not done for nothing."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

@@ -88,10 +88,7 @@ def _turn(angle: float, dimensions: int) -> FloatArray:
 
 
 def require_offsets(fit: Collection[str]) -> None:
-    """Check that all offsets are among `OFFSETS`.
-
-    Raises ParameterError: an offset is unknown.
-    """
+    """Check that all offsets are among `OFFSETS`."""
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
         raise ParameterError(
@@ -109,8 +106,6 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     ignored in a step. The search begins with the unmoved tracks, with overlays at `SHIFTS` offsets in arc length and,
     for a heading, in `HEADINGS` directions. The solution has the lowest `_score`. Solutions in which the tracks run in
     opposite directions are used only if there is no other.
-
-    Raises FitError: no start leads to a solution in which half of the measured track is compared.
     """
     path = Path(simulated.place)
     places = measured.at_arc_length(np.linspace(0.0, measured.length, PLACES + 1))

@@ -236,10 +236,7 @@ def compared_points(track: Track, *, dimensions: int) -> BoolArray:
 
 
 def track_polyline(track: Track, *, dimensions: int) -> Polyline:
-    """The usable points of a track, joined.
-
-    Raises ParameterError: fewer than two such points, or all in one place.
-    """
+    """The usable points of a track, joined."""
     points = compared_points(track, dimensions=dimensions)
     line = polyline(track.place[points][:, :dimensions], track.time[points])
     if not line.length > 0.0:

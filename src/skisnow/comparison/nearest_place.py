@@ -109,7 +109,6 @@ class Path:
     """Path of straight pieces through points, with a search for nearest places.
 
     points: (m, d) m, points in their order, d = 2 or 3, all finite, at least two different ones.
-    Raises ParameterError: all points are in one place.
     """
 
     def __init__(self, points: FloatArray) -> None:

@@ -296,8 +296,6 @@ def fit_time(simulated: Polyline, measured: Polyline) -> float:
 
     The mean square distance over the measured track's length is computed for all offsets at which at least half of the
     shorter track overlaps with the other, and then minimised from the best of them.
-
-    Raises FitError: one of the tracks has no duration.
     """
     shorter = min(simulated.time[-1] - simulated.time[0], measured.time[-1] - measured.time[0])
     if not shorter > 0.0:

@@ -153,7 +153,6 @@ def fit_campaign(
     counts: mask of the series that the spreads are estimated from (default: all). The others are fitted with these
         spreads.
     group: index of the group of each series (default: one group).
-    priors: priors of the spreads.
     """
     m = readings.n_series
     group = np.zeros(m, dtype=np.int64) if group is None else group

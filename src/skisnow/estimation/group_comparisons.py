@@ -108,7 +108,6 @@ def group_labels(tests: PenetrationTests | ShearTests, tool: tuple[str, ...]) ->
 def compare_groups(data: Measured, by: str, difference: float = DIFFERENCE) -> tuple[GroupComparison, ...]:
     """Compare every pair of groups, in alphabetical order; groups other than sites at their common sites.
 
-    data: the values.
     by: kind of group: a key of ``data.labels``.
     difference: relative difference that ``n_needed`` is for, > 0.
     """

@@ -153,7 +153,6 @@ def series_estimates(
 ) -> SeriesEstimates:
     """Estimates of all series.
 
-    campaign, tests, readings: the campaign, its penetration tests, and their readings.
     counts: mask of the series that the spreads are estimated from (default: all).
     not_falling: mask of the series whose unloading is omitted (default: none).
     """

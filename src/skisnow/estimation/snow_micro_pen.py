@@ -145,7 +145,6 @@ def evaluate_profile(
 ) -> EvaluatedRecording:
     """Mean force, shot noise, density and surface area of one recording.
 
-    profile: force against depth.
     settings: between which depths, by which relation, how the surface is estimated.
     surface: where the snow begins (m from the first sample); NaN: it is estimated.
     is_cancelled: True if the row states it.

@@ -72,7 +72,6 @@ def fit_in_groups(
     Without a clear grouping by label, series that are clearly noisier than the others are a group (``scatter``).
 
     labels: candidate groupings: the name of the grouping, and the label of each series.
-    readings, hardness, uncertainty, counts, priors: as in `fit_campaign`.
     """
     model = fit_campaign(readings, hardness, uncertainty, counts=counts, priors=priors)
     clear = []

@@ -118,10 +118,8 @@ def unloading(
 ) -> Unloading:
     """Fit the unloading of every series.
 
-    tests: the experiments.
     readings: their readings under rising loads; ``tests.unloading`` follows the one under the largest load, or begins
         with another reading under it.
-    hardness: H_V of each series.
     model: model of the campaign, for the depth zeros.
     bad: mask over the series: those that are omitted, because their loads do not fall.
     """

@@ -53,9 +53,6 @@ def read_data(path: str | Path) -> Data:
 
     A table with time, x and y, or time, latitude and longitude, is a track, whatever else it has: a run's own track.csv
     has the column ``turn_radius_m``, as measured grooves do.
-
-    Raises ParameterError or FieldDataError: the file cannot be read, or something in it is wrong; place and value are
-        named.
     """
     path = Path(path)
     if not is_file(path):
@@ -154,11 +151,7 @@ class IdentificationData:
 def collect_data(
     scenario_input: ScenarioInput, scenario: ScenarioFile, data: Sequence[Data | str | Path], keys: Sequence[str]
 ) -> IdentificationData:
-    """Read the files, move tracks into the slope's frame, and check the data against the scenario.
-
-    Raises ParameterError or FieldDataError: a file cannot be used; a track is from another place; the scenario names an
-        unknown run.
-    """
+    """Read the files, move tracks into the slope's frame, and check the data against the scenario."""
     if not data:
         raise ParameterError("there are no data: name one or several files", code="no_data")
     _require_different([datum for datum in data if isinstance(datum, str | Path)])
@@ -319,7 +312,6 @@ def move_to_scenario_frame(track: Track, scenario: ScenarioFile, site: object) -
     track: track in any frame; a track in local metres is assumed to be in the slope's frame already.
     site: table ``[identify.site]`` with the place of the slope (optional).
     Returns: the moved track, and sentences on the method.
-    Raises ParameterError: the track is in east, north, up and `site` is missing; or the track is from another place.
     """
     if track.axes != "east_north_up":
         return track, []

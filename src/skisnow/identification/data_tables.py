@@ -46,8 +46,6 @@ _MEASURED: Final = {
 class TableFile:
     """Cells of a table as text.
 
-    name: name of the file, for messages.
-    columns: names in the header.
     rows: line number and cells of each line that is not blank.
     header_row: line number of the header.
     mark: decimal point or comma.
@@ -134,10 +132,7 @@ class TableFile:
 
 
 def read_table(path: Path) -> TableFile:
-    """Read a table as spreadsheet programs write it: commas, semicolons or tabs, decimal points or commas.
-
-    Raises ParameterError or FieldDataError: the file cannot be read, is not text, or is empty.
-    """
+    """Read a table as spreadsheet programs write it: commas, semicolons or tabs, decimal points or commas."""
     data = plain_bytes(path, most_bytes=MOST_CSV_BYTES)
     cells = split_cells(decode_text(data, str(path)), str(path))
     require_width(cells, str(path))

@@ -61,7 +61,6 @@ class Groove:
 class GrooveResiduals:
     """Measured grooves, and the ski that is assumed to have made them.
 
-    measured: measured data.
     scenario: the scenario: ski, mass, slope, speed, heading, edge angle, and the values of the fixed inputs.
     slides: True if the edge is assumed to slide: then the radius follows from S_f, and the width is not used.
     """

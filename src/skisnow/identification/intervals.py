@@ -151,10 +151,7 @@ def add_posterior_intervals(
 
 
 def require_emcee() -> Any:
-    """Import emcee, the package that samples the posterior.
-
-    Raises ParameterError: it is not installed.
-    """
+    """Import emcee, the package that samples the posterior."""
     return needed("emcee", extra="posterior", what=Message("A posterior"))
 
 
@@ -245,10 +242,7 @@ class _Resample:
 
 
 def require_bootstrap(resamples: int, by: str) -> None:
-    """Validate the options of the bootstrap.
-
-    Raises ParameterError: between 1 and `FEWEST` resamples, or an unknown method.
-    """
+    """Validate the options of the bootstrap."""
     if by not in ("refit", "linear"):
         raise ParameterError(
             "Unknown bootstrap method {value!r}. Allowed: refit, linear", code="unknown_bootstrap", value=by

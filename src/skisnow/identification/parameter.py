@@ -193,7 +193,6 @@ def parameter_table(
     keys: full names, or ``KEY@RUN`` for a separate value of a run.
     values: start values by the same names or by those without ``@RUN``; `tables` override them.
     tables: entries of the tables ``[identify."KEY"]``, from `given_parameters`.
-    Raises ParameterError: a key has no start value, or an entry is not valid for a `Parameter`.
     """
     return tuple(_parameter(key, values, tables) for key in keys)
 

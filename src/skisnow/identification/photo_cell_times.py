@@ -35,7 +35,6 @@ NOMINAL_SD: Final = 0.01
 class PhotoCellTimes:
     """Times of passage down the fall line, from the scenario's start on.
 
-    cells: measured data.
     scenario: the scenario: slope, mass with both skis, and the values of the fixed inputs.
     starts: values of ``start.…`` keys for single runs, by run.
     clock_is_free: True if each run's clock has a separate offset; otherwise it is 0 when the body leaves the start.

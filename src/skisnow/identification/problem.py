@@ -26,8 +26,6 @@ START: Final = "start."
 class Problem:
     """Least-squares problem of a search.
 
-    parameters: the free parameters.
-    observations: data of one or several kinds.
     noise: standard deviation of the residuals of each of them: 1 if accuracies are stated, otherwise estimated.
     """
 
@@ -187,8 +185,6 @@ class Observations(Protocol):
 
 def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
     """The free keys; with several runs, keys of the start and keys with ``@each`` are repeated for each run.
-
-    Raises ParameterError: a run is unknown, or a key is free twice in one run.
 
     >>> expand_keys(["friction.mu_0", "start.speed_m_per_s"], ["a", "b"])
     ('friction.mu_0', 'start.speed_m_per_s@a', 'start.speed_m_per_s@b')

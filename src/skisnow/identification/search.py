@@ -108,9 +108,7 @@ class SearchState:
 class Search:
     """Search for the minimum of a sum of squares.
 
-    residuals: function that computes the residuals.
     lower, upper: bounds (p,), in sizes from the start.
-    options: step sizes and stopping rules.
     progress: called with a line of text after each round.
     best: best place so far.
     """

@@ -37,8 +37,6 @@ _SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
 class Simulations:
     """Simulates batches of tasks in parallel; each different task is simulated once.
 
-    simulate: simulates one task.
-    stored: storage of finished rows.
     workers: number of processes (default: the number of cores available to this process); 1: this process itself.
     progress: called with the number of runs computed so far.
     executor: executor of the simulations (default: processes of this computer).
@@ -61,10 +59,7 @@ class Simulations:
         self._before = frozenset(self.stored.numbers())
 
     def __call__(self, tasks: Sequence[RunTask]) -> list[Row]:
-        """Rows of all tasks, in their order.
-
-        Raises SkisnowError: a process ended unexpectedly; finished rows stay stored.
-        """
+        """Rows of all tasks, in their order."""
         numbers = [task_number(task) for task in tasks]
         missing = {number: task for number, task in zip(numbers, tasks, strict=True) if number not in self.stored}
         self.restored += sum(number in self._before for number in dict.fromkeys(numbers))

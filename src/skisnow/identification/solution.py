@@ -38,11 +38,9 @@ REPORTED_CORRELATION: Final = 0.3
 class Solution:
     """The best place of a problem; residuals and derivatives in standard deviations of the data.
 
-    problem: the problem with its noise.
     optimum: place, residuals, derivatives and outcome of the search.
     tried: starts, and the sum of squares that each led to.
     methods: sentences on how it was computed.
-    options: options of the search.
     """
 
     problem: Problem

@@ -40,11 +40,9 @@ _STEPS_APART: Final = 3.0
 class SearchRequest:
     """Options of an identification; see `identify`.
 
-    title: title of the scenario.
     starts: number of searches.
     profile, bootstrap, posterior: requested intervals, with the numbers of resamples and samples.
     bootstrap_by: method of the bootstrap.
-    rng: source of random numbers.
     progress: called with the current step.
     warnings, methods: warnings and sentences on methods from before the search.
     """
@@ -62,10 +60,7 @@ class SearchRequest:
 
 
 def solve(problem: Problem, plan: SearchRequest) -> Identification:
-    """Search from every start and compute the result at the best place.
-
-    Raises FitError: nothing can be computed at any start.
-    """
+    """Search from every start and compute the result at the best place."""
     if plan.starts < 1:
         raise ParameterError("starts is {starts}; at least 1 is needed", code="out_of_range", starts=plan.starts)
     solution = solution_of(problem, plan)

@@ -37,7 +37,6 @@ _OUTLIER: Final = 5.0
 class TrackPoints:
     """The usable points of a track.
 
-    name: name of the track.
     time, place, sd: times (m,) in s from the first point, places (m, 2) in m, and their standard deviations (m).
     speed, speed_sd: speeds along the path (m,) in m/s; NaN if recorded without accuracy, or only over the ground.
     stated: True if the receiver states all of `sd`.
@@ -68,10 +67,7 @@ _NO_POINT: Final = {
 
 
 def track_points(track: Track) -> TrackPoints:
-    """Select the usable points of a track in the slope's frame.
-
-    Raises ParameterError: the track has no usable point.
-    """
+    """Select the usable points of a track in the slope's frame."""
     use = track.usable
     if not use.any():
         raise ParameterError(
@@ -130,7 +126,6 @@ def first_motion(track: TrackPoints) -> dict[str, float]:
 class TrackPositions:
     """Measured tracks and their simulation.
 
-    tracks: measured data.
     simulate: simulates tasks; returns their rows in order.
     fixed: values of keys in every run, such as both numbers of the snow if one of them is free.
     starts: values of ``start.…`` keys for single runs, by run.
@@ -291,10 +286,7 @@ def _result_warnings(track: TrackPoints, row: Row) -> list[str]:
 
 
 def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_free: bool) -> str | None:
-    """Check the distance between a track's first point and the start; return a warning if the fixed start is off.
-
-    Raises ParameterError: the track begins farther from the start than it is long: it is from another place.
-    """
+    """Check the distance between a track's first point and the start; return a warning if the fixed start is off."""
     away = math.hypot(track.place[0, 0] - start[0], track.place[0, 1] - start[1])
     if away > max(FARTHEST_START, track.length):
         raise ParameterError(

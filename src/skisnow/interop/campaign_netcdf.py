@@ -46,11 +46,8 @@ class _Variable:
 def write_campaign_netcdf(campaign: Campaign, path: str | Path) -> None:
     """Write the readings of a campaign, corrections applied, as NetCDF-3.
 
-    Cancelled experiments are included, with the reason. Recordings of a SnowMicroPen and the weather are not.
-
     campaign: from `skisnow.read_campaign`.
     path: Path of the file; an existing file is replaced.
-    Raises OutputError: the file cannot be written.
     """
     memory = io.BytesIO()
     file = netcdf_file(memory, "w", version=2)

@@ -86,10 +86,7 @@ def quantities(owner: type) -> tuple[Quantity, ...]:
 
 
 def require_declared(thing: Any) -> None:
-    """Raise an error for values that a file could not contain; ``__post_init__`` of a dataclass calls it.
-
-    Raises ParameterError: the first value that is of another kind or outside its range, in the unit that its key names.
-    """
+    """Raise an error for values that a file could not contain; ``__post_init__`` of a dataclass calls it."""
     for slot in _slots(type(thing)):
         value = getattr(thing, slot.field.name)
         if value is not None or not slot.may_be_none:
@@ -100,10 +97,7 @@ def require_declared(thing: Any) -> None:
 
 
 def require_effect(thing: Any) -> None:
-    """Reject values other than the default that have no effect because of another value of the same dataclass.
-
-    Raises ParameterError: with the code ``no_effect``: the first such value.
-    """
+    """Reject values other than the default that have no effect because of another value of the same dataclass."""
     owner: Any = type(thing)
     conditional = _conditional_quantities(owner)
     values = values_of(thing) if conditional else {}
@@ -129,7 +123,6 @@ def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
 def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
     """A dataclass from values by name, in the units in the names, with its nested dataclasses.
 
-    owner: the dataclass.
     values: values in their ranges; None and missing ones leave the default.
     section: section for names without one.
     parts: other fields, in SI; they go before.
@@ -324,11 +317,8 @@ def checked_table(
     """The stated values of a table in their kinds and units.
 
     owner: the dataclass that declares the allowed values; `made` makes one of the values.
-    table: as parsed.
     place: place of the table, for messages.
     further: other keys that it may have; the caller reads them.
-    Raises ParameterError: a key is unknown (the nearest is named) or missing, or a value is of another kind or outside
-        its range.
     """
     keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:

@@ -203,10 +203,7 @@ class Quantity:
         return low | (values >= self.highest if self.below else values > self.highest) | beyond_reason(values)
 
     def of_kind(self, value: object) -> InputValue:
-        """Give the value in its kind, a number as float; its range is not looked at.
-
-        Raises ParameterError: it is of another kind.
-        """
+        """Give the value in its kind, a number as float; its range is not looked at."""
         if self.kind == "switch" and isinstance(value, bool):
             return value
         if self.kind == "text" and isinstance(value, str):
@@ -250,10 +247,7 @@ class Quantity:
             yield replace(self, kind="number", name=f"{self.name}[{place}]"), value
 
     def in_range(self, value: object) -> InputValue:
-        """Give the value in its kind.
-
-        Raises ParameterError: it is of another kind or outside the range.
-        """
+        """Give the value in its kind."""
         checked = self.of_kind(value)
         if self.kind == "numbers" and isinstance(value, list | tuple):
             for one, element in self.each_of(value):
@@ -295,10 +289,7 @@ class Quantity:
         return value / self._held if self.kind == "number" and value is not None else value
 
     def require(self, value: object) -> None:
-        """Refuse a field's value, as Python gives it, that no file could give.
-
-        Raises ParameterError: as `in_range`, with the value in the unit of the name.
-        """
+        """Refuse a field's value, as Python gives it, that no file could give."""
         if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
             self.in_range([_plain(number, self._held) for number in value])
         elif self.kind in ("number", "whole number"):

@@ -236,8 +236,6 @@ def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Pri
 
     Order of precedence: a stated prior, a measured interval of the snow, the usual prior. The rounding of the camber is
     an input only for a ski with a camber as one number.
-
-    Raises ParameterError: a prior is for a quantity that the campaign measures.
     """
     measured = {uncertain.key: uncertain for uncertain in measured_of(turn.contact.snow)}
     inputs = {prior.key: measured.get(prior.key, prior) for prior in PRIORS}

@@ -180,20 +180,14 @@ def ways(course: Course, start: tuple[float, float]) -> list[float]:
 
 
 def course_of(scenario: Scenario) -> Course:
-    """Its course.
-
-    Raises ParameterError: the scenario has no such part.
-    """
+    """Course of the scenario."""
     if scenario.course is None:
         raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =", code="no_data")
     return scenario.course
 
 
 def skier_of(scenario: Scenario) -> Skier:
-    """Its skier.
-
-    Raises ParameterError: the scenario has no such part.
-    """
+    """Skier of the scenario."""
     if scenario.skier is None:
         raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"', code="no_data")
     return scenario.skier

@@ -189,18 +189,13 @@ def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None 
     """The run of a scenario's skier on a line, through the line's gates.
 
     scenario: with a skier; its course is ignored.
-    line: steered by.
-    progress: as of `skisnow.simulate`.
     """
     through = replace(scenario, course=line.course)
     return simulate(through, boots=LineSkier(through, line), progress=progress)
 
 
 def run_score(run: Run) -> Score:
-    """Score of a run; an interrupted one has no score.
-
-    Raises KeyboardInterrupt: the run was interrupted, so it has no score.
-    """
+    """Score of a run; an interrupted one has no score."""
     if run.outcome == "interrupted":
         raise KeyboardInterrupt
     end = float(run.place[-1, 0]), float(run.place[-1, 1])

@@ -78,7 +78,6 @@ class Evaluations:
 class Batches:
     """The evaluations of one search among all, batch by batch.
 
-    evaluations: where they are made.
     point_of: input of the function for a point.
     told: called as evaluations come.
     first: number of the search's first evaluation.
@@ -106,10 +105,7 @@ class Batches:
 
 
 def require_cmaes() -> Any:
-    """The package of the search.
-
-    Raises ParameterError: it is not installed.
-    """
+    """The package of the search."""
     return needed("cmaes", extra="racing", what=Message("A race"))
 
 
@@ -125,12 +121,10 @@ def least_of(
 ) -> Evaluated:
     """Minimise over the unit cube with about `count` evaluations, the first of them at the start.
 
-    batches: where they are made.
     start: (n,) where it begins.
     count: evaluations after which no new batch begins.
     population: size of a batch; None: 4 + 3 ln n.
     spread: standard deviation of the first batch, in shares of each range.
-    seed: number, 0 or more.
     settled: ends the search before, where all values of a batch lie within so much.
 
     * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary

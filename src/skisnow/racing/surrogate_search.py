@@ -50,11 +50,9 @@ BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0
 class SurrogateSearch:
     """Settings of the search.
 
-    batches: where they are made.
     count: evaluations after which no new batch begins.
     kinds: numbers of a turn.
     spread: size of the first evaluations: half of the box about the start is twice as much.
-    seed: number, 0 or more.
     settled: above 0: the search ends when three batches in a row have not lowered the minimum by this much.
     """
 

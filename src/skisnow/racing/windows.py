@@ -42,7 +42,6 @@ class How:
 class Windows:
     """A search over a course.
 
-    made: where evaluations are made.
     how: each window is searched.
     window, step, ahead: see `quickest_line`.
     """

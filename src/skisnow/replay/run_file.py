@@ -231,10 +231,7 @@ _ORTHOGONAL: Final = 1e-6
 
 
 def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
-    """Check a run's arrays, named as in run.nc with vectors in one.
-
-    Raises ParameterError: a number is not finite or too large, times do not rise, or an attitude is not a rotation.
-    """
+    """Check a run's arrays, named as in run.nc with vectors in one."""
     require_finite(arrays)
     if np.any(np.diff(arrays["time"]) < _SHORTEST_STEP):
         raise ParameterError("time does not rise", code="not_rising")
@@ -263,10 +260,7 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
 
 
 def scenario_value(values: Mapping[str, Any], name: str) -> Any:
-    """A value of the run's scenario by its full name; None if the scenario lacks it.
-
-    Raises ParameterError: the value is outside the range of its key.
-    """
+    """A value of the run's scenario by its full name; None if the scenario lacks it."""
     value = values.get(name)
     if value is None:
         return None

@@ -51,7 +51,6 @@ def replay_skier(
 ) -> ReplaySkier:
     """Drawn skier of a run.
 
-    height: height of the body (m).
     place, attitude: origin (n, 3) (m) and axes as columns (n, 3, 3) of the frame of the joints.
     boots: places (n, 2, 3) (m) and axes as rows (n, 2, 3, 3) of the boots: ahead, left across the base, off it.
     centre: centre of mass (n, 3) (m).
@@ -171,7 +170,6 @@ Ring: TypeAlias = tuple[float, float, float, float]
 class Part:
     """A part of the skier.
 
-    name: name, such as "left thigh".
     start, end: joints at its origin and in the direction of its z axis; its y axis is to the left. A boot has "left
         boot" or "right boot" and the axes of the boot.
     mesh: mesh in these axes (m), with colours in linear light.

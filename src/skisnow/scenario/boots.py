@@ -219,8 +219,6 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
 
     path: a CSV file, or .mot or .sto of OpenSim. The page docs/files/scenario.md names the columns.
     edge_angle, stance_width: values of the sledge for angles and places that the file does not give (rad, m).
-    Raises ParameterError: the file cannot be read, a column is missing or unknown, a cell is not a finite number (the
-        message names file, row, column and value), or the file is not a table of boots.
     """
     path = Path(path)
     (_, names), *rows = _rows(path, plain_text(path, most_bytes=_MOST_BYTES))

@@ -33,10 +33,7 @@ SNOW_CHOICES = "Give snow.H_V_N_per_mm3 and snow.S_f_N_per_mm2, or snow.results,
 
 
 def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str, ...]]:
-    """The scenario, and the warnings of the readers of its ski and course.
-
-    Raises ParameterError: a key is missing, a value is not allowed with another one, or a file cannot be read.
-    """
+    """The scenario, and the warnings of the readers of its ski and course."""
     values = dict(resolution.values)
     for name, key in SCENARIO_KEYS.items():
         if key.needed and not (name == "friction.mu_0" and LAW_FILE in values):

@@ -24,20 +24,13 @@ def require_sound(
     shear: Shear,
     friction: float,
 ) -> None:
-    """Refuse parts that do not go together.
-
-    Raises ParameterError: the first error: problem, allowed values, fix.
-    """
+    """Refuse parts that do not go together."""
     for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
         raise ParameterError(complaint, code="contradiction")
 
 
 def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
-    """Raise an error for a skier that contradicts the rest of the scenario.
-
-    Raises ParameterError: the boots are edged or moved by a table, there are no gates to pass, or the legs are too
-        short.
-    """
+    """Raise an error for a skier that contradicts the rest of the scenario."""
     if skier is None:
         return
     if sledge.edge_angle != 0.0:

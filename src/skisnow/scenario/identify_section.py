@@ -50,10 +50,7 @@ CLOCKS: Final = ("start", "free")
 
 
 def require_known(section: Mapping[str, Any]) -> None:
-    """Reject keys without effect: a misspelt one, or one that belongs into another section.
-
-    Raises ParameterError: the nearest name, or where the key belongs, is named.
-    """
+    """Reject keys without effect: a misspelt one, or one that belongs into another section."""
     given_parameters(section)
     clock = section.get("clock", "start")
     if clock not in CLOCKS:
@@ -81,10 +78,7 @@ def require_known(section: Mapping[str, Any]) -> None:
 
 
 def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
-    """The tables ``[identify."KEY"]`` by full key.
-
-    Raises ParameterError: a key or a word is unknown (near ones are named), or a value is not a finite number.
-    """
+    """The tables ``[identify."KEY"]`` by full key."""
     parameters: dict[str, dict[str, float]] = {}
     for word, table in section.items():
         if word in NO_KEYS:
@@ -137,7 +131,6 @@ def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 class Prior:
     """A key of a scenario with a range of values, each as likely as any other of the same order of size.
 
-    key: full name.
     low, high: ends in the key's unit, 0 < low ≤ high; equal ones: it is known. The logarithm is even between them.
     about: whether the ends are multiplied with the scenario's own value.
     origin: where the range comes from.
@@ -177,8 +170,6 @@ class Prior:
 def prior_of(word: str) -> Prior:
     """A prior as the command line takes it.
 
-    Raises ParameterError: it is not ``KEY=LOW:HIGH``, or the key or the ends cannot be.
-
     >>> prior_of("unloading_ratio=5:20")
     Prior(key='snow.unloading_ratio', low=5.0, high=20.0, origin='given', about=False)
     """
@@ -199,7 +190,6 @@ def prior_of(word: str) -> Prior:
 class Measured:
     """A key of a scenario with a measured value, log-normal with its 95 % interval.
 
-    key: full name.
     value: median of the distribution, in the key's unit.
     low, high: ends of the 95 % interval in the key's unit, 0 < low ≤ value ≤ high.
     """

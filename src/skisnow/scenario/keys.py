@@ -28,8 +28,6 @@ _FULL_NAMES: Final = {name.split(".")[1]: name for name in SCENARIO_KEYS}
 def full_name(name: str) -> str:
     """Full name of a key with or without its section.
 
-    Raises ParameterError: unknown key; the message suggests the nearest one.
-
     >>> full_name("mass_kg")
     'sledge.mass_kg'
     """
@@ -83,18 +81,13 @@ def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
 
 
 def validate(values: Mapping[str, object]) -> dict[str, InputValue]:
-    """Values by full name, each of the right kind and in its range.
-
-    Raises ParameterError: unknown key, wrong kind, or value outside its range.
-    """
+    """Values by full name, each of the right kind and in its range."""
     named = {full_name(name): value for name, value in values.items()}
     return {name: SCENARIO_KEYS[name].in_range(value) for name, value in named.items()}
 
 
 def parse_change(text: str) -> tuple[str, object]:
     """Full name and value of ``section.key=value``; the value is TOML, a text needs no quotes.
-
-    Raises ParameterError: no equals sign, or unknown key.
 
     >>> parse_change("snow.published=race-piste"), parse_change("inertia_kg_m2=[6, 8, 10]")
     (('snow.published', 'race-piste'), ('sledge.inertia_kg_m2', [6, 8, 10]))
@@ -185,9 +178,6 @@ _KEYS_BY_WORD: Final = _by_word()
 
 def free_key(word: str) -> str:
     """The scenario's key that a word means.
-
-    Raises ParameterError: no key or several keys match, or the key is not a number that can be identified; the message
-        lists similar ones.
 
     >>> free_key("S_f"), free_key("drag_area"), free_key("friction.mu_0"), free_key("start.heading_deg")
     ('snow.S_f_N_per_mm2', 'drag.drag_area_m2', 'friction.mu_0', 'start.heading_deg')

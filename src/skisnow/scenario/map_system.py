@@ -120,8 +120,6 @@ def require_true_lengths(path: object, system: MapSystem, x: float, y: float) ->
     """Reject a map on which lengths differ from the ground, such as one in the Mercator projection.
 
     x, y: middle of the grid, in the system's units.
-    Raises ParameterError: a metre on the ground is longer or shorter than a metre on the map by more than
-        `TRUE_LENGTHS`.
     """
     true_scale = _scale(system, x, y)
     if true_scale is None:

@@ -64,7 +64,6 @@ class PlacedValues:
 class Raster:
     """A grid of heights as its file gives it.
 
-    path: the file.
     values: heights (rows, columns) in units of `height_unit`, NaN in a hole.
     first, step: middle of the first cell and distance to the next, in x and in y, in the map system's units.
     height_unit: m, length of one unit of the heights.
@@ -82,10 +81,7 @@ class Raster:
 
 
 def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> float:
-    """Number in a cell of a table.
-
-    Raises ParameterError: the cell is not a finite number, or outside the limits of its column.
-    """
+    """Number in a cell of a table."""
     value = row.number(column)
     allowed = limits or LIMITS[column]
     if not allowed.lowest <= value <= allowed.highest:
@@ -110,10 +106,7 @@ def profile_limits(columns: tuple[str, str]) -> dict[str, Limits]:
 
 
 def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
-    """Reject a grid that is too small for a surface or too large for the memory.
-
-    Raises ParameterError: a count is not a whole number of 2 or more, or there are more than `MOST_CELLS` cells.
-    """
+    """Reject a grid that is too small for a surface or too large for the memory."""
     for name, count in (("ncols", n_columns), ("nrows", n_rows)):
         if not 2 <= count <= MOST_CELLS or count != int(count):
             raise ParameterError(
@@ -136,10 +129,7 @@ def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
 
 
 def require_places(path: str | Path, first: tuple[float, float], step: tuple[float, float], n: tuple[int, int]) -> None:
-    """Reject places that are not finite or look like degrees, and cells of impossible size.
-
-    Raises ParameterError: a coordinate is beyond `LIMITS`, or a cell smaller than `FINEST` or larger than `COARSEST`.
-    """
+    """Reject places that are not finite or look like degrees, and cells of impossible size."""
     ends = []
     for axis, start, size, count in zip("xy", first, step, n, strict=True):
         if not 0.0 < abs(size) <= COARSEST:
@@ -182,11 +172,7 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
 
 
 def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
-    """Heights over places that rise, in m.
-
-    Raises ParameterError: the grid is in degrees, on a map that stretches lengths, has a hole, or violates another rule
-        of this module.
-    """
+    """Heights over places that rise, in m."""
     path, system, (n_rows, n_columns) = raster.path, raster.system, raster.values.shape
     require_size(path, n_columns, n_rows)
     if system is not None:

@@ -27,9 +27,6 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
 
     Heights are the band's numbers times its scale, plus its offset, in the band's unit, else in the unit of the
     vertical system, else in m.
-
-    Raises ParameterError: rasterio is not installed, the file cannot be read, it has several bands or colours, its
-        position is missing, its rows do not run east, or the grid breaks a rule of `raster`.
     """
     if not is_file(path):
         raise ParameterError(
@@ -158,9 +155,6 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     """Read a grid: x is east, y is north, in the file's coordinates (m); places are the middles of the cells.
 
     Line breaks between values do not matter. A ``.prj`` file of the same name gives the map system.
-
-    Raises ParameterError: the file cannot be read, its header lacks an entry, there are more or fewer numbers than
-        cells, a cell is a hole, or the grid breaks a rule of `raster`; line and column are named.
     """
     text = plain_text(path, most_bytes=MOST_BYTES)
     header, first = _header(path, text)
@@ -301,12 +295,7 @@ SPARSE: Final = 10
 
 
 def read_grid_table(path: str | Path, columns: Sequence[str], *, action: Message) -> PlacedValues:
-    """Read columns over ``x_m, y_m``: rows in any order, one for each place of a grid.
-
-    Raises ParameterError: the file cannot be read, a column is missing, a cell is not a finite number or outside
-        `LIMITS`, a place is listed twice or missing, places are not evenly spaced, or x and y look like degrees; the
-        message names file, row, column and value.
-    """
+    """Read columns over ``x_m, y_m``: rows in any order, one for each place of a grid."""
     names, rows, cells = ("x_m", "y_m", *columns), [], []
     for row in csv_rows(path, names, action=action):
         rows.append(row)

@@ -116,10 +116,7 @@ def scenario_file(name_or_path: str | Path, *, changes: Mapping[str, object] = _
 
 
 def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
-    """Load a built-in scenario by name or a TOML file, or wrap a scenario object, without resolving its values.
-
-    Raises ParameterError: unknown name, unreadable file, no TOML, or a section, key or value that is not allowed.
-    """
+    """Load a built-in scenario by name or a TOML file, or wrap a scenario object, without resolving its values."""
     if isinstance(name_or_path, Scenario):
         return ScenarioInput("scenario given in Python", None, (), base=name_or_path)
     word = str(name_or_path)
@@ -158,9 +155,7 @@ def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
 def build_input(scenario_input: ScenarioInput, *, sources: Sources | None = None) -> ScenarioFile:
     """Resolve and build a scenario.
 
-    given: the scenario before resolution.
     sources: cache of skis and snows for many scenarios.
-    Raises ParameterError: as `load_scenario`.
     """
     scenario, messages, resolution = _built(scenario_input, sources or Sources())
     expected = (

@@ -53,10 +53,7 @@ Provider: TypeAlias = tuple[int, str]
 
 
 class ContradictionError(ParameterError):
-    """Two keys of one layer give the same quantity, or a key needs another value of a second key.
-
-    keys: the two keys.
-    """
+    """Two keys of one layer give the same quantity, or a key needs another value of a second key."""
 
     def __init__(self, keys: tuple[str, str], message: Message) -> None:
         super().__init__(message, code="contradiction")
@@ -94,9 +91,7 @@ class ScenarioInput(ShownFields):
     def changed(self, changes: Mapping[str, object], *, folder: Path | None = None) -> ScenarioInput:
         """The same scenario with one more layer.
 
-        changes: values by key, with or without section.
         folder: folder where relative paths among the changes start (default: the current folder).
-        Raises ParameterError: unknown key, wrong kind, or value outside its range.
         """
         return replace(self, layers=(*self.layers, Layer(validate(changes), folder or Path())))
 
@@ -123,11 +118,7 @@ class Resolution:
 
 
 def resolve(scenario_input: ScenarioInput, sources: Sources) -> Resolution:
-    """Decide which values count, by the two rules of this module.
-
-    Raises ContradictionError: two keys of one layer give the same quantity, or a key does not go with another one.
-    Raises ParameterError: a named snow or a snow map cannot be read.
-    """
+    """Decide which values count, by the two rules of this module."""
     providers: dict[str, Provider] = {}
     latest: dict[str, int] = {}
     snows: dict[Provider, SnowProperties | SnowMap] = {}

@@ -32,10 +32,7 @@ def _slope_kind(slope: Slope) -> str:
 
 
 def course_on_slope(course: Course, slope: Slope) -> Course:
-    """The course in the slope's x and y.
-
-    Raises ParameterError: the course is in degrees, and the direction of x is missing.
-    """
+    """The course in the slope's x and y."""
     return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 

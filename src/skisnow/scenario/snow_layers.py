@@ -34,8 +34,6 @@ def read_snow_layers(path: str | Path) -> SnowLayers:
 
     path: CSV with ``depth_mm``, the top of each layer, the first 0, and ``hardness_share`` (hardness over H_V) or
         ``force_N``, whose mean over the depth of the file stands for H_V.
-    Raises ParameterError: the file cannot be read, a column is missing, a number is not above 0, or the depths do not
-        rise from 0.
     """
     rows = list(csv_rows(path, ("depth_mm",), further=("hardness_share", "force_N"), action=_ACTION))
     names = [name for name in ("hardness_share", "force_N") if rows and name in rows[0].cells]

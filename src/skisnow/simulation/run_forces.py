@@ -25,11 +25,7 @@ LEAST_LOAD: Final = 50.0
 
 
 def balance_of(run: Run) -> BalanceHistory:
-    """Lean of the body.
-
-    run: result of `skisnow.simulate`.
-    Raises ParameterError: the run has no record of its boots.
-    """
+    """Lean of the body over the run."""
     boots = run.boots
     if boots is None:
         raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate", code="no_data")
@@ -157,9 +153,7 @@ class AlongEdge:
 def snow_forces(along: AlongEdge, boots: BootHistory, *, normal: FloatArray, ski: Ski) -> FloatArray:
     """Total force of the snow on each ski in the slope's axes (N), (n, 2, 3).
 
-    along, boots: histories of the run.
     normal: unit normal of the snow at each boot, (n, 2, 3).
-    ski: width and base of both skis.
 
     At each station the shear is perpendicular to the edge line of the bent ski; the push is along it, and across it as
     the load is. Both are in the snow's surface, but for the friction of a tilted base across the ski. The three parts

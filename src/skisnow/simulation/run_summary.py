@@ -42,7 +42,6 @@ def summary_dict(
 
     values: every key of the scenario as `ScenarioFile.values` has it; default: taken from the run's scenario.
     files: files of the scenario, for their SHA-256.
-    warnings: about the scenario, in words.
     verification: result of `verification_dict`, if the run was repeated.
     """
     checked = {} if verification is None else {"verification": dict(verification)}

@@ -67,10 +67,7 @@ def track_csv(run: Run) -> str:
 
 
 def write_track(run: Run, path: str | Path) -> None:
-    """Write track.csv in one piece.
-
-    Raises OutputError: the place cannot be written.
-    """
+    """Write track.csv in one piece."""
     write_file(path, track_csv(run))
 
 
@@ -81,10 +78,7 @@ _TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0
 
 
 def boots_columns(run: Run) -> dict[str, FloatArray]:
-    """Columns by name, (n,) each: time, and of each boot pose, forces and moments in the slope's and its own axes.
-
-    Raises ParameterError: the run has no record of its boots.
-    """
+    """Columns by name, (n,) each: time, and of each boot pose, forces and moments in the slope's and its own axes."""
     boots = _boots(run)
     columns = {"time_s": run.time}
     for k, side in enumerate(SIDES):
@@ -129,7 +123,6 @@ def require_ending(path: Path) -> None:
 def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
     """The table as a file's text: numbers with all their digits.
 
-    run: result of `skisnow.simulate`.
     ending: one of `ENDINGS`.
     name: that the head of a .mot or .sto file begins with.
     """
@@ -142,11 +135,7 @@ def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
 
 
 def write_boots(run: Run, path: str | Path) -> None:
-    """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again.
-
-    Raises ParameterError: the name ends otherwise, or the run has no record of its boots.
-    Raises OutputError: the place cannot be written.
-    """
+    """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again."""
     path = Path(path)
     require_ending(path)
     write_file(path, boots_text(run, path.suffix.lower(), name=path.stem))

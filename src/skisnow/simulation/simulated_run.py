@@ -172,10 +172,7 @@ def _run_once(
     boots: BootControl | None,
     strength_along: Strength | None,
 ) -> tuple[Run, Setup]:
-    """The run, and its setup at its end.
-
-    Raises SolverError: the sledge finds no equilibrium to start from.
-    """
+    """The run, and its setup at its end."""
     setup = set_up(scenario, laws=laws, boots=boots, strength_along=strength_along)
     record = Record(setup)
     if setup.height < -SINKING_DEPTH or (not setup.static_residual <= AT_REST and setup.sinks):

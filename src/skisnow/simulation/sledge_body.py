@@ -125,7 +125,6 @@ def sledge_body(
 ) -> Body:
     """A sledge on two of these skis, its origin between the boots on the level of the bases.
 
-    sledge, ski: the rigid part, and the ski of both sides.
     damping_ratio: damping ratio of the clamped ski's first bending mode, ≥ 0: damping in proportion to the stiffness.
     gravity: in space (m/s²), (3,).
     drag, drag_height: ½ ρ C_d A (kg/m), height of the centre of pressure (m).

@@ -54,7 +54,6 @@ class SkiParts:
 
         like: a ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest
             points: tables with the same number of rows, which differ smoothly; None: own stations.
-        Raises ParameterError: the result breaks a rule of `Ski`.
         """
         station = self._grid() if like is None else self._moved_grid(like)
         width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
@@ -156,10 +155,7 @@ def arc_ski(
 
 
 def stiffness_table(values: npt.ArrayLike, station: npt.ArrayLike | None, layout: Layout) -> StationTable:
-    """Table of a stiffness, at its stations (m) or evenly spaced over the running length, tip to tail.
-
-    Raises ParameterError: the stations do not fall, or their number differs from that of the values.
-    """
+    """Table of a stiffness, at its stations (m) or evenly spaced over the running length, tip to tail."""
     if station is None:
         return evenly_spread(values, *layout.contact_points)
     listed = np.atleast_1d(np.asarray(values, dtype=float))

@@ -227,7 +227,6 @@ class ClampedSki:
 def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: float | None = None) -> ClampedSki:
     """Divide a ski into about that many elements of equal length and clamp it at the boot.
 
-    ski: the ski; its boot is at station 0.
     clamp_length: 0 ≤ length (m); it must lie within the ski.
     elements: ≥ 4, number of elements over the whole ski.
     footprint_stiffness: > 0, of boot and binding between the boot and each metre of the clamped length (N/m²): the ski

@@ -36,10 +36,7 @@ _CORRECT: Final = Message("Correct it")
 
 
 def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None:
-    """Check that stations (m) are between tip and tail, the ends of the ski's own.
-
-    Raises ParameterError: one is not, or is not a number.
-    """
+    """Check that stations (m) are between tip and tail, the ends of the ski's own."""
     off = ~((station >= stations[-1] - _ROUNDING) & (station <= stations[0] + _ROUNDING))
     if np.any(off):
         problem = Message(
@@ -52,10 +49,7 @@ def require_on_ski(name: str, stations: FloatArray, station: FloatArray) -> None
 
 
 def require_tables(name: str, tables: SkiSections) -> None:
-    """Check that a ski has a name, and tables that are equally long, finite, falling from tip to tail and above 0.
-
-    Raises ParameterError: the first rule broken.
-    """
+    """Check that a ski has a name, and tables that are equally long, finite, falling from tip to tail and above 0."""
     if not (isinstance(name, str) and name.strip()):  # type: ignore[redundant-expr] # callers without types
         _refuse(name, Message("its name is blank"), Message("Give it one"))
     for which in ("station", "base_height", *_POSITIVE):
@@ -114,10 +108,7 @@ def _require_positive(name: str, tables: SkiSections) -> None:
 
 
 def require_lengths(name: str, tables: SkiSections, *, running: float, sidecut: float, middle: float) -> None:
-    """Check that the tables reach over running length and sidecut length (m), and over the boot.
-
-    Raises ParameterError: they do not, or a length is not valid.
-    """
+    """Check that the tables reach over running length and sidecut length (m), and over the boot."""
     tip, tail = tables.station[0], tables.station[-1]
     for which, length in (("running_length", running), ("sidecut_length", sidecut)):
         if not (math.isfinite(length) and length > 0):
@@ -148,10 +139,7 @@ class EdgeShape(NamedTuple):
 
 
 def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
-    """Check how an edge is ground, its width against the waist (m).
-
-    Raises ParameterError: a number is out of range.
-    """
+    """Check how an edge is ground, its width against the waist (m)."""
     bevel, width, side, radius = edge
     if not 0.0 <= bevel <= GREATEST_BEVEL:
         problem = Message("base_bevel is {bevel!r} rad; it must be 0 to {limit}", bevel=bevel, limit=GREATEST_BEVEL)
@@ -180,10 +168,7 @@ def require_edge(name: str, edge: EdgeShape, *, waist: float) -> None:
 
 
 def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
-    """Check that the waist is the smallest of the widths of tip, waist and tail (m).
-
-    Raises ParameterError: it is not.
-    """
+    """Check that the waist is the smallest of the widths of tip, waist and tail (m)."""
     front, middle, rear = widths
     if middle > front + _ROUNDING:
         problem = Message(
@@ -200,10 +185,7 @@ def require_narrow_waist(name: str, widths: tuple[float, float, float]) -> None:
 
 
 def require_base_at_boot(name: str, base_height: float) -> None:
-    """Check that heights of the base (m) count from the boot.
-
-    Raises ParameterError: the height there is not 0.
-    """
+    """Check that heights of the base (m) count from the boot."""
     if abs(base_height) > _ZERO_AT_BOOT:
         problem = Message("base_height is {height:.6g} m at the boot; it must be 0 there", height=base_height)
         _refuse(name, problem, Message("Subtract that height"))

@@ -94,8 +94,6 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
         old value, to the base's height the difference is added. Between stations ratio and difference follow a
         shape-preserving cubic (`StationTable`), so that where nothing is given at two neighbouring stations nothing
         changes between them. Mass changes only by its factor.
-    name, source: name of the edited ski.
-    Raises ParameterError: a factor or value is not allowed, or the ski breaks a rule of `Ski`.
 
     >>> from skisnow.ski import ski_named
     >>> slalom = ski_named("slalom")
@@ -194,10 +192,7 @@ def shape_parameters(ski: Ski) -> tuple[str, ...]:
 
 
 def shape_value(ski: Ski, name: str) -> float:
-    """Value of a parameter, in the unit of the file; 1 of a factor.
-
-    Raises ParameterError: the ski has no such parameter; the nearest is named.
-    """
+    """Value of a parameter, in the unit of the file; 1 of a factor."""
     allowed = shape_parameters(ski)
     if name not in allowed:
         if ski.keys is None and name.startswith("ski."):

@@ -37,7 +37,6 @@ _TABLE_TOO_LONG: Final = template(
 class FileParts:
     """A ski file, parsed.
 
-    values: its keys.
     table: the columns of its table by name, empty without one.
     """
 

@@ -33,7 +33,6 @@ _OTHER_UNITS: Final = {
 class FileValues:
     """The keys and values of one ski file.
 
-    file: its path.
     values: as parsed.
     said: the same, checked, in SI.
     """
@@ -107,10 +106,7 @@ def refuse(file: Path, place: str, value: object, allowed: str, action: Message)
 
 
 def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
-    """Give a value of a file, in the file's unit; its place is the quantity's name.
-
-    Raises ParameterError: it is of another kind, or outside its range; a likely mistake of unit is named.
-    """
+    """Give a value of a file, in the file's unit; its place is the quantity's name."""
     try:
         return quantity.in_range(value)
     except ParameterError as error:
@@ -169,11 +165,7 @@ def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity)
 
 
 def file_values(path: Path) -> FileValues:
-    """Parse a ski file and check its keys.
-
-    Raises ParameterError: the file cannot be read, is not TOML, or has an unknown key; the message names the nearest
-        key.
-    """
+    """Parse a ski file and check its keys."""
     return values_of_keys(read_toml(path), path)
 
 

@@ -59,8 +59,6 @@ def read_monkeycam(
     path: of ``ski-def.json``.
     mass, bending_stiffness, torsional_stiffness, stiffness_station, base, base_bevel, edge_width: as in `arc_ski`.
     running_length: between the contact points (m); default: the effective edge (modelling assumption).
-    Raises ParameterError: the file cannot be read, a key is missing or wrong, the edge is not an arc, or the ski breaks
-        a rule of `Ski`.
 
     The sidecut length is the effective edge; the boot is behind its middle by the stance setback. Nose and tail beyond
     it are closed as in `ArcOutline`: the curves of the file's nose and tail shape are not read, nor is the thickness

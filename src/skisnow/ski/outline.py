@@ -86,8 +86,6 @@ def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
     the sidecut; the differences of the rows from it follow the shape-preserving cubic of `StationTable` (modelling
     assumption). Three rows give the side line of three widths; a cubic through the widths themselves would be flat at
     the widest and at the narrowest row, unlike any ski.
-
-    Raises ParameterError: there are too few rows within the sidecut length, or they lie together.
     """
     if np.max(-np.diff(table.station), initial=0.0) <= GREATEST_SPACING + 1e-9:
         return table.at

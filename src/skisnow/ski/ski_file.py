@@ -146,9 +146,7 @@ def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like:
     """Ski of the keys of a ski file without a table.
 
     keys: as in the file, in its units.
-    path: file that errors name.
     like: see `SkiParts.assembled`.
-    Raises ParameterError: as `read_ski`.
     """
     values = values_of_keys(dict(keys), path)
     try:

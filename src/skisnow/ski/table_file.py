@@ -37,9 +37,6 @@ def read_table(path: Path) -> dict[str, StationTable]:
     The first line names the columns: ``station_m`` and any of ``width_mm``, ``base_height_mm``, ``EI_N_m2``,
     ``GJ_N_m2``, ``mass_per_length_kg_per_m``. Separators are commas, semicolons or tabs, decimals have a point or a
     comma, one of them in a file; lines beginning with # are remarks.
-
-    Raises ParameterError: the file cannot be read, a column is unknown or missing, a cell is not a number or outside
-        its range, or the stations do not fall. Line numbers are those of the file.
     """
     separator, lines = _lines(path)
     first, cells = lines[0]

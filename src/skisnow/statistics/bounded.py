@@ -76,7 +76,6 @@ def condensed(design: npt.ArrayLike, response: npt.ArrayLike, *, weights: npt.Ar
     design: shape (n, p) or (n,), 1 ≤ p ≤ 6; no column is added.
     response: shape (n,).
     weights: w ≥ 0, shape (n,), or None for all one.
-    Raises ParameterError: shapes do not fit, values are not finite, or a weight is below zero.
 
     The free fit of y = b1 x + b2 would be b1 = 2, b2 = -1; with b2 held at 0, b1 = (1·1 + 2·3 + 3·5)/(1 + 4 + 9).
 

@@ -152,10 +152,7 @@ def independent_columns(scaled: FloatArray) -> list[int]:
 
 
 def factorise(columns: Columns) -> Factorisation:
-    """Factorise a design of full rank.
-
-    Raises FitError: if there are fewer rows than columns, or one column follows from the others.
-    """
+    """Factorise a design of full rank."""
     n, p = columns.scaled.shape
     if n < p:
         raise FitError(

@@ -235,10 +235,7 @@ class Axis:
 
     @classmethod
     def of(cls, key: Quantity, value: object) -> Self:
-        """Parse the value of a key: one value, a list of values, or {from, to, n, log}.
-
-        Raises ParameterError: it has another form; the message names the key.
-        """
+        """Parse the value of a key: one value, a list of values, or {from, to, n, log}."""
         if isinstance(value, dict):
             return cls._of_range(key, value)
         values = value if isinstance(value, list) and not _is_one(key, value) else [value]

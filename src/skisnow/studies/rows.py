@@ -90,10 +90,7 @@ class CsvRows(StoredRows):
 
 
 def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence[Reader], before: int) -> list[Row]:
-    """The rows of some lines of a CSV file.
-
-    Raises ParameterError: a row is damaged; the message names it.
-    """
+    """The rows of some lines of a CSV file."""
     first = before + 2  # behind the names; right as long as no text has a line end
     try:
         lines = list(csv.reader(io.StringIO(data.decode("utf-8"), newline="")))
@@ -109,10 +106,7 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
 
 
 class DatabaseRows(StoredRows):
-    """Rows of the table `study` of an SQLite file, in the order of their rowid.
-
-    Raises ParameterError: the file cannot be opened, is damaged, or is not a study's table.
-    """
+    """Rows of the table `study` of an SQLite file, in the order of their rowid."""
 
     def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
         self._path = path
@@ -223,10 +217,7 @@ def _group_begins(metadata: Any) -> list[tuple[int, int]]:
 
 
 def require_pyarrow() -> Any:
-    """The library of Parquet files.
-
-    Raises ParameterError: it is not installed.
-    """
+    """The library of Parquet files."""
     pyarrow, _ = (
         needed(module, extra="parquet", what=Message("A table in Parquet")) for module in ("pyarrow", "pyarrow.parquet")
     )
@@ -266,10 +257,7 @@ def readers(columns: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> 
 
 
 def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Sequence[Reader]) -> Row:
-    """A row by the names of its columns.
-
-    Raises ParameterError: it has another number of cells, or one is not a number; the message begins with the place.
-    """
+    """A row by the names of its columns."""
     if len(cells) != len(columns):
         raise ParameterError(
             "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line",
@@ -307,10 +295,7 @@ def is_text(name: str, keys: Mapping[str, Quantity]) -> bool:
 
 
 def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
-    """Check the values of a row from a database; `texts` marks the columns of texts.
-
-    Raises ParameterError: a value is of another kind than its column; the message begins with the place.
-    """
+    """Check the values of a row from a database; `texts` marks the columns of texts."""
     for (name, value), text in zip(row.items(), texts, strict=True):
         if value is None or (isinstance(value, str) if text else _is_number(value)):
             continue

@@ -45,10 +45,7 @@ def study_state(study: Study) -> StudyState:
 def table_state(
     out: Path, keys: Mapping[str, Quantity], fingerprint: str, points: int
 ) -> tuple[StudyState, StudyTable | None]:
-    """State of the file at the path of a table, and the table where it is one.
-
-    Raises ParameterError: as of `study_state`.
-    """
+    """State of the file at the path of a table, and the table where it is one."""
     if not out.exists():
         return StudyState.NEW, None
     try:
@@ -167,11 +164,8 @@ def written(
 ) -> StudyTable:
     """The table of all rows; it is not written if no point could be computed.
 
-    out: its place.
     fingerprint: for the column `study`.
-    keys: the study's inputs.
     previous: where a table in its place goes; None: no table is there.
-    Raises OutputError: its place cannot be written.
     """
     columns = (*(finished_rows.columns or ()), "study")
     rows = _Rows(finished_rows, columns, fingerprint)
@@ -254,10 +248,7 @@ class StudyRows:
         return [row.get(name) for name in self.columns]
 
     def require_files(self) -> None:
-        """Refuse a worker on which a file is another one or is missing.
-
-        Raises SkisnowError: it names computer and file.
-        """
+        """Refuse a worker on which a file is another one or is missing."""
         for path, wanted in self.files:
             if _hash(path) != wanted:
                 raise SkisnowError(

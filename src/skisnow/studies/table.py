@@ -138,9 +138,7 @@ def large_csv(
 ) -> tuple[tuple[str, ...], StoredRows] | None:
     """Columns and rows of a CSV file as `write_csv` writes it; None of any other, which is closed.
 
-    path: for messages.
     file: open for reading.
-    keys: the study's inputs.
     begins: as `write_csv` returned it; None: searched for.
     """
     try:

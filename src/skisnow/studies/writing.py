@@ -36,20 +36,14 @@ def write_table(path: Path, columns: Sequence[str], rows: ValueRows) -> array[in
     """Write a table; it has its name when it is complete, and else nowhere.
 
     path: ends in .csv, .sqlite or .parquet.
-    columns: names.
     rows: values in the order of the columns; read twice for SQLite and Parquet, whose columns have types.
     Returns: offsets in a CSV file at which each block of rows begins.
-    Raises ParameterError: another ending, or pyarrow is missing.
-    Raises OutputError: the place cannot be written.
     """
     return writer_of(path)(path, columns, rows)
 
 
 def writer_of(path: Path) -> Writer:
-    """Writer for the suffix of a file name.
-
-    Raises ParameterError: another ending, or pyarrow is missing.
-    """
+    """Writer for the suffix of a file name."""
     ending = path.suffix.lower()
     if ending not in WRITERS:
         raise ParameterError(

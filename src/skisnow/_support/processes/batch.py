@@ -89,9 +89,7 @@ def compute_missing(
 ) -> None:
     """Compute the rows of points that are not kept yet, and keep them; memory does not grow with their number.
 
-    points, function, kept, workers, executor, progress: as of `run_batch`.
     numbers: requested points; None: all.
-    Raises ParameterError or SkisnowError: as of `run_batch`.
     """
     wanted = workers_in_force(workers)
     numbers = range(len(points)) if numbers is None else numbers
@@ -124,7 +122,6 @@ class Pool:
     function: from a point to a row of JSON values. With several workers it is pickled once for each of them.
     workers: number of processes or threads, as `workers_in_force` gives it; 1 with no executor: this process itself.
     advice: text for the error of a process that ends unexpectedly: which rows are kept, and what to do.
-    executor: as `crew_of` takes it; None: processes of this computer.
     """
 
     def __init__(
@@ -139,7 +136,6 @@ class Pool:
 
         points: they may be made as they are needed.
         count: number of points; may be omitted for a list.
-        Raises SkisnowError: a process ended unexpectedly. Errors of the function are passed on.
         """
         if self._executor is None and self._workers == 1:
             return ([(number, row_text(self._function(point)))] for number, point in points)
@@ -202,10 +198,7 @@ class Pool:
 
 
 def workers_in_force(workers: int | None) -> int:
-    """A number of workers; None: the number of cores available to this process.
-
-    Raises ParameterError: it is below 1.
-    """
+    """A number of workers; None: the number of cores available to this process."""
     if workers is None:
         return available_cores()
     if workers < 1:
@@ -230,11 +223,7 @@ LOCAL: Final = ("processes", "threads")
 def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Crew:
     """Executor of the chunks.
 
-    executor: in any of its forms.
-    function: from a point to a row.
     workers: number of workers of this computer, or of an executor that does not report its number.
-    Raises ParameterError: the executor is of another kind, or Dask is not installed.
-    Raises SkisnowError: the scheduler does not answer.
     """
     if isinstance(executor, Executor):
         return GivenCrew(function, executor, lambda: _workers_of(executor) or workers)
@@ -258,10 +247,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
 
 
 def require_executor(executor: ExecutorLike | None) -> None:
-    """Refuse a scheduler that nothing can come of, before the work begins.
-
-    Raises ParameterError: it is not an address, or Dask is not installed.
-    """
+    """Refuse a scheduler that nothing can come of, before the work begins."""
     if executor is None or executor in LOCAL or not isinstance(executor, str):
         return
     from .dask_cluster import require_scheduler

@@ -228,7 +228,6 @@ Numbered: TypeAlias = tuple[int, Any]
 class Done:
     """Rows of a chunk.
 
-    rows: numbers and rows.
     seconds_per_point: wall time (s).
     """
 
@@ -272,10 +271,8 @@ def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
 def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
     """Rows of points by a pickled function; the worker caches the last four functions.
 
-    packed: the function, pickled.
     identity: version and core of the sender's skisnow.
     folder: working folder of the sender; the worker changes to it if it exists here.
-    Raises SkisnowError: another skisnow is installed here, or the function's files are others here.
     """
     if identity != own_identity():
         raise SkisnowError(

@@ -26,10 +26,7 @@ COUNTED_EVERY_S: Final = 1.0
 
 
 def require_scheduler(address: str) -> None:
-    """Raise an error for an invalid scheduler before the work begins.
-
-    Raises ParameterError: it is not an address, or Dask is not installed.
-    """
+    """Raise an error for an invalid scheduler before the work begins."""
     if "://" not in address:
         raise ParameterError(
             "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, threads or processes.",
@@ -45,11 +42,7 @@ def is_plain(address: str) -> bool:
 
 
 def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
-    """Workers of a scheduler; at the end the connection is closed. Certificates are those of Dask's configuration.
-
-    Raises ParameterError: as of `require_scheduler`.
-    Raises SkisnowError: it does not answer.
-    """
+    """Workers of a scheduler; at the end the connection is closed. Certificates are those of Dask's configuration."""
     require_scheduler(address)
     try:
         client = _distributed().Client(address, timeout=WAIT_S, name="skisnow")

@@ -64,13 +64,8 @@ class KeptRows:
     ) -> Self:
         """Open the file of a batch, or begin it.
 
-        path: the file; its folder is made where it is missing.
         fingerprint: changes with anything that the rows follow from.
-        columns: as the attribute.
         about: further entries of the batch for a new file.
-        Raises ParameterError: the file belongs to another batch: its fingerprint differs. Or it is damaged, or not a
-            file of rows.
-        Raises OutputError: it cannot be written, or another run is writing it.
         """
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -83,11 +78,7 @@ class KeptRows:
 
     @classmethod
     def read(cls, path: Path) -> Self:
-        """Open the file of a batch as it is, whatever its fingerprint.
-
-        Raises ParameterError: the file is missing or damaged, or not a file of rows.
-        Raises OutputError: it cannot be opened, or another run is writing it.
-        """
+        """Open the file of a batch as it is, whatever its fingerprint."""
         if not path.is_file():
             raise ParameterError(
                 "{path} cannot be read: the file does not exist. Check the path.", code="cannot_read", path=path
@@ -145,10 +136,7 @@ class KeptRows:
         return entries
 
     def add(self, rows: Iterable[NumberedText]) -> int:
-        """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number.
-
-        Raises OutputError: the file cannot be written.
-        """
+        """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number."""
         new = list(rows)
         with self._told():
             self._database.execute("begin")
@@ -190,10 +178,7 @@ class KeptRows:
         return (own_json(text) for _, text in self.texts())
 
     def texts(self) -> Iterator[NumberedText]:
-        """Points with their rows as they are kept, in rising order.
-
-        Raises ParameterError: a row, or the file, is damaged.
-        """
+        """Points with their rows as they are kept, in rising order."""
         return self._checked("order by number")
 
     def _checked(self, which: str, *parameters: object) -> Iterator[NumberedText]:

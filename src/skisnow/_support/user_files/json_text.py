@@ -23,10 +23,7 @@ _MOST_DIGITS: Final = len(str(LARGEST_WHOLE)) + 1
 
 
 def read_json(path: str | Path, *, most_bytes: int = MOST_JSON_BYTES) -> Any:
-    """Read a JSON file in UTF-8.
-
-    Raises GivenError: as in `plain_text` and `json_value`.
-    """
+    """Read a JSON file in UTF-8."""
     return json_value(plain_text(path, most_bytes=most_bytes), title=str(path))
 
 
@@ -54,10 +51,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
 
 
 def own_json(text: str | bytes) -> Any:
-    """Value of a JSON text that skisnow wrote: without limits, and numbers may be infinite.
-
-    Raises ValueError: it is not JSON.
-    """
+    """Value of a JSON text that skisnow wrote: without limits, and numbers may be infinite."""
     return json.loads(text)
 
 
@@ -97,10 +91,7 @@ T = TypeVar("T", bound="DataclassInstance")
 def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> T:
     """Read a JSON object into a dataclass of texts, numbers, switches and mappings of those.
 
-    path: the file.
-    kind: the dataclass; keys are the names of its fields.
     only_known: reject keys that are not fields; False: ignore them.
-    Raises GivenError: the file cannot be read, or a key is missing, unknown or of another type.
     """
     values = read_json(path)
     if not isinstance(values, dict):

@@ -25,10 +25,7 @@ def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
 
 
 def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
-    """True or False as the header states degrees or not; None without a statement.
-
-    Raises ParameterError: the statement is neither yes nor no.
-    """
+    """True or False as the header states degrees or not; None without a statement."""
     word = _said(head).get("indegrees")
     if word is None:
         return None

@@ -69,10 +69,7 @@ def is_file(path: str | Path) -> bool:
 
 
 def plain_text(path: str | Path, *, most_bytes: int) -> str:
-    """Read a file as UTF-8 text, with or without byte order mark; lines end with a line feed, however they did.
-
-    Raises GivenError: as in `plain_bytes`, or it is not UTF-8 text.
-    """
+    """Read a file as UTF-8 text, with or without byte order mark; lines end with a line feed, however they did."""
     data = plain_bytes(path, most_bytes=most_bytes)
     try:
         text = data.decode("utf-8-sig")
@@ -93,7 +90,6 @@ class GivenError(ParameterError):
     """A file, or a text in its stead, cannot be read.
 
     what: problem and allowed values, without the file.
-    code: as in `skisnow.SkisnowError`.
     line: line of the file, where one can be named.
     title: the file, or another name of the text; empty until it is known.
     sentence: the whole message, if it is not made of the others.
@@ -145,11 +141,8 @@ Place: TypeAlias = tuple[str | int, ...]
 def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
     """Reject values that no reader can handle.
 
-    value: as TOML or JSON gave it.
     infinite: whether a number may be infinite or NaN, as TOML allows when it is written so.
     place: keys and numbers that lead to the value.
-    Raises GivenError: nesting, a key, a text or a number is beyond the limits, or a text has a NUL character or half a
-        letter.
     """
     if isinstance(value, str):
         _require_text(value, place, LONGEST_TEXT)
@@ -240,10 +233,7 @@ _TOKENS: Final = re.compile(
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:
-    """Read a TOML file in UTF-8.
-
-    Raises GivenError: as in `plain_text` and `toml_values`.
-    """
+    """Read a TOML file in UTF-8."""
     return toml_values(plain_text(path, most_bytes=MOST_TOML_BYTES), title=str(path))
 
 
@@ -264,9 +254,6 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     """The keys and values of a TOML text.
 
     text: with line feeds at the ends of lines.
-    title: name of the text in messages.
-    Raises GivenError: it is not TOML, or beyond a limit: size, nesting, dots in a key, digits of a number, length of a
-        text; or a text has a character that none can have.
     """
     try:
         if len(text) > MOST_TOML_BYTES:

@@ -86,11 +86,7 @@ class _Builder:
 
 
 def xml_tree(data: bytes) -> Element:
-    """Parse XML.
-
-    Raises GivenError: it is not XML, is damaged, has an unknown encoding, declares a document type, or exceeds the
-        limits.
-    """
+    """Parse XML."""
     builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
