@@ -167,9 +167,10 @@ target = 11.0
         printed["keys"]["tip_width_mm"] / 1e3, rel=1e-9
     )
     assert main(["design", str(tmp_path / "eleven.toml"), "--out", str(tmp_path / "out"), "--language", "de"]) == 0
-    heading, row, *_ = capsys.readouterr().out.splitlines()
+    heading, row, _, _, first, *_ = capsys.readouterr().out.splitlines()
     assert heading.split() == ["Variable", "Entwurf"]
-    assert row.split() == ["sidecut_mm", f"{printed['values']['sidecut_mm']:.6g}"]
+    assert row.split() == ["sidecut_mm", f"{printed['values']['sidecut_mm']:.6g}".replace(".", ",")]
+    assert first.split()[2] == f"{printed['rows'][0]['before']:.6g}".replace(".", ",")
 
 
 def test_command_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

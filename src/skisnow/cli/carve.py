@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._support.messages import Message, in_language
+from .._support.messages import Message, in_language, local_number
 from .options import add_language, number, whole_number
 from .output import Progress, announced, list_fonts, print_json
 
@@ -229,16 +229,16 @@ def _summary(design: Design) -> str:
     before, after, change, rounded = map(str, names)
     condition, output = str(Message("condition")), str(Message("output"))
     lines = [f"{Message('variable')!s:24} {after:>12}"]
-    lines += [f"{name:24} {value:12.6g}" for name, value in design.values.items()]
+    lines += [f"{name:24} {_number(value, '12.6g')}" for name, value in design.values.items()]
     lines += ["", f"{condition:>9}  {output:26} {before:>11} {after:>11} {change:>10} {rounded:>11}"]
     for row in design.rows:
         numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "10.3g"), _number(row.rounded))
         lines.append("{:9}  {:26} {} {} {} {}".format(row.condition, row.output, *numbers))
     lines += ["", str(Message("local optima, with the share of starts that reached them, and their objective:"))]
-    lines += [f"  {optimum.share:5.0%}  {optimum.result:.6g}" for optimum in design.optima]
+    lines += [f"  {optimum.share:5.0%}  {_number(optimum.result, '.6g')}" for optimum in design.optima]
     lines += ["", *map(str, design.remarks), str(Message("equilibria: {count}", count=design.equilibria))]
     return "\n".join(lines)
 
 
 def _number(value: float | None, form: str = "11.6g") -> str:
-    return " " * int(form.partition(".")[0]) if value is None else f"{value:{form}}"
+    return " " * int(form.partition(".")[0]) if value is None else local_number(f"{value:{form}}")
