@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from nicegui import ui
 
 from .._support.messages import Message, template
-from ..report.formatting import counted
+from ..report.campaign.data import ReportData
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
 from .elements import Words, add_items, choice, folded, html_words, named
 from .layout import error_sentence, heading, sentence
@@ -136,7 +136,9 @@ class AnalysisView:
             self._show_choices(result.numbers)
         self._show_results(result.numbers)
         self._show_tables(result.numbers)
-        self._status.set_text(Message("{counts} Drawing the figures …", counts=_counts(result.numbers)))
+        self._status.set_text(
+            Message("{counts}. Drawing the figures …", counts=ReportData(result.numbers.analysis).counts)
+        )
 
     async def _draw(self, result: CachedAnalysis, number: int) -> None:
         """Show each figure when it is drawn; those of another choice stay until the first one."""
@@ -152,7 +154,7 @@ class AnalysisView:
             with self._figures:
                 _figure(shown)
         if not self._is_old(number):
-            self._status.set_text(_counts(result.numbers))
+            self._status.set_text(f"{ReportData(result.numbers.analysis).counts}.")
 
     def _show_results(self, numbers: Numbers) -> None:
         """Show the key results of the report, then the table of the sites."""
@@ -251,18 +253,6 @@ def _add_folded(words: str, fill: Callable[[], object]) -> None:
                 fill()
 
     details.on("toggle", opened)
-
-
-def _counts(numbers: Numbers) -> str:
-    pressed, sheared = (numbers.results[kind]["experiments"] for kind in ("penetration", "shear"))
-    used = [sum(row["used"] for row in rows) for rows in (pressed, sheared)]
-    return Message(
-        "{pressed}, {used} used; {sheared}, {shear_used} used.",
-        pressed=counted(len(pressed), "{count} penetration experiment", "{count} penetration experiments"),
-        used=used[0],
-        sheared=counted(len(sheared), "{count} shear experiment", "{count} shear experiments"),
-        shear_used=used[1],
-    )
 
 
 def _figure(shown: FigureImage) -> None:

@@ -12,12 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from ..._support.arrays import BoolArray, FloatArray
+from ..._support.messages import Message
 from ..._support.units import MM, N_PER_MM2, N_PER_MM3
 from ...campaign import QUALITY_FLAGS
 from ...campaign.records import Campaign
 from ...estimation import Analysis
 from ...estimation.regressions import DENSITY_KEY, Observations, Source
 from ...geometry import GeometryForm
+from ..formatting import counted, whole
 
 TextArray: TypeAlias = npt.NDArray[np.str_]
 Json: TypeAlias = dict[str, Any]
@@ -186,6 +188,35 @@ class ReportData:
     def sites(self) -> tuple[str, ...]:
         """Sites of all experiments in alphabetical order."""
         return tuple(sorted({row["site"] for row in self.penetration} | {row["site"] for row in self.shear}))
+
+    @property
+    def has_tests(self) -> bool:
+        """True if the campaign has penetration or shear tests, not only samples and recordings."""
+        return bool(self.penetration or self.shear)
+
+    @property
+    def counts(self) -> str:
+        """Experiments, samples, recordings and sites, without the kinds that the campaign lacks; current language."""
+        campaign, pressed, sheared = self.campaign, len(self.penetration), len(self.shear)
+        tables = (campaign.density, campaign.drop_cone, campaign.snow_micro_pen)
+        samples, cones, recordings = (0 if table is None else len(table.site) for table in tables)
+        sites = set(self.sites).union(*(table.site for table in tables if table is not None))
+        used = [
+            Message(" ({used} used)", used=whole(sum(row["used"] for row in rows)))
+            for rows in (self.penetration, self.shear)
+        ]
+        counts = (
+            (
+                pressed,
+                counted(pressed, "{count} penetration experiment", "{count} penetration experiments") + str(used[0]),
+            ),
+            (sheared, counted(sheared, "{count} shear experiment", "{count} shear experiments") + str(used[1])),
+            (samples, counted(samples, "{count} density sample", "{count} density samples")),
+            (cones, counted(cones, "{count} drop-cone reading", "{count} drop-cone readings")),
+            (recordings, counted(recordings, "{count} recording", "{count} recordings")),
+            (len(sites), counted(len(sites), "{count} site", "{count} sites")),
+        )
+        return ", ".join(words for count, words in counts if count)
 
     def regression(self, response: str, predictor: str, group: str = "all") -> Json | None:
         """Result of one regression, None if it has no data."""

@@ -21,7 +21,7 @@ from ...estimation.results import results_json
 from ..figures.drawing import Drawing, LeftOut, Picture
 from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
 from ..figures.style import SiteStyle, site_styles
-from ..formatting import counted, days_words, moment_words, significant, whole
+from ..formatting import days_words, moment_words, significant
 from ..sheet import bibtex, cited_text, render_template
 from ..table import Table, table_csv, table_html
 from ..table_latex import table_latex
@@ -59,6 +59,7 @@ SECTIONS: Final = {
     "provenance": Message("Provenance"),
 }
 _ONLY_WITH_PENETRATION: Final = ("law", "seating", "unloading")
+_ONLY_WITH_TESTS: Final = ("sites", "published", "marks", "experiments")
 
 
 def write_report(
@@ -195,6 +196,9 @@ def _frame(data: ReportData) -> dict[str, Any]:
     """Values of the template apart from sentences, tables and figures."""
     results, has_penetration = data.results, bool(data.penetration)
     ids = [name for name in SECTIONS if has_penetration or name not in _ONLY_WITH_PENETRATION]
+    if not data.has_tests:
+        left_out = (*_ONLY_WITH_TESTS, *(() if data.campaign.snow_micro_pen else ("relations",)))
+        ids = [name for name in ids if name not in left_out]
     if has_penetration and not data.unloaded:
         ids.remove("unloading")
     if not data.results["shear"]["displacement"]:
@@ -210,8 +214,9 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "analysed": moment_words(results["provenance"]["time"]),
         "headline": headline(data),
         "verdicts": verdicts(results),
-        "counts": _counts(data),
+        "counts": data.counts,
         "has_penetration": has_penetration,
+        "has_tests": data.has_tests,
         "has_unloading": bool(data.unloaded),
         "has_displacement": bool(results["shear"]["displacement"]),
         "selected": results["penetration"]["selected"],
@@ -220,17 +225,6 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "titles": SECTIONS,
         "numbers": {name: number for number, name in enumerate(ids, start=1)},
     }
-
-
-def _counts(data: ReportData) -> str:
-    return Message(
-        "{penetration} ({hardness} used), {shear} ({stress} used), {sites}",
-        penetration=counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments"),
-        hardness=whole(len(data.hardness)),
-        shear=counted(len(data.shear), "{count} shear experiment", "{count} shear experiments"),
-        stress=whole(len(data.stress)),
-        sites=counted(len(data.sites), "{count} site", "{count} sites"),
-    )
 
 
 def _uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
