@@ -86,3 +86,17 @@ def test_the_preview_of_a_workbook_is_as_wide_as_the_page(page: Page, served: Se
     tables.first.wait_for()
     cut = tables.evaluate_all("all => all.map(each => each.scrollWidth - each.clientWidth)")
     assert len(cut) > 2 and max(cut) == 0
+
+
+def test_the_editor_of_a_ski_and_its_drawing_are_side_by_side_on_a_laptop(page: Page, served: Served) -> None:
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.goto(f"{served.address}skis")
+    page.get_by_text("Running length", exact=True).wait_for()
+    ready(page)
+    factor = page.get_by_label("EI ×").bounding_box()
+    results = [
+        each.bounding_box() for each in (page.get_by_text("Running length", exact=True), page.locator("svg").nth(0))
+    ]
+    assert factor is not None and factor["y"] + factor["height"] <= 800
+    for box in results:
+        assert box is not None and box["y"] + box["height"] <= 800 and box["x"] > factor["x"] + factor["width"]

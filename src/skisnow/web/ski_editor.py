@@ -131,7 +131,7 @@ class SkiEditor:
                 for i, station in enumerate(self._stations):
                     with ui.element("tr"):
                         with ui.element("th").props("scope=row"):
-                            Words(f"{station:.3f}".replace("-", "−"))
+                            Words(number_said(f"{station:.3f}".replace("-", "−"), self._table.client))
                         for column in CELLS:
                             with ui.element("td"):
                                 self._cell(column, i, station)

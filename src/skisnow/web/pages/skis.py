@@ -11,7 +11,7 @@ from nicegui import run, ui
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message
 from ...report.charts import SkiDrawing, ski_drawing
-from ..elements import Outcome, Words, button, choice, field, link, named, option_texts
+from ..elements import Outcome, Words, button, choice, field, folded, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import carving
@@ -64,25 +64,28 @@ class _Skis:
         self._asked = 0
         names = skis.names()
         chosen = ski if ski in names else names[0]
-        SkiImportForms(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
-        self._told = ui.element("div")
-        with ui.element("div").classes("fields"):
-            self._first = choice(Message("Ski"), names, chosen)
-            self._second = choice(Message("Compared with"), _others(names), NOTHING)
-        self._status = Outcome()
-        self._facts = ui.element("div").classes("table")
-        with ui.element("div").classes("two"):
-            with named(ui.element("section").classes("drawing"), Message("Drawing")):
+        with ui.element("div").classes("carving skis"):
+            with ui.element("div"):
+                with ui.element("div").classes("fields"):
+                    self._first = choice(Message("Ski"), names, chosen)
+                    self._second = choice(Message("Compared with"), _others(names), NOTHING)
+                SkiImportForms(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
+                self._told = ui.element("div")
+            with named(ui.element("section").classes("curves"), Message("Drawing")):
+                self._status = Outcome()
+                self._facts = ui.element("div").classes("table")
                 self._charts = {
                     key: LineChart(
                         ALONG,
                         title,
                         Message("{title} along the ski", title=title),
-                        height=190,
+                        height=200,
                         ends=(Message("tail"), Message("tip")),
                     )
                     for key, title in PANELS.items()
                 }
+                with folded(Message("Source")):
+                    self._sources = ui.element("div")
             with named(ui.element("section"), Message("Editor")):
                 self._editor = SkiEditor(skis, chosen, self._follow)
                 self._checked = skis.texts(chosen)
@@ -147,6 +150,10 @@ class _Skis:
         self._facts.clear()
         with self._facts:
             _table(drawn)
+        self._sources.clear()
+        with self._sources:
+            for ski in drawn:
+                sentence(f"{ski.name}: {said(ski.source)}", "quiet")
         for key, chart in self._charts.items():
             chart.show(list(_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
 
@@ -225,5 +232,3 @@ def _table(drawn: list[SkiDrawing]) -> None:
                     for number, ski in enumerate(drawn):
                         with ui.element("td").style(f"color: {STYLES[number]['colour']}"):
                             Words(ski.facts[key])
-    for ski in drawn:
-        sentence(f"{ski.name}: {said(ski.source)}", "quiet")
