@@ -4,7 +4,8 @@ import json
 import os
 import resource
 import signal
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
@@ -18,6 +19,30 @@ WAIT_S: Final = 900.0
 """The same in elapsed time: a case that waits for something."""
 MEMORY_BYTES: Final = 6 << 30
 """Address space beyond which a process gets no more."""
+
+
+def run_batches(readers: Sequence[Reader], numbers: range, rows: Path, *, minutes: float, size: int = 100) -> bool:
+    """Try the cases that the rows do not list yet, in batches; False if the time ended before all were tried."""
+    ends = time.monotonic() + 60.0 * minutes
+    done = {(row["reader"], row["first"]) for row in read_rows(rows) if row["row"] == "batch"}
+    for first in numbers[::size]:
+        for reader in readers:
+            if (reader.name, first) in done:
+                continue
+            if time.monotonic() >= ends:
+                return False
+            lines = [json.dumps(row) for row in run_batch(reader, range(first, min(first + size, numbers.stop)))]
+            with rows.open("a", encoding="utf-8") as file:
+                file.write("".join(f"{line}\n" for line in lines))
+            print(lines[-1], flush=True)
+    return True
+
+
+def read_rows(path: Path) -> Iterator[dict[str, Any]]:
+    """All rows of a file, if it exists; a line that a kill cut off is left out."""
+    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+        if line.endswith("}"):
+            yield json.loads(line)
 
 
 def run_batch(reader: Reader, numbers: range) -> Iterator[dict[str, Any]]:

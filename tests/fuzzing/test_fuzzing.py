@@ -10,7 +10,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError, RangeWarning
 
-from .batch import run_batch
+from .batch import read_rows, run_batch, run_batches
 from .case import Fault, run_case
 from .reader import Reader
 from .registry import READERS
@@ -94,3 +94,15 @@ def test_a_case_that_kills_its_process_or_takes_memory_is_named_and_the_others_g
     faults = [(row["number"], row["kind"]) for row in rows if row["row"] == "fault"]
     assert faults == [(6, "crash"), (7, "memory")]
     assert (rows[-1]["first"], rows[-1]["count"], rows[-1]["read"]) == (5, 5, 4)
+
+
+def test_a_long_run_continues_behind_the_rows_that_are_there(tmp_path: Path) -> None:
+    rows, readers = tmp_path / "rows.jsonl", [made_up(lambda _: 1, "one"), made_up(raising(KeyError("x")), "other")]
+    assert not run_batches(readers, range(20, 24), rows, minutes=0.0, size=2)
+    assert run_batches(readers[:1], range(20, 24), rows, minutes=5.0, size=2)
+    with rows.open("a") as file:
+        file.write('{"row": "batch", "rea\n')  # cut off by a kill
+    assert run_batches(readers, range(20, 24), rows, minutes=5.0, size=2)
+    batches = [(row["reader"], row["first"]) for row in read_rows(rows) if row["row"] == "batch"]
+    assert batches == [("one", 20), ("one", 22), ("other", 20), ("other", 22)]
+    assert sum(row["row"] == "fault" for row in read_rows(rows)) == 4
