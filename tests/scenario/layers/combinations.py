@@ -1,4 +1,7 @@
-"""Random combinations of layers of a scenario, and the origin of each quantity that a resolver chose."""
+"""Random combinations of layers of a scenario, and the origin of each quantity that a resolver chose.
+
+The module needs no skisnow, so that any version of the resolver can be asked (`record.py`).
+"""
 
 import json
 import random
@@ -7,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-NUMBER: Final = 250
+NUMBER: Final = 500
 
 FILES: Final = {
     "results.json": json.dumps(
