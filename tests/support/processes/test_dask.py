@@ -16,13 +16,7 @@ import pytest
 pytest.importorskip("distributed", reason="Dask is not installed: skisnow[dask]")
 
 from skisnow._support.errors import SkisnowError
-from skisnow._support.processes import dask_cluster
-from skisnow._support.processes.batch import run_batch
-from skisnow.cli import main
-from skisnow.identification import identify
 from skisnow.studies import Study, read_study, run_study
-from tests.coded import raises
-from tests.identification.straight_tracks import SCENARIO, track
 
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
 
@@ -130,19 +124,6 @@ def test_two_workers_give_the_bytes_of_one_process(tmp_path: Path, cluster: Clus
         study.out.unlink()
 
 
-def test_by_the_command_line_a_plain_network_is_reported(
-    tmp_path: Path, cluster: Cluster, capsys: pytest.CaptureFixture[str]
-) -> None:
-    text = CARVE.format(loads=3, angles=3)
-    wanted = bytes_of_one_process(tmp_path, text)
-    study = study_of(tmp_path / "dask", text)
-    assert main(["study", str(study.file), "--scheduler", cluster.address]) == 0
-    assert "trusted networks" in capsys.readouterr().err
-    assert study.out.read_bytes() == wanted
-    assert main(["study", str(study.file), "--scheduler", cluster.address, "--workers", "2"]) == 1
-    assert "--workers" in capsys.readouterr().err
-
-
 def killing(cluster: Cluster, text: str, folder: Path, after: int) -> bytes:
     """The table of a study during which a worker is killed and another one comes."""
     study = study_of(folder / "killed", text)
@@ -176,57 +157,4 @@ def test_a_scheduler_that_is_killed_is_reported_and_the_study_continues(tmp_path
     told: list[int] = []
     run_study(study, workers=1, progress=lambda done, _: told.append(done))
     assert told[0] >= 3
-    assert study.out.read_bytes() == bytes_of_one_process(tmp_path, text)
-
-
-def test_a_client_computes_what_a_scheduler_does(cluster: Cluster) -> None:
-    distributed = importlib.import_module("distributed")
-    with distributed.Client(cluster.address) as client:
-        assert run_batch([[("n", n)] for n in range(20)], dict, executor=client) == [{"n": n} for n in range(20)]
-        assert client.status == "running"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("bootstrap", [0, 40])
-def test_an_identification_is_that_of_one_process(bootstrap: int, cluster: Cluster) -> None:
-    named: dict[str, Any] = {"changes": SCENARIO, "bootstrap": bootstrap}
-    here = identify("carved-46m", track(seed=5), "mu_0,speed", workers=1, **named)
-    there = identify("carved-46m", track(seed=5), "mu_0,speed", executor=cluster.address, **named)
-    assert there.values == here.values
-    drawn = [None if found.bootstrap is None else found.bootstrap.tolist() for found in (here, there)]
-    assert drawn[0] == drawn[1]
-
-
-def test_a_function_that_workers_have_not_is_reported(
-    tmp_path: Path, cluster: Cluster, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "only_here.py").write_text("def row(point):\n    return {'n': point}\n", encoding="utf-8")
-    monkeypatch.syspath_prepend(tmp_path)
-    row = importlib.import_module("only_here").row
-    with pytest.raises(SkisnowError, match="only_here"):
-        run_batch([1, 2, 3], row, executor=cluster.address)
-
-
-def test_a_scheduler_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dask_cluster, "WAIT_S", 0.5)
-    with raises(SkisnowError, "no_scheduler", address="tcp://127.0.0.1:9"):
-        run_batch([[("n", 1)]], dict, executor="tcp://127.0.0.1:9")
-
-
-@pytest.mark.slow
-def test_ten_thousand_points_and_many_runs_while_workers_are_killed(tmp_path: Path, cluster: Cluster) -> None:
-    for text, after in ((CARVE.format(loads=100, angles=100), 2000), (RUNS.format(duration=0.5, speeds=250), 100)):
-        cluster.hire(1)
-        wanted = bytes_of_one_process(tmp_path, text)
-        assert killing(cluster, text, tmp_path, after) == wanted
-        cluster.workers.pop(0)
-        (tmp_path / "killed" / "table.csv").unlink()
-
-
-@pytest.mark.slow
-def test_eight_workers_that_start_at_once_just_start(tmp_path: Path, cluster: Cluster) -> None:
-    text = CARVE.format(loads=30, angles=30)
-    cluster.hire(6)
-    study = study_of(tmp_path / "eight", text)
-    run_study(study, executor=cluster.address)
     assert study.out.read_bytes() == bytes_of_one_process(tmp_path, text)
