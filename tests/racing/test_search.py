@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow import QuickestLine, Scenario, load_scenario, race, simulate, time_gates
+from skisnow import QuickestLine, Scenario, load_scenario, race, simulate
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow.racing import LineTurn, RacingLine, follower_line
+from skisnow.racing import follower_line
 from skisnow.racing.line import first_gates
-from skisnow.racing.point import Racer, run_score, ski_line
+from skisnow.racing.point import run_score, ski_line
 from skisnow.racing.search import Batches, Evaluated, Evaluations, least_of
 from skisnow.racing.surrogate import Surrogate, times_of
 
@@ -119,11 +119,6 @@ def test_interrupted_and_gone_on_with(tmp_path: Path) -> None:
     assert len(told) == len(whole.history) - done
     with pytest.raises(ParameterError, match="of another study"):
         raced(seed=3, checkpoint=kept)
-
-
-@pytest.mark.slow
-def test_workers_change_nothing() -> None:
-    assert raced(seed=4, workers=2).line.turns == raced(seed=4).line.turns
 
 
 def test_it_is_never_slower_than_where_it_began() -> None:
@@ -266,22 +261,6 @@ def test_a_run_that_ends_early_counts_by_what_is_missing() -> None:
     assert (found.time, found.passed) == (None, 0)
     assert 4000.0 < found.value < 4100.0
     assert "not reached" in found.words
-
-
-@pytest.mark.slow
-def test_the_score_is_the_time_at_the_last_gate() -> None:
-    run = ski_line(RACE, FOUR)
-    times = time_gates(FOUR.course, run).times
-    assert run_score(run).value == times[-1]
-    assert Racer(RACE, "skier").score(FOUR).value == times[-1]
-
-
-@pytest.mark.slow
-def test_a_line_too_near_the_poles_straddles_or_misses() -> None:
-    near = RacingLine(FOUR.course, FOUR.start, (LineTurn(aside=0.25, along=0.2, turning=0.35),) * 4)
-    found = Racer(RACE, "skier").score(near)
-    assert found.time is None
-    assert found.value > 1000.0
 
 
 @pytest.mark.slow

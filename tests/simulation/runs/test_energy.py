@@ -73,12 +73,6 @@ def drawn(seed: int, duration: float) -> dict[str, float]:
     }
 
 
-def loses_everywhere(changes: dict[str, float]) -> None:
-    run = simulate(load_scenario("carved-46m", changes=changes))
-    for name in LOST:
-        assert run.energies[name].min() > -1e-3 * run.energy_exchanged, (name, changes)
-
-
 @pytest.mark.slow
 def test_a_ski_that_hardly_touches() -> None:
     """Edges near level, of which some lines bear next to nothing: the account was open by 9 MJ of 2 kJ."""
@@ -98,32 +92,10 @@ def test_a_ski_that_hardly_touches() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_no_account_gives_energy(seed: int) -> None:
-    loses_everywhere(drawn(seed, 0.2))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4, 40))
-def test_no_account_gives_energy_in_longer_runs(seed: int) -> None:
-    loses_everywhere(drawn(seed, 1.5))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["carved-46m", "giant-slalom-67m", "carver-42m"])
-@pytest.mark.parametrize("contact", CONTACTS)
-def test_built_in_scenarios(name: str, contact: str) -> None:
-    run = simulate(load_scenario(name, changes=CONTACTS[contact]))
-    assert run.outcome in {"finished", "distance_reached"}
-    closes(run, (name, contact))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("hardness", "strength"), [(0.04, 0.02), (0.2, 0.5), (1.0, 1.0), (1.0, 0.3), (90.0, 10.0), (0.04, 0.2), (0.2, 0.1)]
-)
-def test_every_snow(hardness: float, strength: float) -> None:
-    """From powder to ice, with an S_f that carves and one that skids."""
-    changes = {"snow.H_V_N_per_mm3": hardness, "snow.S_f_N_per_mm2": strength}
-    closes(simulate(load_scenario("carved-46m", changes=changes)), changes)
+    changes = drawn(seed, 0.2)
+    run = simulate(load_scenario("carved-46m", changes=changes))
+    for name in LOST:
+        assert run.energies[name].min() > -1e-3 * run.energy_exchanged, (name, changes)
 
 
 def test_friction_that_falls_with_speed_never_drives_the_ski() -> None:
@@ -208,15 +180,6 @@ def test_skidding(hardness: float, strength: float) -> None:
     """An edge that gives way by half a millimetre; nearer to the limit a skid hangs on its last decimetres."""
     found = moves(hardness, strength, shear_displacement_mm=0.5)
     assert max(found.values()) < MOST, found
-
-
-@pytest.mark.slow
-def test_skidding_on_ice() -> None:
-    """H_V = 90 with a measured S_f: the account of energy shows whether the groove was kept."""
-    changes = {"snow.H_V_N_per_mm3": 90.0, "snow.S_f_N_per_mm2": 0.3, "run.duration_s": 1.0}
-    run = simulate(load_scenario("carved-46m", changes=changes))
-    assert run.energy_balance_error is not None
-    assert run.energy_balance_error < 0.005
 
 
 @pytest.mark.slow

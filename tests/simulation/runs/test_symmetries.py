@@ -86,15 +86,6 @@ def test_straight_down_stays_straight() -> None:
     assert np.abs(flat.place[:, 1]).max() < growth * 1e-16 / half_width
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("changes", [CARVES, SKIDS], ids=["carves", "skids"])
-def test_mirror_of_the_whole_run(changes: dict[str, float]) -> None:
-    """Five seconds with the error held: steps are chosen alike, the ends agree to 1e-6 m."""
-    one, other = simulated(**changes), simulated(**mirrored(changes))
-    assert other.place[-1] == pytest.approx(one.place[-1] * [1.0, -1.0, 1.0], abs=1e-6)
-    assert other.steps == pytest.approx(one.steps, rel=0.01)
-
-
 def test_start_elsewhere() -> None:
     """A plane is the same everywhere."""
     one = simulated(**{"run.duration_s": 0.4}, **FIXED)

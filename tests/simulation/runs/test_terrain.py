@@ -276,17 +276,6 @@ def test_a_turn_to_the_other_side_is_the_mirror_image(changes: dict[str, float],
     assert ends[1] == pytest.approx(ends[0] * [1.0, -1.0, 1.0], abs=within)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("changes", [DAMPED, DELAYED], ids=["damped", "delayed"])
-def test_half_the_step_moves_the_end_as_little_as_without_it(changes: dict[str, float]) -> None:
-    """Some 0.2 mm of 4 m at 1 ms, as snow that takes no time."""
-    fixed = {**changes, "run.duration_s": 0.6, "solver.fixed": True}
-    ends = [carved(**fixed, **{"solver.step_ms": step}).place[-1] for step in (4.0, 2.0, 1.0)]
-    moved = [float(np.linalg.norm(ends[i + 1] - ends[i])) for i in range(2)]
-    assert moved[0] < 1.2e-3
-    assert moved[1] < 0.25e-3
-
-
 def test_newtons_method_knows_what_the_dashpot_does() -> None:
     """Its matrix holds c over the step: without it the iterations are many times as many."""
     setup = set_up(load_scenario("carved-46m", changes={"snow.damping_N_s_per_mm3": 0.01}))
