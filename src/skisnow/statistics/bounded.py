@@ -108,9 +108,7 @@ def _require_few(p: int) -> None:
         )
 
 
-def _root_weights(weights: npt.ArrayLike | None, n: int) -> FloatArray:
-    if weights is None:
-        return np.ones(n)
+def _root_weights(weights: npt.ArrayLike, n: int) -> FloatArray:
     w = np.asarray(weights, dtype=float)
     if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
         raise ParameterError(
