@@ -209,7 +209,9 @@ def test_equal_errors_leave_the_plain_t_interval() -> None:
 
 
 def test_estimates_that_agree_better_than_their_errors_have_no_spread() -> None:
+    """(1.5²/2)/(1 + τ²) = 1 gives the least spread that is one."""
     assert random_effects_mean([1.0, 1.1, 0.9], [1.0, 1.0, 1.0]).spread == 0.0
+    assert random_effects_mean([0.0, 1.5], [1.0, 1.0]).spread ** 2 == pytest.approx(0.125)
 
 
 def test_one_estimate_has_no_interval() -> None:
