@@ -164,6 +164,68 @@ def _second_sheet(book: Workbook) -> None:
     copy["A1"] = "Alle Daten"
 
 
+def _in_language(*words: str) -> Callable[[Workbook], None]:
+    """Headings of both tables in another language."""
+
+    def translate(book: Workbook) -> None:
+        german = ("Versuch", "Kantwinkel", "Last", "Eindringtiefe", "Bemerkung", "Tiefe", "Hebelarm", "Drehmoment")
+        for cells in book["Hang oben"].iter_rows(min_row=5, max_row=16):
+            for cell in cells:
+                if cell.value in german:
+                    cell.value = words[german.index(cell.value)]
+
+    return translate
+
+
+def _scaled(column: str, factor: float, unit: str | None) -> Callable[[Workbook], None]:
+    """Numbers of a column of the first table in another unit, as text with a decimal comma."""
+
+    def scale(book: Workbook) -> None:
+        for row in range(7, 13):
+            cell = book["Hang oben"][f"{column}{row}"]
+            cell.value = f"{float(str(cell.value).replace(',', '.')) * factor:.10g}".replace(".", ",")
+        book["Hang oben"][f"{column}6"] = unit
+
+    return scale
+
+
+def _exchanged(first: int, last: int) -> Callable[[Workbook], None]:
+    """Loads and depths exchanged in some rows."""
+
+    def exchange(book: Workbook) -> None:
+        for row in range(first, last + 1):
+            left, right = (book["Hang oben"][f"{column}{row}"] for column in "CD")
+            left.value, right.value = right.value, left.value
+
+    return exchange
+
+
+def _dates_as_text(book: Workbook) -> None:
+    for row, text in zip(range(5, 13), ["Datum", None, *["14.02.2026"] * 6], strict=True):
+        book["Hang oben"][f"F{row}"] = text
+
+
+def _merged_to_the_right(book: Workbook) -> None:
+    for area in ("A1:H1", "A2:H2", "A4:E4", "A14:E14", "E7:E9"):
+        book["Hang oben"].merge_cells(area)
+
+
+def _density_with_pressures(book: Workbook) -> None:
+    """A column of densities, and no heading that states the load: not a table of densities."""
+    for place, text in (("C5", "Druck"), ("C6", "kPa"), ("E5", "Dichte"), ("E6", "kg/m³"), ("E7", 410), ("E10", 410)):
+        book["Hang oben"][place] = text
+
+
+def _without_units(book: Workbook) -> None:
+    for column in "ABCD":
+        book["Hang oben"][f"{column}6"] = None
+
+
+def _hidden_copy(book: Workbook) -> None:
+    _second_sheet(book)
+    book["Alle Daten"].sheet_state = "hidden"
+
+
 TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
 
 
@@ -174,6 +236,17 @@ TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
         _load_first,
         _grams,
         _units_in_headings,
+        _in_language("Test", "Edge angle", "Load", "Penetration depth", "Remark", "Depth", "Lever arm", "Torque"),
+        _in_language(
+            "Essai", "Angle de carre", "Charge", "Profondeur", "Remarque", "Profondeur", "Bras de levier", "Moment"
+        ),
+        _in_language("Prova", "Angolo", "Carico", "Profondità", "Note", "Profondità", "Braccio", "Momento"),
+        _scaled("C", G, "N"),
+        _scaled("C", G / 10.0, "daN"),
+        _scaled("D", 0.1, "cm"),
+        _exchanged(5, 12),
+        _dates_as_text,
+        _merged_to_the_right,
         _set("Hang oben", "A3", "Ort: Hang oben"),
         _set("Hang oben", "C5", "Gewicht"),
         _set("Hang oben", "C5", "Masse"),
@@ -193,6 +266,14 @@ def test_variants_with_the_same_statements_give_the_same_numbers(change: Callabl
 
 
 OPEN = [
+    (_scaled("C", G, None), {"unit": {"penetration.Last": "N"}}),
+    (_scaled("D", 0.1, None), {"unit": {"penetration.Eindringtiefe": "cm"}}),
+    (_exchanged(5, 6), {}),
+    (_density_with_pressures, {}),
+    (_without_units, {"unit": {"penetration.Kantwinkel": "°", "penetration.Last": "kg",
+        "penetration.Eindringtiefe": "mm"}}),
+    (_hidden_copy, {"table": {"Alle Daten:5": "-", "Alle Daten:15": "-"}}),
+    (_insert_row(13, ["ab hier Stempel 2,1 kg dazu"]), {"ignore": {"Hang oben!13": "yes"}}),
     (_set("Hang oben", "C6", None), {"unit": {"penetration.Last": "kg"}}),
     (_set("Hang oben", "C6", "lbs"), {}),
     (_set("Hang oben", "D16", None), {}),
@@ -239,13 +320,13 @@ def test_thousands_separators_are_not_decimal_marks() -> None:
     sheet = book["Hang oben"]
     _numbers(book)
     for row in range(7, 13):
-        sheet[f"C{row}"] = "1,250"
+        sheet[f"C{row}"] = "12,500"
     sheet["C6"] = "g"
     assert [question.key for question in propose(FILE, bytes_of(book)).questions] == ["decimal"]
     with_comma = propose(FILE, bytes_of(book), Answers(cells={"decimal": ","}))
     campaign = campaign_of_files(with_comma.files)
     assert campaign.penetration is not None
-    assert campaign.penetration.load[0] == pytest.approx(1.25e-3 * G)
+    assert campaign.penetration.load[0] == pytest.approx(12.5e-3 * G)
 
 
 def test_points_between_thousands_are_asked_for_where_commas_are_decimal_marks() -> None:

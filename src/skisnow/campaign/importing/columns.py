@@ -192,6 +192,7 @@ _QUALIFIED: Final = re.compile(
     r"plus|minus|zuzüglich|abzüglich|neu|new|alt|old|korrektur|nullpunkt|offset)\b|≈|~",
     re.IGNORECASE,
 )
+_LOAD: Final = re.compile(rf"{_NUMBER}\s*(?:kg|kp|k?N|daN|N ?c?m)\b(?!\s*/)", re.IGNORECASE)
 MEASURED: Final = ("edge_angle_deg", "load_N", "depth_mm", "lever_arm_mm", "moment_Nm")
 
 
@@ -284,7 +285,7 @@ def _plain(text: str) -> str:
 
 
 def is_about_numbers(note: Note) -> bool:
-    """True for a note on measured numbers that may change them: a word for one, with a number or a limiting word."""
+    """True for a note that may change measured numbers: a load or moment, or a word for a number with a limit to it."""
     words = letters(note.text).split()
     synonyms = {word for column in MEASURED for word in SYNONYMS[column] if len(word) > 2}
     named = any(
@@ -292,4 +293,4 @@ def is_about_numbers(note: Note) -> bool:
         for word in words
     )
     rest = _DAY.sub("", note.text)
-    return named and bool(re.search(r"\d", rest) or _QUALIFIED.search(rest))
+    return bool(_LOAD.search(rest)) or (named and bool(re.search(r"\d", rest) or _QUALIFIED.search(rest)))

@@ -4,21 +4,30 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
+from typing import Final
+
+import numpy as np
 
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
+from ..._support.units import N_PER_MM3
 from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
 from ..reading.table_forms import TableForm
+from ..records import Campaign
 from .answers import NONE, Answers, Question, ask, is_asked
 from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
 from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
 from .rows import ImportedTable, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
 from .sheets import KINDS, Ignored, Sheet, read_sheets
+
+SOFTEST: Final = 1e-4
+HARDEST: Final = 1e3
+"""Median H_V (N/mm³) far beyond the range of 0.022 to 90 that was measured (assumption)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +98,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     if not problems:
         described = _description(name, data, answers, tables, tools, plates, notes)
         files = campaign_files(_merged(tables), described, name, data)
-        problems = _problems(name, files, tables)
+        problems = _problems(name, files, tables, is_stated=bool(answers.unit))
     return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
 
 
@@ -290,16 +299,40 @@ def _description(
     )
 
 
-def _problems(name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTable]) -> tuple[Problem, ...]:
+def _problems(
+    name: str, files: Mapping[str, bytes], tables: Sequence[ImportedTable], *, is_stated: bool
+) -> tuple[Problem, ...]:
     """Errors of the campaign, with sheet and row of the file."""
     try:
-        campaign_of_files(files)
+        campaign = campaign_of_files(files)
     except FieldDataError as failure:
         problems = [
             problem for problem in failure.problems if isinstance(problem, Problem) and problem.severity == "error"
         ]
         return tuple(_at_source(name, problem, tables) for problem in problems)
-    return ()
+    return () if is_stated else tuple(_far_from_snow(name, campaign))
+
+
+def _far_from_snow(name: str, campaign: Campaign) -> Iterator[Problem]:
+    """An error for a median H_V that no snow has: columns are exchanged, or a stated unit is wrong."""
+    if (tests := campaign.penetration) is None:
+        return
+    last = tests.first[1:] - 1
+    volume = [
+        float(campaign.tools[tool].displaced_volume(depth, angle))
+        for tool, depth, angle in zip(tests.tool, tests.penetration_depth[last], tests.edge_angle, strict=True)
+    ]
+    loads = zip(tests.load[last].tolist(), volume, strict=True)
+    hardness = [load / size / N_PER_MM3 for load, size in loads if load > 0.0 and size > 0.0]
+    middle = float(np.median(hardness)) if hardness else SOFTEST
+    if not SOFTEST <= middle <= HARDEST:
+        yield error(
+            "implausible_hardness",
+            name,
+            value=Message("a median H_V of {middle:.3g} N/mm³", middle=middle),
+            allowed=Message("{low:g} to {high:g} N/mm³", low=SOFTEST, high=HARDEST),
+            action=Message("Correct the headings and units of load and depth, or state them by --column and --unit."),
+        )
 
 
 def _at_source(name: str, problem: Problem, tables: Sequence[ImportedTable]) -> Problem:

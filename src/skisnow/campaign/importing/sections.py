@@ -358,28 +358,36 @@ def _named_value(text: str) -> tuple[str, str]:
 
 
 def table_of(section: Section, answers: Answers) -> TableForm | None:
-    """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None."""
+    """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None.
+
+    It is also None if another table has two needed numbers that the best one does not have.
+    """
     answer = answers.table.get(section.key, "")
     if answer in KINDS:
         return KINDS[answer]
     counts: dict[str, int] = {}
+    numbers: dict[str, set[str]] = {}
     for name, form in KINDS.items():
         stated = {
             answers.of_heading("column", name, heading) or stated_column(form, heading) for heading in section.headings
         }
-        needed = [column.name for column in form.numbers if column.needed]
-        if all(column in stated for column in needed):
+        needed = {column.name for column in form.numbers if column.needed}
+        numbers[name] = needed & stated
+        if needed <= stated:
             counts[name] = len(needed)
     most = max(counts.values(), default=0)
     best = [name for name, count in counts.items() if count == most]
-    return KINDS[best[0]] if len(best) == 1 else None
+    if len(best) != 1 or any(len(others - set(KINDS[best[0]].known)) > 1 for others in numbers.values()):
+        return None
+    return KINDS[best[0]]
 
 
 def likely_table(section: Section) -> str:
-    """Name of the table with the largest share of likely columns."""
+    """Name of the table with the most needed numbers among its likely columns, then with the largest share of them."""
 
-    def share(form: TableForm) -> float:
-        needed = [column.name for column in form.numbers if column.needed]
-        return len(set(needed) & set(likely_columns(form, section.headings).values())) / len(needed)
+    def fit(form: TableForm) -> tuple[int, float]:
+        needed = {column.name for column in form.numbers if column.needed}
+        count = len(needed & set(likely_columns(form, section.headings).values()))
+        return count, count / len(needed)
 
-    return max(KINDS, key=lambda name: share(KINDS[name]))
+    return max(KINDS, key=lambda name: fit(KINDS[name]))
