@@ -34,7 +34,7 @@ from .test_jacobian import conditions
 CASE: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0}
 FEDEROLF = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
 LENGTH, WIDTH = 1.6, 0.065
-GROOVES = [{}, {"groove": "path"}]
+GROOVES: list[dict[str, Any]] = [{}, {"groove": "path", "elements": 40}]
 
 
 def alike(found: Equilibrium, expected: Equilibrium, rel: float) -> None:
