@@ -1,6 +1,7 @@
 """Snow that varies over the place: contents of the file, order of precedence, and refusals."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +14,15 @@ from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.forces.penetration import LayeredPoint, ProfilePoint
 from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
-from skisnow.scenario import SnowMap, load_scenario, read_snow_map, scenario_file
+from skisnow.scenario import Profile, SnowMap, load_scenario, read_snow_map, scenario_file
+from skisnow.scenario.plausibility import implausible_values
 from skisnow.scenario.run_settings import Start
 from skisnow.scenario.sledge import Shear
 from skisnow.scenario.snow_layers import read_snow_layers
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises
+from tests.forces.friction.test_law_file import STATES
 from tests.key_names import DAMPING, IGNORE_RANGE_WARNING
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
@@ -269,3 +272,51 @@ def test_machining_takes_half_of_the_snows_stress_or_its_own() -> None:
 
 def test_a_run_starts_where_x_and_y_begin() -> None:
     assert (Start(speed=5.0).x, Start(speed=5.0).y) == (0.0, 0.0)
+
+
+def test_friction_is_that_of_a_law_file_or_a_line(tmp_path: Path) -> None:
+    path = tmp_path / "friction.toml"
+    path.write_text(STATES, encoding="utf-8")
+    changes: dict[str, Any] = {"friction.mu_0": 0.0, "friction.law_file": str(path), "friction.temperature_C": -8.0}
+    cold = load_scenario("carved-46m", changes=changes).contact
+    assert cold.friction_at(2.0) == pytest.approx(0.0425)  # half-way between two states of the file
+    assert cold.friction_law is not None
+    wet = replace(cold, temperature=0.0, liquid_water=0.5)
+    assert wet.glide_friction == cold.friction_law.at(0.0, 0.5) != cold.glide_friction
+    with raises(ParameterError, "not_supported"):
+        cold.require_linear_friction()
+    line = load_scenario("carved-46m", changes={"mu_0": 0.05, "mu_1_s_per_m": 0.002}).contact
+    line.require_linear_friction()
+    assert line.friction_at(3.0) == pytest.approx(0.056)
+    assert float(line.glide_friction.coefficient(3.0)) == pytest.approx(0.056)
+    for contact, wrong in (
+        (line, {"temperature": -5.0}),
+        (line, {"liquid_water": 1.0}),
+        (cold, {"friction": 0.05}),
+        (cold, {"friction_by_speed": 0.001}),
+    ):
+        with raises(ParameterError, "contradiction"):
+            replace(contact, **wrong)  # type: ignore[arg-type]
+
+
+def test_growing_hardness_alone_is_a_law_and_needs_one_hardness(tmp_path: Path) -> None:
+    contact = load_scenario("carved-46m").contact
+    growing, hardness = replace(contact, hardness_growth=20.0), contact.snow.snow_hardness
+    assert growing.penetration == LayeredPoint(hardness, 10.0, 1e3, hardness, 20.0)
+    strength, share = (Grid.along([0.0, 9.0], np.array(values)) for values in ([3e5, 4e5], [0.5, 0.6]))
+    assert replace(growing, snow_map=SnowMap(failure_shear_stress=strength, friction_share=share)).is_layered
+    (tmp_path / "layers.csv").write_text("depth_mm,hardness_share\n0,1\n5,10\n", encoding="utf-8")
+    layers = read_snow_layers(tmp_path / "layers.csv")
+    for wrong in ({"snow_map": SnowMap(hardness=Grid.along([0.0, 9.0], np.array([1e8, 2e8])))}, {"layers": layers}):
+        with raises(ParameterError, "contradiction"):
+            replace(growing, **wrong)
+
+
+@pytest.mark.parametrize(("angle_deg", "warnings"), [(10.0, 1), (18.0, 0)])
+def test_the_drop_of_a_course_is_that_of_its_slope(angle_deg: float, warnings: int) -> None:
+    """A plane, and a profile that falls as far for each metre of x."""
+    given = {"course.name": "giant-slalom-20-gates", "course.discipline": "giant-slalom", "slope.angle_deg": angle_deg}
+    x = np.linspace(-50.0, 800.0, 200)
+    plane = load_scenario("carved-46m", changes=given)
+    for each in (plane, plane.with_(slope=Profile(x, -math.sin(math.radians(angle_deg)) * x))):
+        assert sum("FIS" in text for text in implausible_values(each)) == warnings
