@@ -100,3 +100,16 @@ def test_the_editor_of_a_ski_and_its_drawing_are_side_by_side_on_a_laptop(page: 
     assert factor is not None and factor["y"] + factor["height"] <= 800
     for box in results:
         assert box is not None and box["y"] + box["height"] <= 800 and box["x"] > factor["x"] + factor["width"]
+
+
+def test_the_hardness_stays_in_view_while_depths_are_typed_on_a_phone(page: Page, served: Served) -> None:
+    page.set_viewport_size({"width": 390, "height": 600})
+    create(page, served)
+    enter_series(page, "1")
+    ready(page)
+    value = page.get_by_text("H_V =")
+    value.wait_for()
+    for depth in page.get_by_label("Depth under").all():
+        depth.evaluate("each => { each.focus(); each.scrollIntoView({ block: 'end' }); }")
+        boxes = [each.bounding_box() for each in (value, depth)]
+        assert all(box is not None and box["y"] >= 0 and box["y"] + box["height"] <= 600 for box in boxes)
