@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -192,8 +193,9 @@ class StationTable:
         apart = np.abs(np.diff(y))
         apart = np.where(apart > 0.0, apart, np.inf)
         steps = np.minimum(_STEP * y, 0.1 * np.minimum(np.append(apart, np.inf), np.append(np.inf, apart)))[:, None]
-        slopes = (_slopes(x, y + steps * ones) - _slopes(x, y - steps * ones)) / (2.0 * steps)
-        return _cubic(x, ones, slopes, station)[::-1]
+        higher, lower = np.split(_slopes(x, np.concatenate([y + steps * ones, y - steps * ones])), 2)
+        by_value, by_slope = _hermite(x.tobytes(), station.tobytes())
+        return np.asarray(by_value + (higher - lower) / (2.0 * steps) @ by_slope)[::-1]
 
 
 _STEP: Final = 1e-5  # relative change of one row: both errors of the difference of its slopes are about 1e-10
@@ -209,6 +211,14 @@ def _cubic(x: FloatArray, y: FloatArray, slope: FloatArray, station: FloatArray)
     return np.asarray(
         y[..., at] + t * (first + t * (3.0 * rise - 2.0 * first - last + t * (first + last - 2.0 * rise)))
     )
+
+
+@functools.lru_cache(maxsize=32)
+def _hermite(x: bytes, station: bytes) -> tuple[FloatArray, FloatArray]:
+    """Growth of the cubics at stations with the value at each point, and with its slope, each (points, stations)."""
+    points, at = np.frombuffer(x), np.frombuffer(station)
+    ones, zeros = np.eye(points.size), np.zeros((points.size, points.size))
+    return _cubic(points, ones, zeros, at), _cubic(points, zeros, ones, at)
 
 
 def _slopes(x: FloatArray, y: FloatArray) -> FloatArray:
