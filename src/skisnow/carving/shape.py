@@ -155,27 +155,25 @@ def _widest(ski: Ski, clamp_length: float, elements: int) -> int:
 class Shapes:
     """Growth of a ski with several parameters, a row each: `Shape.numbers`, sections, stiffness of those at rest.
 
-    `moving`: names of the parameters that move nodes.
+    `moving`: names of the parameters that move nodes; `tables`: growth of station, width and height of the base.
     """
 
     ski: Ski
     names: tuple[str, ...]
     moving: frozenset[str]
+    tables: FloatArray
     numbers: FloatArray
     sections: FloatArray
     stiffness: FloatArray
 
     def sections_at(self, place: FloatArray) -> FloatArray:
         """Growth of width and height of the base with each parameter at fixed places (p, 2 k)."""
-        lines, out = (
-            _lines_at(self.ski.station.tobytes(), tuple(place.tolist())),
-            np.zeros((len(self.names), 2, len(place))),
-        )
+        lines = _lines_at(self.ski.station.tobytes(), tuple(place.tolist()))
+        out = lines.along(self.tables[:, 1:])
         for row, name in enumerate(self.names):
-            by_station, *sections = table_growth(self.ski, name).tables[:3]
-            out[row] = lines.along(np.array(sections))
             if name in self.moving:
-                out[row] += lines.moved(np.array([self.ski.width, self.ski.base_height]), by_station, 0.0 * place)
+                own = np.array([self.ski.width, self.ski.base_height])
+                out[row] += lines.moved(own, self.tables[row, 0], 0.0 * place)
         return out.reshape(len(out), 2 * len(place))
 
 
@@ -185,13 +183,14 @@ def stacked_shapes(ski: Ski, names: tuple[str, ...], clamp_length: float, elemen
     shapes = [shape_growth(ski, name, clamp_length, elements) for name in names]
     stations = len(_mesh(ski.station.tobytes(), clamp_length, elements).stations.row)
 
-    def stacked(rows: list[FloatArray], size: int) -> FloatArray:
-        return np.array(rows, float).reshape(len(names), size)
+    def stacked(rows: list[FloatArray], *size: int) -> FloatArray:
+        return np.array(rows, float).reshape(len(names), *size)
 
     return Shapes(
         ski,
         names,
         frozenset(name for name, shape in zip(names, shapes, strict=True) if shape.moves),
+        stacked([table_growth(ski, name).tables[:3] for name in names], 3, len(ski.station)),
         stacked([shape.numbers for shape in shapes], 4),
         stacked([shape.sections for shape in shapes], 2 * stations),
         stacked([0.0 * shape.stiffness if shape.moves else shape.stiffness for shape in shapes], 4 * stations),
@@ -211,11 +210,9 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
     if not (lengthens or growth.stiffens):
         return out
     bending, torsion = growth.stiffness
-    value = _values(model, u)
-    length, curvature = _curvature(model)
-    kappa = np.einsum("ngi,ni->ng", curvature, value)
+    value, (length, curvature) = _values(model, u), _curvature(model)
+    kappa, turn = curvature_and_turn(model, u)
     weight = GAUSS_WEIGHTS * length[:, None]
-    turn = (value[:, 5] - value[:, 2]) / length
     force = np.einsum("ng,ngi->ni", weight * bending * kappa, curvature)
     if lengthens:
         stiff = model.ski.at(model.node[:-1, None] - length[:, None] * GAUSS_POINTS)
@@ -226,7 +223,7 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
         grown = stiff.bending_stiffness * np.einsum("ngi,ni->ng", falls, value) + moment * stretch[:, :, 0]
         force += np.einsum("ng,ngi->ni", weight * grown, curvature) + np.einsum("ng,ngi->ni", weight * moment, falls)
         torsion = torsion - stiff.torsional_stiffness * stretch[:, :, 0]
-    torque = torsion @ GAUSS_WEIGHTS * turn
+    torque = torsion @ GAUSS_WEIGHTS * turn[:, 0]
     force[:, 5] += torque
     force[:, 2] -= torque
     np.add.at(out, model.dof[model.dof >= 0], force[model.dof >= 0])
@@ -235,11 +232,8 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
 
 def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Curvature at the Gauss points (n, 4) and rate of twist of the elements (n, 1) for unknowns of the beam."""
-    value, length = _values(model, u), _lengths(model)[:, None]
-    z = GAUSS_POINTS[None, :]
-    bend = (12.0 * z - 6.0) / length**2 * (value[:, :1] - value[:, 3:4])
-    slopes = (6.0 * z - 4.0) / length * value[:, 1:2] + (6.0 * z - 2.0) / length * value[:, 4:5]
-    return bend + slopes, (value[:, 5:] - value[:, 2:3]) / length
+    value, (length, curvature) = _values(model, u), _curvature(model)
+    return np.einsum("ngi,ni->ng", curvature, value), (value[:, 5:] - value[:, 2:3]) / length[:, None]
 
 
 def beam_gradient(model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoint: FloatArray) -> FloatArray:

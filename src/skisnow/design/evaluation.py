@@ -103,21 +103,23 @@ class Evaluator:
 
     def output_growth(self, point: CarveDerivatives, output: str, z: FloatArray) -> FloatArray:
         """Growth of an output at a condition with each variable, from 0 to 1 of its bounds."""
-        combined = [combined_names(variable.name) for variable in self.task.variables]
+        variables, values = self.task.variables, self.values(z).tolist()
+        combined = [combined_names(variable.name) for variable in variables]
         growths = iter(point.derivatives(output, tuple(name for names in combined for name in names)).tolist())
+        # factors of a list of stiffness multiply its rows
+        factors = {
+            COMBINED[variable.name][0]: value
+            for variable, value in zip(variables, values, strict=True)
+            if variable.name in COMBINED and variable.name != "sidecut_mm"
+        }
         out = []
-        for variable, names, value in zip(self.task.variables, combined, self.values(z), strict=True):
-            growth = sum(next(growths) for _ in names)
-            out.append(growth * variable.width * self._factor(variable.name, value, z))
+        for variable, names in zip(variables, combined, strict=True):
+            growth = variable.width * sum(next(growths) for _ in names)
+            key, _, row = variable.name.partition("[")
+            if variable.name in COMBINED:
+                growth /= factors.get(COMBINED[variable.name][0], 1.0)
+            out.append(growth * factors.get(key, 1.0) if row else growth)
         return np.array(out)
-
-    def _factor(self, name: str, value: float, z: FloatArray) -> float:
-        """Factor of a ski parameter by a variable: factors and rows of a list are multiplied."""
-        if name in COMBINED:
-            return 1.0 if name == "sidecut_mm" else 1.0 / value
-        places = zip(self.task.variables, self.values(z), strict=True)
-        factors = {COMBINED[combined.name][0]: float(at) for combined, at in places if combined.name in COMBINED}
-        return factors.get(name.partition("[")[0], 1.0) if "[" in name else 1.0
 
     def _chosen(self, goal: Goal, z: FloatArray) -> list[CarveDerivatives]:
         """Equilibria at the conditions of a goal (default: all)."""
