@@ -27,6 +27,7 @@ from skisnow.carving.shape import shape_growth
 from skisnow.carving.solve import _core_ski, refined, solved
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.problem import Search
+from skisnow.design.search import begins_of
 from skisnow.design.task import Goal, design_task
 from skisnow.ski import read_ski
 from skisnow.ski.beam import clamped
@@ -53,6 +54,7 @@ TASK: Final[dict[str, Any]] = {
         {"output": "turn_radius_boot_m", "target": 12.0, "over": "worst"},
         {"output": "grip_utilisation", "at_most": 0.58},
     ],
+    "starts": 24,
 }
 
 
@@ -67,17 +69,15 @@ class Differences(Evaluator):
         return np.array([(self.goal_values(goal, z + self.step * one) - here) / self.step for one in np.eye(len(z))]).T
 
 
-def searched(evaluator: Evaluator, starts: int) -> tuple[float, int, float]:
-    """Best objective, equilibria and processor time (s) of a search from some starts."""
+def searched(evaluator: Evaluator) -> tuple[float, int, float]:
+    """Best objective, equilibria and processor time (s) of a search from the starts of its task."""
     search = Search(evaluator)
-    random = np.random.default_rng(1)
-    begins = [evaluator.start, *random.uniform(0.2, 0.8, (starts - 1, search.count))]
     began = time.process_time()
-    best = min(search.result(search.run(begin)) for begin in begins)
+    best = min(search.result(search.run(begin)) for begin in begins_of(evaluator))
     return best, evaluator.equilibria, time.process_time() - began
 
 
-def compare_searches(repetitions: int = 3, starts: int = 2) -> None:
+def compare_searches(repetitions: int = 3) -> None:
     """Print one row for each way."""
     seconds: dict[float, list[float]] = {step: [] for step in (0.0, *STEPS)}
     results: dict[float, tuple[float, int]] = {}
@@ -86,7 +86,7 @@ def compare_searches(repetitions: int = 3, starts: int = 2) -> None:
             evaluator = Differences(design_task(TASK)) if step else Evaluator(design_task(TASK))
             if isinstance(evaluator, Differences):
                 evaluator.step = step
-            *results[step], spent = searched(evaluator, starts)  # type: ignore[assignment]
+            *results[step], spent = searched(evaluator)  # type: ignore[assignment]
             times.append(spent)
     print(f"{'derivatives':12} {'objective':>14} {'equilibria':>11} {'processor s, least':>19} {'median':>7}")
     for step, (objective, equilibria) in results.items():
