@@ -18,15 +18,10 @@ from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
 from skisnow.web.transfer import entry_files, kept_files, write_entry
-from skisnow.web.uploads import add_uploaded
 from tests.coded import raises
 
 from ..campaign.recordings import plain_snow
-from ..support.user_files.test_workbook import packed
 from .campaign_texts import DESK
-
-pass
-
 
 TOML = DESK
 ROWS = [("20", "1.5"), ("40", "2.1"), ("60", "2.6")]
@@ -155,49 +150,6 @@ def test_a_damaged_file_is_not_analysed(lab: Lab, tmp_path: Path) -> None:
         connection.exec_driver_sql("UPDATE chunk SET data = CAST(replace(CAST(data AS TEXT), '2.6', '9.9') AS BLOB)")
     with raises(StoreError, "damaged"):
         kept_files(lab, id_)
-
-
-def workbook(**further: list[list[str]]) -> bytes:
-    """The same campaign in sheets, with German headings."""
-    header = ["Versuch", "Hang", "tool", "Kantwinkel [°]", "load_N", "depth_mm"]
-    rows = [[name, "A", "ski piece", "30", load, depth.replace(".", ",")] for name in "12" for load, depth in ROWS]
-    return packed(
-        campaign=[["key", "value"], ["name", "Desk"]],
-        tools=[["name", "shape", "length_mm", "width_mm"], ["ski piece", "ski", "200", "62"]],
-        columns=[
-            ["heading", "column"],
-            ["Versuch", "experiment"],
-            ["Hang", "site"],
-            ["Kantwinkel [°]", "edge_angle_deg"],
-        ],
-        penetration=[header, *rows],
-        **further,
-    )
-
-
-def uploaded(lab: Lab, place: Path, content: bytes) -> str:
-    place.mkdir()
-    (place / "0").write_bytes(content)
-    return add_uploaded(lab.store.path, str(place), ["Hang.xlsx"], lab.limits)
-
-
-def test_a_workbook_is_imported_analysed_and_corrected(lab: Lab, tmp_path: Path) -> None:
-    """It gives what the command gives of it, before and after a correction; it stays byte for byte."""
-    content = workbook()
-    id_ = uploaded(lab, tmp_path / "upload", content)
-    assert lab.store.show(id_).name == "Desk"
-    (tmp_path / "Hang.xlsx").write_bytes(content)
-    numbers = analyse_files(kept_files(lab, id_), Choice())
-    assert isinstance(numbers, Numbers)
-    theirs = analyse(read_campaign(tmp_path / "Hang.xlsx")).results["penetration"]
-    assert numbers.analysis.results["penetration"] == theirs
-    correct(lab, id_)
-    export_corrected(lab.store, id_, tmp_path / "export")
-    assert (tmp_path / "export" / "Hang.xlsx").read_bytes() == content
-    corrected = analyse_files(kept_files(lab, id_), Choice())
-    assert isinstance(corrected, Numbers)
-    again = analyse(read_campaign(tmp_path / "export")).results["penetration"]
-    assert corrected.analysis.results["penetration"] == again != theirs
 
 
 @pytest.mark.usefixtures("svg_alone")

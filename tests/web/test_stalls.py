@@ -28,7 +28,6 @@ if not hasattr(signal, "SIGSTOP"):
     pytest.skip("no process can be stopped here", allow_module_level=True)
 
 STALL_S = 60.0
-HELD = "JSON.parse(sessionStorage.getItem('skisnow.page.' + location.pathname))?.held?.length"
 UNANSWERED = "Object.keys(localStorage).filter((key) => key.startsWith('skisnow.reading'))"
 
 
@@ -95,39 +94,6 @@ def test_a_series_while_the_lab_stands_still(page: Page, served: Served, seconds
     page.wait_for_function(f"{UNANSWERED}.length === 0")
 
 
-@of_seconds()
-def test_a_campaign_is_described_while_the_lab_stands_still(page: Page, served: Served, seconds: float) -> None:
-    """A hand goes on by Tab and Enter: into a row that is not there yet, then into the first series."""
-    page.goto(f"{served.address}describe")
-    fill(page, {"Length (mm) of tool 1": "200", "Width (mm) of tool 1": "62"})
-    page.get_by_label("Name of tool 1", exact=True).fill("pie")
-    page.evaluate("window.isSamePage = true")
-    with stopped(served, seconds):
-        page.keyboard.type("ce")
-        page.get_by_label("Disc loads (N), with blanks between", exact=True).press("Control+a")
-        page.keyboard.type("20 40 60")
-        page.get_by_role("button", name="Another tool").press("Enter")
-        page.keyboard.type("disc\n50\n40\n")
-        page.wait_for_function(f"{HELD} === 12")  # with the Enter on the button
-    page.wait_for_function("document.activeElement.getAttribute('aria-label') === 'Name of plate 1'")
-    ready(page)
-    page.get_by_label("Name of the campaign", exact=True).press("End")
-    with stopped(served, seconds):
-        page.keyboard.type("one")
-        page.get_by_role("button", name="Store and enter tests").press("Enter")
-        assert page.evaluate("window.isSamePage")
-        page.keyboard.type("A\n30\n1.5\n")
-        page.wait_for_function(f"{HELD} === 9")
-    page.get_by_text("Stored: 1.5 mm under 20 N.").wait_for()
-    page.keyboard.type("2.5\n")
-    page.get_by_text("Stored: 2.5 mm under 40 N.").wait_for()
-    assert depths(served) == {"1": ["1.5", "2.5"]}
-    described = the_description(served)
-    assert described["name"] == "one" and described["load_steps_N"] == [20.0, 40.0, 60.0]
-    tools = [(each["name"], each["length_mm"], each["width_mm"]) for each in described["tool"]]
-    assert tools == [("piece", 200.0, 62.0), ("disc", 50.0, 40.0)]
-
-
 def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> None:
     page.goto(f"{served.address}describe")
     fill(page, {"Name of the campaign": "one", "Disc loads (N), with blanks between": "20 40"})
@@ -162,20 +128,6 @@ def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> Non
     ]
     plates = [tuple(each.values()) for each in described["plate"]]
     assert plates == [("plate", 100.0), ("second", 200.0), ("third", 300.0)]  # the first one was there
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seconds", [8.0, STALL_S])
-def test_a_browser_that_stands_still(page: Page, served: Served, seconds: float) -> None:
-    opened(page, served)
-    page.keyboard.type("A\n30\n1.5\n2.1")
-    page.evaluate("window.isSamePage = true")
-    page.set_default_timeout(120_000)
-    page.evaluate("(ms) => { const end = Date.now() + ms; while (Date.now() < end); }", 1000 * seconds)
-    page.keyboard.type("5\n2.6\n")
-    page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
-    assert depths(served) == {"1": ["1.5", "2.15", "2.6"]}
-    assert page.evaluate("window.isSamePage")
 
 
 def killed_while(page: Page, served: Served, typed: str) -> None:
@@ -236,21 +188,6 @@ def test_half_typed_text_outlives_a_reload_and_a_restart(page: Page, served: Ser
     page.keyboard.type("5\n")
     page.get_by_text("Stored: 2.15 mm under 40 N.").wait_for()
     assert depths(served) == {"1": ["1.5", "2.15"]}
-
-
-def test_a_half_typed_correction_stays_with_its_row(page: Page, served: Served) -> None:
-    opened(page, served, "?table=shear.csv")
-    fill(page, {"Site": "B", "Edge angle (°)": "90", "Depth (mm)": "6", "Lever arm (mm)": "250", "Moment (N m)": "30"})
-    page.get_by_role("button", name="Store").click()
-    page.get_by_text("Stored: test 1.").wait_for()
-    page.get_by_role("button", name="Correct 1").click()
-    page.get_by_role("heading", name="Correct a test").wait_for()
-    fill(page, {"Moment (N m)": "36"})
-    page.reload()
-    ready(page)
-    page.get_by_role("heading", name="Correct a test").wait_for()
-    has_text(page.get_by_label("Moment (N m)", exact=True), "36")
-    has_text(page.get_by_label("Depth (mm)", exact=True), "6")
 
 
 @pytest.mark.parametrize("was_stored", [pytest.param(False, marks=pytest.mark.slow), True])

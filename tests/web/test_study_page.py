@@ -16,11 +16,11 @@ from skisnow.studies import read_study, run_study
 from skisnow.web.replay_addresses import RunFolders, add_addresses
 
 from ..track.course.test_passages import folder_of
-from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready, settled
+from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready
 from .replay.test_addresses import Client
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Locator, Page
+    from playwright.sync_api import Page
 
 LONG_MS = 4 * PATIENCE_MS
 FIRST, SECOND = "First input", "Second input"
@@ -44,28 +44,6 @@ def unpacked(page: Page, folder: Path) -> Path:
     with zipfile.ZipFile(io.BytesIO(Path(download.value.path()).read_bytes())) as packed:
         packed.extractall(folder)
     return folder / "study"
-
-
-@pytest.mark.slow
-def test_its_table_is_that_of_the_command(page: Page, served_with_figures: Served, tmp_path: Path) -> None:
-    served = served_with_figures
-    ask(page, served, {f"{FIRST}: number of values": "3", "Load (N)": "600,5"})
-    page.get_by_text("3 points: equilibrium 3.").wait_for(timeout=LONG_MS)
-    page.get_by_role("link", name="Table and figure").click()
-    page.get_by_role("img", name="Chart of Carved radius (m) over Edge angle ϑ (°)").wait_for()
-    assert page.locator("tbody tr").count() == 3
-    page.wait_for_function("document.querySelector('figure img').naturalWidth > 100")
-    folder = unpacked(page, tmp_path)
-    assert sorted(each.name for each in folder.iterdir()) == ["map.svg", "study.toml", "table.csv"]
-    found = (folder / "table.csv").read_bytes()
-    (folder / "table.csv").unlink()
-    table = run_study(read_study(folder / "study.toml"), workers=1)
-    assert (folder / "table.csv").read_bytes() == found
-    assert [row["load_N"] for row in table.rows] == [600.5] * 3
-    for width in (1280, 390):
-        page.set_viewport_size({"width": width, "height": 844})
-        settled(page)
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 @pytest.mark.slow
@@ -146,45 +124,6 @@ def test_a_run_that_the_server_was_killed_in_is_restarted(page: Page, served: Se
 def choose(page: Page, label: str, option: str) -> None:
     page.get_by_label(label, exact=True).click()
     page.get_by_role("option", name=option).click()
-
-
-def pressed_while_it_goes_on(page: Page, button: Locator) -> None:
-    """The finger goes down, the progress is shown again, the finger goes up; the keyboard's focus stays."""
-    told = "document.querySelector('.card .progress:not(.hidden)').innerText"
-    button.hover()
-    page.mouse.down()
-    page.wait_for_function(f"before => {told} !== before", arg=page.evaluate(told))
-    button.and_(page.locator(":focus")).wait_for()
-    page.mouse.up()
-
-
-@pytest.mark.slow
-def test_a_cancelled_run_keeps_what_was_computed(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}simulate")
-    page.get_by_label("Ends after (s)", exact=True).fill("60")
-    page.get_by_label("Ends after a way of (m)", exact=True).fill("900")
-    page.locator("summary", has_text="Expert inputs").click()  # long to compute, and few rows to write
-    page.get_by_label("Distance of the snow lines (mm)", exact=True).fill("2")
-    page.get_by_label("Time between outputs (ms)", exact=True).fill("100")
-    for _ in range(2):
-        page.get_by_role("button", name="Simulate").click()
-        page.get_by_text("is in the queue.").wait_for()
-    page.get_by_text("times real time").wait_for(timeout=LONG_MS)
-    waiting = page.get_by_role("button", name="Cancel").first  # the newest is on top
-    waiting.click()
-    page.get_by_text("cancelled · It had not begun.").wait_for()
-    pressed_while_it_goes_on(page, page.get_by_role("button", name="Cancel"))
-    page.get_by_text("The results so far are kept.").wait_for(timeout=LONG_MS)
-    (place,) = (served.store.parent / "lab").glob("*/summary.json")
-    summary = json.loads(place.read_text(encoding="utf-8"))
-    assert summary["outcome"] == "interrupted"
-    assert 0.0 < summary["simulated_s"] < 60.0
-    assert {"run.nc", "track.csv", "report.html"} <= {each.name for each in place.parent.iterdir()}
-    page.get_by_role("link", name="Watch").click()
-    page.wait_for_function("window.skisnowReplay")
-    assert page.evaluate("skisnowReplay.run.arrays.time.values.at(-1)") == pytest.approx(
-        summary["simulated_s"], abs=0.11
-    )
 
 
 @pytest.mark.slow

@@ -6,7 +6,6 @@ import io
 import re
 import urllib.request
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -16,22 +15,18 @@ import pandas
 import pytest
 from PIL import Image
 
-from skisnow.campaign import read_campaign, write_reference
 from skisnow.campaign.store import Journals, NewEntry, Store
 from skisnow.carving.answer import answer_dict, answered
 from skisnow.carving.question import CARVE_KEYS, carve_question
-from skisnow.estimation import analyse, results_dict
 from skisnow.report.formatting import significant
-from skisnow.web.campaign_analysis import choosable_flags
 from skisnow.web.carved_turn import PANELS, RATIOS, SLIDERS
 from skisnow.web.widgets import STYLES
 
-from .conftest import DRAWING_MS, Served, downloaded_results, ready
+from .conftest import Served, ready
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page, WebSocketRoute
+    from playwright.sync_api import Page
 
-SEED = 3
 DESCRIPTION = """name = "growing"
 load_steps_N = [20, 40, 60]
 gauge_resolution_mm = 0.01
@@ -41,12 +36,6 @@ shape = "ski"
 length_mm = 200
 width_mm = 62
 """
-
-
-def kept_campaign(served: Served, folder: Path) -> str:
-    write_reference(folder, seed=SEED)
-    with Store.open(served.store) as store:
-        return store.add(folder).id
 
 
 def used(results: dict[str, object]) -> tuple[int, int]:
@@ -62,55 +51,6 @@ def html(served: Served, path: str) -> str:
     """The server's first answer to a browser."""
     with urllib.request.urlopen(served.address.rstrip("/") + path) as answer:
         return str(answer.read().decode())
-
-
-@pytest.mark.slow
-def test_one_experiment_less_by_choice(page: Page, served: Served, tmp_path: Path) -> None:
-    id_ = kept_campaign(served, tmp_path / "reference")
-    campaign = read_campaign(tmp_path / "reference")
-    results = results_dict(analyse(campaign))
-    pressed, sheared = used(results)
-    of_pressed, of_sheared = (len(results[kind]["experiments"]) for kind in ("penetration", "shear"))
-
-    def told(n: int) -> str:
-        return f"{of_pressed} penetration experiments, {n} used; {of_sheared} shear experiments, {sheared} used."
-
-    page.goto(f"{served.address}analysis/kept/{id_}")
-    assert used(downloaded_results(page)) == (pressed, sheared)  # asked for before there was anything
-    page.get_by_text(told(pressed), exact=True).wait_for(timeout=DRAWING_MS)
-    drawn = page.locator("figure img").count()
-    assert drawn >= 8
-    page.set_viewport_size({"width": 390, "height": 844})
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    assert page.locator(".scroll").first.evaluate("(box) => box.scrollWidth > box.clientWidth && box.clientWidth > 0")
-    page.set_viewport_size({"width": 1280, "height": 720})
-    page.locator("summary", has_text="Included experiments").press("Enter")
-    first = next(row for row in results["penetration"]["experiments"] if row["used"])
-    words = f"Penetration {first['experiment']}, {first['site']}, {first['edge_angle_deg']:g}°"
-    page.get_by_role("checkbox", name=words, exact=True).press("Space")
-    given = downloaded_results(page)  # of the new choice, while the old one is still shown
-    page.get_by_text(told(pressed - 1), exact=True).wait_for(timeout=DRAWING_MS)
-    assert page.locator("figure img").count() == drawn
-    row = next(row for row in given["penetration"]["experiments"] if row["experiment"] == first["experiment"])
-    assert not row["used"] and "cancelled" in row["flags"]
-    page.locator("summary", has_text="Exclude experiments with these quality flags").press("Enter")
-    box = page.get_by_role("checkbox", name=choosable_flags()["layered"], exact=True)
-    assert box.is_checked() == ("layered" in campaign.excluding)
-    box.press("Space")
-    excluding = campaign.excluding ^ {"layered"}
-    more = used(results_dict(analyse(replace(campaign, excluding=excluding))))[0]
-    assert more != pressed
-    page.get_by_text(told(more - ("layered" not in first["flags"])), exact=True).wait_for(timeout=DRAWING_MS)
-    page.locator("summary", has_text="Every penetration experiment").press("Enter")
-    page.locator("details[open] table").get_by_text(str(first["experiment"]), exact=True).wait_for()
-    page.set_viewport_size({"width": 390, "height": 844})
-    wide = page.locator(".table", has=page.locator("caption", has_text="Table 2")).first
-    wide.evaluate("(each) => each.scrollTo(each.scrollWidth, 0)")
-    assert wide.evaluate("(each) => each.scrollLeft") > 100
-    for stays in (wide.locator("caption"), wide.locator("tbody th").first):  # what the numbers are of
-        seen = stays.bounding_box()
-        assert seen is not None
-        assert seen["x"] >= 0 and seen["x"] + seen["width"] <= 390
 
 
 def test_the_numbers_are_there_with_the_page_until_something_is_entered(
@@ -143,72 +83,6 @@ def test_the_numbers_are_there_with_the_page_until_something_is_entered(
     assert "1 penetration experiment" not in html(served, path)
     page.reload()
     page.get_by_text("1 penetration experiment, 0 used").first.wait_for()
-
-
-def test_the_report_is_of_what_was_chosen_just_before(page: Page, served: Served, tmp_path: Path) -> None:
-    id_ = kept_campaign(served, tmp_path / "reference")
-    said: list[tuple[WebSocketRoute, str | bytes]] = []
-    is_slow = False
-
-    def pass_on(socket: WebSocketRoute) -> None:
-        lab = socket.connect_to_server()
-        socket.on_message(lambda message: said.append((lab, message)) if is_slow else lab.send(message))
-
-    page.route_web_socket("**/*", pass_on)
-    page.goto(f"{served.address}analysis/kept/{id_}")
-    page.locator(".status", has_text="used.").wait_for()
-    ready(page)
-    page.locator("summary", has_text="Included experiments").press("Enter")
-    first = page.get_by_role("checkbox", name=re.compile("^Penetration P001,"))
-    first.wait_for()
-    is_slow = True
-    first.press("Space")
-    with page.expect_popup() as opened:
-        page.get_by_role("link", name="Open the report").press("Enter")
-        is_slow = False
-        for lab, message in said:
-            lab.send(message)
-    report = opened.value
-    report.wait_for_load_state()
-    assert "cancelled" in report.content()
-
-
-TYPED = {
-    "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
-    "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
-    "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
-}  # fmt: skip
-DESIGN = {
-    "board": {
-        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
-        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
-        "nose width": "12 cm",
-        "edge shape": {"type": "Basic Arc"},
-    }
-}  # fmt: skip
-TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
-WITH_TABLE = """name = "my slalom"
-running_length_mm = 1396
-sidecut_length_mm = 1458
-mass_kg = 2.231
-GJ_N_m2 = [60, 140, 175, 140, 60]
-table = "rows.csv"
-"""
-
-
-def test_a_chart_has_the_numbers_of_the_language_and_its_words_side_by_side(page: Page, served: Served) -> None:
-    """On a phone the name of the axis stands above the words at its ends, where one row is too short for all."""
-    page.set_viewport_size({"width": 390, "height": 844})
-    page.set_extra_http_headers({"Accept-Language": "de"})
-    page.goto(f"{served.address}skis")
-    chart = page.locator("svg[role=img]").first
-    chart.get_by_text("−0,5", exact=True).wait_for()
-    assert chart.get_by_text("0.5").count() == 0
-    boxes = [chart.get_by_text(words).bounding_box() for words in ("◂ Ende", "Stelle (m), Schuh = 0", "Schaufel ▸")]
-    tail, name, tip = (box for box in boxes if box is not None)
-    assert name["y"] + name["height"] <= tail["y"] + 2 and tail["x"] + tail["width"] < tip["x"]
-    field = page.get_by_label("Breite (mm) bei 0,268 m", exact=True)
-    assert "," in field.input_value() and "." not in field.input_value()
 
 
 PARTS = ("forebody", "afterbody")
@@ -328,10 +202,3 @@ def test_a_ski_is_designed_on_a_telephone(page: Page, served: Served, tmp_path: 
         headline.get_by_text(f"{answer['ski']['name']}: carved radius {radius_now} m", exact=True).wait_for()
     check_curves(page, "design", answers)
     assert fits(page)
-
-
-def test_the_curves_of_a_carve_are_saved(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}carve?ski=slalom&other=carver")
-    page.get_by_role("region", name="Carved radius").get_by_text("slalom: carved radius").wait_for()
-    ready(page)
-    check_curves(page, "carve", [carve_answer(45.0, ski=ski) for ski in ("slalom", "carver")])

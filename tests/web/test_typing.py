@@ -47,17 +47,6 @@ def test_a_whole_series_and_the_next_without_a_pause(page: Page, served: Served)
     assert [row.cells["edge_angle_deg"] for row in rows] == ["45"] * 3
 
 
-def test_a_correction_and_its_reason_without_a_pause(page: Page, served: Served) -> None:
-    page.goto(begun(served))
-    page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()
-    page.keyboard.type("A\n30\n1.5\n22.5\n2.6\n")
-    page.get_by_text("Stored: 2.6 mm under 60 N.").wait_for()
-    page.get_by_label("Depth under 40 N (mm)").select_text()
-    page.keyboard.type("2.25\nthe point\n\n")
-    page.get_by_role("heading", name="New series").wait_for()  # the last Enter
-    assert depths(served) == {"1": ["1.5", "2.25", "2.6"]}
-
-
 def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
     page.goto(begun(served) + "?table=shear.csv", wait_until="commit")
     page.locator("fieldset.lab").wait_for(state="attached")
@@ -247,39 +236,6 @@ def test_pressed_twice_is_done_once(page: Page, served: Served) -> None:
     assert page.locator(".card").count() == 1
 
 
-def test_a_value_that_is_being_typed_is_not_drawn_over(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}skis")
-    page.get_by_label("EI (N m²) at 0.000 m", exact=True).wait_for()
-    page.get_by_role("row", name="EI at the boot").wait_for()  # the last of the page's own first drawing
-    ready(page)
-    page.get_by_label("EI (N m²) at 0.000 m", exact=True).fill("500")
-    page.get_by_label("GJ (N m²) at 0.000 m", exact=True).select_text()  # leaves the other, which is drawn now
-    page.keyboard.type("18")
-    page.get_by_role("cell", name="500 N m²").wait_for()
-    page.keyboard.type("0")
-    page.keyboard.press("Tab")
-    page.get_by_role("cell", name="180 N m²").wait_for()
-    has_text(page.get_by_label("GJ (N m²) at 0.000 m", exact=True), "180")
-
-
-def test_what_is_typed_for_a_run_is_neither_lost_nor_passed_over(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}simulate")
-    duration = page.get_by_label("Ends after (s)", exact=True)
-    duration.fill("500")
-    page.get_by_text("Takes about 8 min.").wait_for()  # no run has told how long it takes: as long as it simulates
-    duration.fill("")
-    page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("Not begun: Ends after (s) is empty; the scenario has 5").wait_for()
-    duration.fill("0,05")
-    page.get_by_label("Scenario", exact=True).click()
-    page.get_by_role("option").nth(1).click()
-    page.wait_for_function("document.querySelector('[aria-label=\"Ends after (s)\"]')?.value === '0.05'")
-    page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("Ends after (s): 0.05").wait_for()
-    assert page.locator(".card").count() == 1  # the refused one was not begun
-    page.get_by_role("button", name="Cancel").click()
-
-
 class HeldAnswers:
     """Answers of the lab to a page, which may be held back."""
 
@@ -328,26 +284,6 @@ def test_the_curve_follows_the_readings(page: Page, served: Served) -> None:
     assert sorted(top, reverse=True) == list(top)  # under more and more load, which counts upwards
 
 
-def test_a_phone_and_the_names_of_all_fields(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    page.set_viewport_size({"width": 390, "height": 844})
-    here = page.url
-    places = [served.address, f"{served.address}describe", here, here.split("?")[0] + "?table=shear.csv"]
-    places += [here.split("?")[0] + f"?table={file}" for file in ("density.csv", "drop_cone.csv")]
-    for place in (*places, here.split("?")[0].replace("/enter/", "/analysis/entry/")):
-        page.goto(place)
-        page.get_by_role("heading", level=1).wait_for()
-        page.locator("h2").first.wait_for()
-        assert page.evaluate("document.documentElement.scrollWidth") <= 390, place
-        assert page.locator("input:visible, select:visible, button:visible").evaluate_all(NAMELESS) == [], place
-        assert page.evaluate(CUT) == [], place
-
-
-CUT = """[...document.querySelectorAll(".q-field__label")]
-    .filter((each) => each.clientWidth && each.checkVisibility() && each.scrollWidth > each.clientWidth + 1)
-    .map((each) => each.textContent)"""
-"""The labels of fields that are longer than their fields."""
 NAMELESS = """elements => elements.filter((element) => !(element.getAttribute('aria-label') || element.innerText?.trim()
   || [...(element.labels || [])].map(label => label.innerText.trim()).join(' '))).map((element) => element.outerHTML)"""
 """Those of elements that a screen reader has no name for."""

@@ -19,9 +19,6 @@ from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
 from skisnow.report.formatting import significant
-from skisnow.report.pair_verdicts import ski_verdict
-from skisnow.ski import ski_names
-from skisnow.snow import published_names
 from skisnow.web import carved_turn
 from skisnow.web.lab_skis import LabSkis
 
@@ -126,17 +123,6 @@ def test_a_turn_is_there_with_the_page(desk: Desk) -> None:
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Carve"]
 
 
-def test_the_menus_name_what_there_is(desk: Desk) -> None:
-    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
-    page = desk.open("/carve")
-    skis = [*ski_names(), "mine"]
-    assert list(page.field("Ski").options) == skis
-    assert list(page.field("Compared with").options) == ["nothing", *skis]
-    assert page.field(RATIO).options == {"1": "1 (elastic)", "10": "10", "100": "100", "inf": "no spring back"}
-    assert list(page.field("Snow").options) == ["the sliders", *(f"published-{name}" for name in published_names())]
-    page.shows("carver: equilibrium.")
-
-
 @pytest.mark.parametrize(
     ("name", "place", "stands", "asked"),
     [
@@ -171,29 +157,6 @@ def test_the_ratio_is_requested(desk: Desk) -> None:
     assert radius(answer(ratio=float("inf"))) != radius(answer())
 
 
-def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
-    page = desk.open("/carve?ski=slalom&other=giant-slalom")
-    page.shows("slalom: equilibrium. giant-slalom: equilibrium.")
-    found = answer("slalom"), answer("giant-slalom")
-    assert [line for line in page.outline() if line.startswith("[value] ")] == list(map(radius, found))
-    lines = page.outline()
-    begin = lines.index("slalom")
-    assert lines[begin : begin + 2 + 3 * len(FACTS)] == facts(*found)
-    for title, key in CHARTS.items():
-        chart = page.charts()[title]
-        shown = [(line["name"], line["style"], len(line["x"])) for line in chart["lines"]]
-        assert shown == [("slalom", 0, len(found[0]["station_m"])), ("giant-slalom", 1, len(found[1]["station_m"]))]
-        for line, each in zip(chart["lines"], found, strict=True):
-            assert line["x"] == pytest.approx(each["station_m"], abs=1e-4)
-            assert line["y"] == pytest.approx(each[key], rel=1e-3, abs=0.05, nan_ok=True)
-        assert chart["ends"] == ["tail", "tip"]
-    colours = [each.style["color"] for each in page.of() if {"value"} & set(each.classes)]
-    assert colours == ["#0b4f8a", "#b3450b"]
-    assert [each.style["color"] for each in page.tagged("th") if "color" in each.style] == colours
-    assert [each.style["color"] for each in page.tagged("td") if "n" in each.classes] == colours * len(FACTS)
-    assert [each.props["scope"] for each in page.tagged("th")] == ["col", "col", *["row"] * len(FACTS)]
-
-
 def test_the_curves_of_both_skis_are_downloaded(desk: Desk) -> None:
     page, found = desk.open("/carve?ski=slalom&other=carver"), (answer("slalom"), answer())
     page.shows("slalom: equilibrium. carver: equilibrium.")
@@ -220,22 +183,6 @@ def test_skis_that_are_not_there_are_not_chosen(desk: Desk) -> None:
     page = desk.open("/carve?ski=none&other=neither")
     page.shows("carver: equilibrium.")
     assert [page.field(name).value for name in ("Ski", "Compared with")] == ["carver", "nothing"]
-
-
-def test_the_answer_follows_the_menus(desk: Desk) -> None:
-    page = desk.open("/carve")
-    page.fill("Ski", "slalom")
-    page.shows("[status] slalom: equilibrium.")
-    page.fill("Compared with", "carver")
-    page.shows("[status] slalom: equilibrium. carver: equilibrium.")
-    verdict = ski_verdict(answer("slalom"), answer(), ("slalom", "carver"))
-    assert f"[verdict] {verdict}" in page.outline()
-    shown, expected = page.outline(), facts(answer("slalom"), answer())
-    assert any(shown[at : at + len(expected)] == expected for at in range(len(shown)))
-    page.fill("Compared with", "nothing")
-    page.until(lambda: told(page) == "slalom: equilibrium.")
-    assert [line for line in page.outline() if line.startswith("[value] ")] == [radius(answer("slalom"))]
-    assert not any("turns tighter" in line for line in page.outline())
 
 
 def test_what_the_snow_cannot_hold_is_reported(desk: Desk) -> None:

@@ -36,7 +36,6 @@ PENETRATION = """experiment;site;spot;tool;edge_angle_deg;load_N;depth_mm;remark
 2;A;;ski piece;30;20;1,4;;;too wet;
 3;B;;ski piece;30;20;1,9;;;;
 """
-MIXED = PENETRATION + "4;B;p;old piece;30;20;1,9;;;;\n4;B;p;ski piece;45;40;2,7;;;;\n"
 SHEAR = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n1,A,plate,90,6,250,30\n"
 FILES = {"campaign.toml": TOML, "penetration.csv": PENETRATION, "shear.csv": SHEAR}
 
@@ -87,19 +86,6 @@ def test_the_tests_of_a_table_are_listed_by_their_sites(desk: Desk, id_: str) ->
     assert "data-ahead" not in page.html
 
 
-def test_tests_that_were_spoken_of_are_marked(desk: Desk, id_: str) -> None:
-    correct(desk, id_, "1", {"2/depth_mm": "1.6"})
-    Journals(desk.lab.store).correct(
-        id_, NewEntry(action="cancel", file="penetration.csv", test="3", why="slip"), seen=0, standing={}
-    )
-    outline = desk.open(f"/correct/{id_}").outline()
-    assert [line.split(" -> ")[0] for line in outline if "link[small]" in line] == [
-        "link[small] 1 (corrected)",
-        "link[small] 2",
-        "link[small] 3 (cancelled)",
-    ]
-
-
 def correct(desk: Desk, id_: str, test: str, cells: dict[str, str]) -> JournalEntry:
     session = CorrectionSession(desk.lab, id_)
     seen = session.test("penetration.csv", test).last
@@ -146,38 +132,6 @@ def test_a_photo_is_added_to_an_imported_test(desk: Desk, id_: str) -> None:
     page.shows("Photo, 0 kB")
     correct(desk, id_, "1", {"2/depth_mm": "1,6"})
     assert CorrectionSession(desk.lab, id_).whole_campaign().penetration is not None
-
-
-def test_a_test_of_one_row_has_no_numbers_of_rows(desk: Desk, id_: str) -> None:
-    page = opened(desk, id_, table="shear.csv")
-    assert values(page.between("h2 Test 1", "button[main] Correct")) == {
-        "Site": "A",
-        "Plate": "plate",
-        "Edge angle (°)": "90",
-        "Depth (mm)": "6",
-        "Lever arm (mm)": "250",
-        "Moment (N m)": "30",
-    }
-    page.shows("S_f = 0.200 N/mm²")  # 30 N m/0.25 m/(100 mm × 6 mm), by hand
-    assert page.field("Plate").options == {"plate": "plate"}
-
-
-def test_what_differs_between_the_rows_of_a_test_is_in_each(desk: Desk, tmp_path: Path) -> None:
-    id_ = kept(desk, tmp_path / "mixed", FILES | {"penetration.csv": MIXED})
-    page = opened(desk, id_, "4")
-    assert values(page.between("h2 Test 4", "button[main] Correct")) == {
-        "Site": "B",
-        "Measurement point": "p",
-        "Tool, row 7": "old piece",
-        "Edge angle (°), row 7": "30",
-        "Load (N), row 7": "20",
-        "Depth (mm), row 7": "1,9",
-        "Tool, row 8": "ski piece",
-        "Edge angle (°), row 8": "45",
-        "Load (N), row 8": "40",
-        "Depth (mm), row 8": "2,7",
-    }
-    assert page.field("Tool, row 7").options == {"old piece": "old piece", "ski piece": "ski piece"}
 
 
 def test_a_test_that_its_file_cancels_says_so(desk: Desk, id_: str) -> None:
@@ -244,18 +198,6 @@ def test_what_a_test_has_once_is_corrected_in_every_row(desk: Desk, id_: str) ->
     page.shows("q becomes nothing")
     page.press("Correct it")
     assert page.field("Measurement point").value == ""
-
-
-def test_a_question_that_is_left_shows_the_cells_as_they_are(desk: Desk, id_: str) -> None:
-    page = opened(desk, id_)
-    page.fill("Site", "B")
-    page.press("Correct")
-    page.press("Leave it as it was")
-    assert page.field("Site").value == "A"
-    assert not any("field Why" in line for line in page.outline())
-    assert press(page, "Correct", 1) == "lab.answered(1, true)"
-    assert page.outcome() == "good"
-    assert history(desk, id_) == []
 
 
 def test_what_no_cell_can_hold_is_rejected(desk: Desk, id_: str) -> None:

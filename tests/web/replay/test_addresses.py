@@ -14,7 +14,7 @@ from skisnow._support.errors import SkisnowError
 from skisnow._support.messages import translated
 from skisnow.replay import replay_of_run
 from skisnow.track.read import read_track
-from skisnow.web.lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, Placing, TrackFolders
+from skisnow.web.lab_tracks import Placing, TrackFolders
 from tests.coded import raises
 
 from ...report.runs import circle_run
@@ -152,43 +152,6 @@ def csv(points: list[tuple[float, float, float, float]]) -> bytes:
     return f"time_s,x_m,y_m,z_m\n{rows}".encode()
 
 
-def test_towards_the_fall_line_is_down_and_left_of_it_is_left(tmp_path: Path) -> None:
-    """The slope falls to the east: north is left of who looks down it."""
-    tracks, replay = TrackFolders(tmp_path), replay_of_run(circle_run(count=21))
-    name = tracks.keep(io.BytesIO(gpx([(0, 0), (10, 0), (10, 5)])), Placing("Run 1.gpx", 90.0, 0.5))
-    assert name.startswith("Run-1-") and tracks.names() == [name]
-    beside = tracks.beside(name, replay)
-    # without heights the points lie on the plane of 10°: 10 m from above are 10 m / cos 10° along it; sideways to
-    # 0.1 mm: a circle of latitude is not quite straight
-    down = 10.0 / math.cos(replay.tilt)
-    assert replay.tilt == pytest.approx(math.radians(10.0))
-    assert beside.place[:, :2] == pytest.approx(np.array([[0, 0], [down, 0], [down, 5]]), rel=5e-3, abs=1e-4)
-    assert beside.time == pytest.approx([0.5, 1.5, 2.5])
-    assert beside.name == "Run 1.gpx"
-
-
-@pytest.mark.parametrize(
-    ("content", "placing", "code"),
-    [
-        (b"no track at all", Placing("x.gpx"), ""),
-        (b"", Placing("x.csv"), ""),
-        (gpx([(0, 0)]), Placing("x.gpx", 0.0), "too_few_points"),
-        (b" " * (LARGEST_TRACK_BYTES + 1), Placing("x.csv"), "too_large"),
-        (csv([(i, i, 0, 0) for i in range(MOST_POINTS + 1)]), Placing("x.csv"), "too_many_points"),
-    ],
-)
-def test_what_is_no_track_is_rejected_and_leaves_nothing(
-    tmp_path: Path, content: bytes, placing: Placing, code: str
-) -> None:
-    tracks = TrackFolders(tmp_path)
-    with pytest.raises(SkisnowError) as refused:
-        tracks.keep(io.BytesIO(content), placing)
-    assert str(tmp_path) not in str(refused.value)
-    assert refused.value.code == code
-    assert tracks.names() == []
-    assert list(tmp_path.glob("tracks/*")) == []
-
-
 def test_a_rejected_track_is_explained_in_german_without_a_code(tmp_path: Path) -> None:
     with pytest.raises(ParameterError) as refused:
         TrackFolders(tmp_path).keep(io.BytesIO(b"time_s,x_m,y_m\n0,1,5,2,5\n"), Placing("Lauf 1.csv"))
@@ -205,6 +168,7 @@ def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
             tracks.beside(name, replay)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

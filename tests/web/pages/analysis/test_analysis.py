@@ -21,7 +21,6 @@ from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
 from skisnow.report.campaign.verdicts import verdicts
 from skisnow.web import campaign_analysis as analyses_module
-from skisnow.web.analysis_view import AnalysisView, OpenAnalysis
 from skisnow.web.campaign_analysis import AnalysisCache, CampaignSource, Choice, Numbers, Refusal, analyse_files
 from skisnow.web.pages import analysis as page_module
 from skisnow.web.subprocesses import Worker
@@ -152,23 +151,6 @@ def test_an_experiment_that_is_left_out_stays_in_the_tables(desk: Desk, tmp_path
     assert page.outline()[at + 1 : at + 9] == EXPERIMENTS
 
 
-def test_flags_are_let_in_and_left_out(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
-    page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept')}")
-    finally_says(page, COUNTED)
-    opened(page, "Exclude experiments with these quality flags")
-    at = page.outline().index("Exclude experiments with these quality flags")
-    of_campaign = ("too_few_loads", "loads_not_rising", "depth_shrinks")
-    lines = [f"field {words} = {code in of_campaign}" for code, words in FLAGS.items()]
-    assert page.outline()[at + 1 : at + 1 + len(FLAGS)] == lines
-    page.fill(FLAGS["too_few_loads"], False)
-    finally_says(page, COUNTED.replace("3 used; 3", "4 used; 3"))
-    page.fill(FLAGS["layered"], True)
-    page.until(lambda: len([each for each in drawing.asked if each[0] == "drawn"]) == 9)
-    page.fill(FLAGS["too_few_loads"], True)
-    finally_says(page, COUNTED)
-    assert drawing.asked
-
-
 def test_a_choice_made_during_the_computation_is_shown(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
     """The first figure of the first choice comes after all of the second."""
     desk.do(drawing.gate.clear)
@@ -278,60 +260,6 @@ def test_there_is_no_analysis_of_what_the_store_has_not(desk: Desk, path: str, c
     assert (desk.get(path).status_code, desk.code) == (404, code)
     assert [type(failure) for failure in desk.failures] == [StoreError]
     desk.failures.clear()
-
-
-class View:
-    """The view of a page, driven by hand."""
-
-    def __init__(self, desk: Desk, kind: str, id_: str, analyses: Any = None) -> None:
-        self.desk, self.sheet = desk, desk.open("/replay")
-        self.page = OpenAnalysis(kind, id_, None)
-        self._analyses = analyses or AnalysisCache(desk.lab, Worker())
-        self.before = len(self.sheet.outline())
-        self.view: AnalysisView = desk.do(self._made, self.sheet.client)
-
-    def _made(self) -> AnalysisView:
-        with self.sheet.content:
-            return AnalysisView(self.page, self._analyses)
-
-    def compute(self) -> None:
-        self.desk.wait(self.view.compute())
-
-    @property
-    def lines(self) -> list[str]:
-        return self.sheet.outline()[self.before :]
-
-
-def test_a_refusal_takes_away_what_was_shown_before(
-    desk: Desk, tmp_path: Path, drawing: Drawing, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    view = View(desk, "entry", kept(desk, tmp_path / "kept"))
-    view.page.kind = "kept"
-    view.compute()
-    assert view.lines[0] == f"[status] {COUNTED}"
-    assert view.page.analysed is not None
-    assert view.page.settled.is_set()
-    shown, view.page.kind = view.lines, "entry"
-    view.compute()  # nothing is different
-    assert view.lines == shown
-    told = Refusal("it is so", ("a.csv, row 2: wrong",))
-    monkeypatch.setattr(analyses_module, "analyse_files", lambda *_: told)
-    view.page.choice = Choice(frozenset())
-    view.compute()
-    assert view.lines[1] == "a.csv, row 2: wrong"
-    assert view.page.refused.endswith(" it is so")
-    assert vars(view.page)["analysed"] is None
-    chooser = view.lines[2:]
-    monkeypatch.setattr(analyses_module, "analyse_files", lambda *_: Refusal("it is so"))
-    view.compute()
-    assert view.lines == [f"[status] {view.page.refused}", *chooser]
-    view.view.show_cached()
-    assert view.lines[1:] == chooser
-    view.page.choice = Choice()
-    view.view.show_cached()
-    assert view.lines[:2] == [f"[status] {COUNTED} Drawing the figures …", "h2 Desk"]
-    assert view.lines.count("h2 Included data") == 1
-    assert drawing.asked
 
 
 def looked_at(desk: Desk, analyses: AnalysisCache, *campaigns: tuple[str, str]) -> list[CampaignSource]:

@@ -4,7 +4,6 @@ import json
 import threading
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,7 +11,7 @@ import pytest
 from nicegui import ui
 
 from skisnow._support.errors import StoreError
-from skisnow.campaign.store import Journals, NewEntry, Store, sync
+from skisnow.campaign.store import NewEntry
 from skisnow.report.charts import SeriesCurve
 from skisnow.web import page_requests as answering
 from skisnow.web.edit_session import EditSession, QuickResults
@@ -209,21 +208,6 @@ def test_a_session_hears_what_others_wrote_when_it_looks_again(desk: Desk) -> No
     assert len(session.test(PENETRATION, "1").rows) == 2
 
 
-def test_entries_that_came_by_a_sync_are_replayed_once(desk: Desk, tmp_path: Path) -> None:
-    """The other laptop's entry comes before the last one here, and has a later number in this store."""
-    id_ = begun(desk)
-    with Store.open(tmp_path / "other.sqlite3") as other:
-        sync(desk.lab.store, other)
-        cells = {"experiment": "2", **SERIES, "load_N": "20", "depth_mm": "1.5"}
-        Journals(other).append(id_, NewEntry(action="add", file=PENETRATION, test="2", cells=cells, position=0), seen=0)
-        add_series(desk, id_, "1", ("20", "1.5"), ("60", "2.6"))
-        sync(desk.lab.store, other)
-    session = EditSession(desk.lab, id_)
-    for _ in range(3):
-        assert {test.name: len(test.rows) for test in session.campaign.tests.values()} == {"1": 2, "2": 1}
-        session.refresh()
-
-
 def test_a_session_computes_a_site_by_itself(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"), ("60", "2.6"))
@@ -273,34 +257,6 @@ def test_depths_after_waiting_are_stored_beside_the_first_ones(desk: Desk) -> No
     assert "h2 New series" in page.outline()
 
 
-def test_a_second_depth_that_becomes_another_one_asks_for_a_reason(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), ("60", "2.6"), depth_after_mm="2.7")
-    page = series_page(desk, id_)
-    waited(page, "20", "2.8")
-    waited(page, "60", "")
-    form = page.field(after_waiting("20")).parent_slot.parent.parent_slot.parent
-    page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
-    assert page.scripts[-1] == "lab.answered(1, true)"
-    first, second = (
-        "After waiting under 20 N: 2.7 mm becomes 2.8 mm.",
-        "After waiting under 60 N: 2.7 mm becomes nothing.",
-    )
-    assert {first, second} <= set(page.outline())
-    assert page.field("Why").value == "typing error"
-    page.fill("Why", "")
-    page.press("Correct it")
-    assert page.outcome() == "bad"
-    page.fill("Why", "slip")
-    button = next(each for each in page.of(ui.button) if each.text == "Correct it")
-    page.fire(button, "click", {"number": 2})
-    assert page.scripts[-1] == "lab.answered(2, true)"
-    assert page.outcome() == "good"
-    assert [row["depth_after_mm"] for row in stored(desk, id_, PENETRATION, "1")] == ["2.8", ""]
-    assert [entry.why for entry in history(desk, id_)[2:]] == ["slip", "slip"]
-    assert not any("field Why" in line for line in page.outline())
-
-
 def test_a_second_depth_without_a_first_one_and_what_is_no_depth_are_rejected(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.15"))
@@ -346,27 +302,6 @@ def test_readings_that_the_browser_kept_are_stored_once(desk: Desk) -> None:
     assert resent(page, [back]) == [["b", ""]]
     entry = history(desk, id_)[-1]
     assert (entry.cells["branch"], len(entry.who), entry.position) == ("unloading", 200, 1)
-
-
-@pytest.mark.parametrize(
-    ("changed", "code"),
-    [
-        ({"tool": "lost"}, "unknown_name"),
-        ({"load_N": "60.0"}, "already_there"),
-        ({"site": "B"}, "other_site"),
-        ({"depth_mm": "x"}, "not_allowed"),
-    ],
-)
-def test_a_kept_reading_that_cannot_be_stored_is_answered_with_the_reason(
-    desk: Desk, changed: dict[str, str], code: str
-) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("60", "2.6"))
-    cells = {"experiment": "1", **SERIES, "load_N": "20", "depth_mm": "1.5"} | changed
-    ((once, reason),) = resent(series_page(desk, id_), [record(cells=cells)])
-    assert (once, bool(reason)) == ("a", True)
-    assert desk.code == code
-    assert len(history(desk, id_)) == 1
 
 
 @pytest.mark.parametrize(

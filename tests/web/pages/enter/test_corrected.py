@@ -123,21 +123,6 @@ def test_a_correction_without_a_reason_is_rejected(desk: Desk) -> None:
     assert history(desk, id_)[-1].why == "slip"
 
 
-@pytest.mark.parametrize("by_key", [True, False])
-def test_a_depth_is_left_as_it_was(desk: Desk, by_key: bool) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
-    if by_key:
-        page.fire(page.field("Why"), "keydown.esc", {})
-    else:
-        page.press("Leave it as it was")
-    assert page.field("Depth under 40.5 N (mm)").value == "22.5"
-    assert not any("field Why" in line for line in page.outline())
-    assert page.focused() is page.field("Depth under 60 N (mm)")
-    enter(page, "Depth under 40.5 N (mm)", "2,25")  # is asked again
-    assert page.field("Why").value == "typing error"
-
-
 def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(desk: Desk) -> None:
     id_ = begun(desk)
     add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "22.5"))
@@ -256,19 +241,6 @@ def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
     assert any("&site=A" in each for each in page.scripts)
 
 
-def test_what_another_person_undid_is_not_undone_again(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_)
-    sequence = history(desk, id_)[0].sequence
-    write(desk, id_, NewEntry(action="undo", file=PENETRATION, test="1", about=sequence))
-    button = next(each for each in page.of(ui.button) if each.text.startswith("Undo"))
-    page.fire(button, "click", {})
-    assert page.outcome() == "bad"
-    page.press("Next series")
-    assert "h2 New series" in page.outline()
-
-
 def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
     id_ = begun(desk)
     page = begun_series(desk, id_)
@@ -346,32 +318,3 @@ def test_a_change_outlives_another_reading(desk: Desk) -> None:
     assert page.field("Depth under 40.5 N (mm)").value == "22.5"
     assert changed_states(page) == []
     assert depths(desk, id_) == [("20", "1.5"), ("40.5", "22.5"), ("60", "3"), ("80", "4")]
-
-
-def series_listed(page: Sheet) -> list[str]:
-    """Names of the series so far, with the word cancelled; the one in the form in brackets."""
-    links = [each for each in page.of(ui.link) if "small" in each.classes]
-    names = {each: each.text.split(" ·")[0] + " (cancelled)" * ("(cancelled)" in each.text) for each in links}
-    return [f"[{names[each]}]" if "aria-current" in each.props else names[each] for each in links]
-
-
-def test_the_series_so_far_are_listed_as_they_are(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = desk.open(f"/enter/{id_}")
-    page.fill("Site", "A")
-    for number in range(1, 9):
-        page.fill("Edge angle (°)", "30")
-        page.press("Begin the series")
-        enter(page, "Depth under 20 N (mm)", f"1.{number}")
-        before = [str(each) for each in range(number - 1, 0, -1)]
-        assert series_listed(page) == [f"[{number}]", *before]
-        page.press("Next series")
-        assert series_listed(page) == [str(number), *before]
-    page = series_page(desk, id_, "8")
-    page.press(CANCEL)
-    page.fill("Why", "slip")
-    page.press("Cancel the test")
-    assert series_listed(page)[:2] == ["[8 (cancelled)]", "7"]
-    page.press("Undo: cancelled (slip)")
-    page.press("Undo: entered 1.8 mm under 20 N")
-    assert series_listed(page)[0] == "7"

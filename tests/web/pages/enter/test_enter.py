@@ -381,12 +381,3 @@ def test_after_a_series_the_sites_are_compared(desk: Desk) -> None:
     page = desk.open(f"/enter/{id_}?test=B1.0")
     ratio = float(page.shows("times as hard as A").removeprefix("B is ").partition(" ")[0])
     assert ratio == pytest.approx(4.0, rel=0.02)
-
-
-@pytest.mark.parametrize(("language", "shown"), [("en", "4.13 kg"), ("de", "4,13 kg")])
-def test_a_load_is_also_there_in_kg(desk: Desk, language: str, shown: str) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = desk.open(f"/enter/{id_}?test=1", language)
-    loads = {each.text: each.props["data-kg"] for each in page.of(ui.label) if "load" in each.classes}
-    assert loads[{"en": "40.5 N", "de": "40,5 N"}[language]] == shown  # 40.5 / 9.80665

@@ -3,8 +3,6 @@
 import pytest
 from nicegui import ui
 
-from tests.key_names import DROP_CONE_DEPTH
-
 from ..desk import Desk, Sheet, values
 from .shared import (
     CANCEL,
@@ -124,20 +122,6 @@ def test_a_test_that_another_person_entered_meanwhile_is_not_stored(desk: Desk) 
     assert page.field("Moment (N m)").value == "30"
 
 
-def test_the_next_repeat_of_a_cone_is_requested(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = desk.open(f"/enter/{id_}?table=drop_cone.csv")
-    store(page, name="c", site="A", cone="12")
-    assert stored(desk, id_, DROP_CONE, "c") == [{"test": "c", "site": "A", "repeat": "1", DROP_CONE_DEPTH: "12"}]
-    assert list(values(page.between("h2 New test", "button[main] Store")).values()) == ["c", "A", "2", ""]
-    store(page, cone="13")
-    assert [entry.position for entry in history(desk, id_)] == [0, 1]
-    assert [line[-2:] for line in page.between("h3 So far", "Photo and position")[1::2]] == ["13", "12"]
-    store(page, repeat="2", cone="14")
-    assert len(page.refusals()) == 1
-    assert len(history(desk, id_)) == 2
-
-
 def test_the_next_turning_angle_is_requested(desk: Desk) -> None:
     """30 N m/0.25 m/(100 mm × 6 mm) = 0.2 N/mm²."""
     id_ = begun(desk)
@@ -227,21 +211,6 @@ def test_a_new_test_that_was_begun_is_there_again_after_another_one_was_looked_a
     page.press("Correct 3")
     page.press("New test")
     assert page.field(NAME).value == "4"
-
-
-def test_a_cancelled_test_of_one_row_says_so(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_shear(desk, id_, "1")
-    page = desk.open(f"/enter/{id_}?table=shear.csv&test=1")
-    page.press(CANCEL)
-    page.fill("Why", "slip")
-    page.press("Cancel the test")
-    assert page.between("h2 Correct a test")[1] == "[bad] Cancelled: slip"
-    assert "slip" in page.shows(f"{NAME} 1 · ")
-    page.press(undo_button(page))
-    page.press(undo_button(page))
-    assert "h2 New test" in page.outline()
-    assert "h3 So far" not in page.outline()
 
 
 @pytest.mark.parametrize("act", ["New test", "Correct 2", CANCEL, "Undo"])

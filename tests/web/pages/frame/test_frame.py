@@ -165,14 +165,12 @@ def test_results_in_words() -> None:
     ("chosen", "accepted", "code"),
     [
         (None, "", "en"),
-        (None, "fr", "en"),
         (None, "DE-at;q=0.9", "de"),
         (None, "fr-CH, de-AT;q=0.9", "de"),
         (None, "en-US,de", "en"),
         ("de", "en", "de"),
         ("en", "de", "en"),
         ("fr", " de ;q=1", "de"),
-        ("", "de", "de"),
     ],
 )
 def test_a_language_that_was_chosen_comes_before_those_of_the_browser(

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import OutputError, ParameterError
-from skisnow.replay import moving_replay_model, replay_bytes, replay_model, replay_of_file, replay_of_run
+from skisnow.replay import replay_bytes, replay_of_file, replay_of_run
 from skisnow.replay.page import in_language
 from skisnow.ski import read_ski
 from skisnow.track.read import read_track
@@ -182,17 +182,6 @@ def test_tracks_are_listed_the_newest_first_without_what_is_half_there(tmp_path:
     assert sorted(each.name for each in (tmp_path / "tracks" / newer).iterdir()) == ["about.json", "track.csv"]
 
 
-def test_a_track_keeps_an_ending_that_says_how_it_is_read(tmp_path: Path) -> None:
-    files = []
-    for called in ("a.CSV", "b.odd", "c"):
-        name = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing(called))
-        files += [each.name for each in (tmp_path / "tracks" / name).iterdir() if each.name != "about.json"]
-    assert files == ["track.csv", "track", "track"]
-    name = TrackFolders(tmp_path).keep(io.BytesIO(TRACK), Placing("Hütte.csv"))
-    about = json.loads((tmp_path / "tracks" / name / "about.json").read_text(encoding="utf-8"))
-    assert list(about.values()) == ["Hütte.csv", None, 0.0, False]
-
-
 def test_tracks_of_a_folder_that_cannot_be_written_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "tracks").write_bytes(b"")
     with raises(OutputError, "cannot_write"):
@@ -315,21 +304,6 @@ def test_a_run_has_the_ski_that_its_job_names(desk: Desk, run_files: dict[str, b
     for job in ("{", "[]", '{"changes": {}}', "null"):
         (place / "job.json").write_text(job, encoding="utf-8")
         assert replay_bytes(RunFolders(desk.lab.runs).replay("run")) == replay_bytes(replay_of_file(place, title="run"))
-
-
-def test_models_are_those_of_the_library(desk: Desk, run_files: dict[str, bytes]) -> None:
-    keep(desk.lab.runs, "a b", run_files)
-    shown = replay_of_file(desk.lab.runs / "a b", title="a b")
-    still, moving = desk.get("/replay/model/a%20b.glb"), desk.get("/replay/moving-model/a%20b.glb")
-    assert still.content == replay_model(shown, 0.0, exaggeration=1.0)
-    assert moving.content == moving_replay_model(shown, exaggeration=1.0)
-    assert "a%20b-0.00s.glb" in still.headers["content-disposition"]
-    assert "a%20b.glb" in moving.headers["content-disposition"]
-    assert {each.headers["content-type"] for each in (still, moving)} == {"model/gltf-binary"}
-    at = desk.get("/replay/model/a%20b.glb?time=1.5&exaggeration=2")
-    assert at.content == replay_model(shown, 1.5, exaggeration=2.0)
-    for path in ("model", "moving-model"):
-        assert (desk.get(f"/replay/{path}/x.glb").status_code, desk.code) == (404, "unknown_run")
 
 
 def test_the_page_of_a_run_names_what_it_fetches(desk: Desk, run_files: dict[str, bytes]) -> None:

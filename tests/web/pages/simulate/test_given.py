@@ -12,10 +12,9 @@ import pytest
 from nicegui import ui
 
 from skisnow._support.errors import ParameterError
-from skisnow.campaign.store import Journals, NewEntry
 from skisnow.snow import snow_from_results
 from skisnow.track.course import course_names
-from skisnow.web import lab_tracks, snow_choice
+from skisnow.web import snow_choice
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.lab_tracks import LabCourses, gates_of
 from skisnow.web.pages.simulate import _Card
@@ -24,11 +23,9 @@ from skisnow.web.runs import Job, Runs
 from skisnow.web.snow_choice import campaign_snow
 from tests.coded import raises
 
-from ...campaign_texts import SHEARED, sheared
+from ...campaign_texts import SHEARED
 from ..desk import Desk, in_this_process
 from .shared import ENDS, GIVEN, HARDNESS, NUMBERS, STEERS, STRESS, asked, campaign, jobs, refused
-
-SHEAR = sheared({"a": ("A", 20), "b": ("A", 21), "c": ("B", 30)})
 
 
 def test_a_ski_of_the_catalogue_is_named_and_a_saved_one_is_a_file(desk: Desk) -> None:
@@ -98,36 +95,6 @@ def test_the_snow_of_a_campaign_is_kept_with_the_run(desk: Desk, tmp_path: Path)
     page.fill("Snow", NUMBERS)
     page.until(lambda: not any("field Site" in line for line in page.outline()))
     assert asked(desk, page)["changes"] == {}
-
-
-def test_a_campaign_with_shear_tests_gives_the_stress(desk: Desk, tmp_path: Path) -> None:
-    id_ = campaign(desk, tmp_path / "kept", shear=SHEAR)
-    page = desk.open("/simulate")
-    page.fill("Snow", f"kept-{id_}")
-    page.shows("[snow] Snow: H_V = 0.0680 N/mm³, [0.0201, 0.230]; S_f = 0.189 N/mm², [0.106, 0.338]")
-    assert not [line for line in page.outline() if HARDNESS in line or STRESS in line]
-    assert list(asked(desk, page)["changes"]) == ["snow.results"]
-
-
-def test_a_campaign_that_is_being_entered_gives_its_snow_too(desk: Desk) -> None:
-    journals = Journals(desk.lab.store)
-    id_ = journals.begin(SHEARED)
-    unnamed = journals.begin(SHEARED.partition("\n")[2])
-    for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.1"), ("60", "2.6"))):
-        cells = {"site": "A", "tool": "ski piece", "edge_angle_deg": "30", "load_N": load, "depth_mm": depth}
-        entry = NewEntry(
-            action="add", file="penetration.csv", test="1", position=position, cells={"experiment": "1", **cells}
-        )
-        journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
-    page = desk.open("/simulate")
-    options = page.field("Snow").options
-    assert {key: options[key] for key in options if key.startswith("entry-")} == {
-        f"entry-{id_}": "Desk", f"entry-{unnamed}": unnamed,
-    }  # fmt: skip
-    page.fill("Snow", f"entry-{id_}")
-    page.shows("[snow] Snow: H_V = 0.0512 N/mm³, interval not known")
-    assert not [line for line in page.outline() if line.startswith("field Site")]
-    assert "0.0512 N/mm³" in asked(desk, page)["given"]
 
 
 def test_a_campaign_that_is_analysed_is_waited_for(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -278,19 +245,6 @@ def test_courses_are_listed_the_newest_first_without_what_is_none(tmp_path: Path
     assert courses.names() == [*course_names(), newer, older]
     assert gates_of(tmp_path / "courses" / newer) == 3
     assert newer[:2] + newer[6:] == "a-.csv"
-
-
-def test_what_is_just_allowed_of_courses_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    courses = LabCourses(tmp_path)
-    monkeypatch.setattr(lab_tracks, "confined", lambda *_: 3)
-    with raises(ParameterError, "too_large", most=1):
-        courses.keep("a.csv", io.BytesIO(bytes(1_000_001)))
-    courses.keep("a.csv", io.BytesIO(bytes(1_000_000)))
-    monkeypatch.setattr(lab_tracks, "MOST_COURSES", 2)
-    courses.keep("a.csv", io.BytesIO(COURSE))
-    with raises(ParameterError, "too_many_files", most=2, folder="courses"):
-        courses.keep("a.csv", io.BytesIO(COURSE))
-    assert len(courses.kept()) == 2
 
 
 @pytest.mark.usefixtures("here")

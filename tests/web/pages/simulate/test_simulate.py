@@ -1,34 +1,23 @@
 """*Simulate*: its inputs, what they ask for, what is refused."""
 
-import json
-from pathlib import Path
-
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.scenario import scenario_names
 from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.ski import ski_names
-from skisnow.snow import published_names
-from skisnow.track.course import course_names
-from skisnow.web.lab_skis import LabSkis
 from skisnow.web.scenario_fields import ScenarioField, called
 from tests.coded import raises
 
 from ..desk import Desk, Sheet, values
 from .shared import (
     ENDS,
-    GIVEN,
     HARDNESS,
     MASS,
-    NUMBERS,
     SPEED,
     STANCE,
     STEERS,
     STRESS,
     WAY,
     asked,
-    campaign,
     jobs,
     refused,
 )
@@ -45,15 +34,6 @@ def names_by_heading(page: Sheet) -> dict[str, list[str]]:
         elif line.startswith("field ") and found:
             found[list(found)[-1]].append(line[6:].partition(" = ")[0])
     return found
-
-
-def test_a_first_run_is_asked_about_the_little_that_differs_from_run_to_run(desk: Desk) -> None:
-    page = desk.open("/simulate")
-    before = values(page.between("h1 Simulate", "button[main] Simulate"))
-    assert list(before.values())[:4] == ["carved-46m", GIVEN, GIVEN, NUMBERS]
-    assert list(before.values())[4:] == ["0.2", "0.5", "10", "10", "30", "80", "7", "-30", "0.01", "0.42", "5", ""]
-    assert "15 s" in page.shows("Takes about")  # 5 s and 8 s
-    assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Simulate"]
 
 
 def test_a_field_that_is_checked_says_itself_what_is_wrong(desk: Desk) -> None:
@@ -87,20 +67,6 @@ def test_a_skier_sets_the_edge_angle_itself_and_has_inputs_of_its_own(desk: Desk
     every = sum(name.startswith("skier.") for name in SCENARIO_KEYS)
     assert (of_skier[:2], len(of_skier)) == (first, every - 4)
     assert "70 s" in page.shows("Takes about")  # 60 s and 8 s
-
-
-def test_the_menus_name_what_there_is(desk: Desk, tmp_path: Path) -> None:
-    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
-    id_ = campaign(desk, tmp_path / "kept")
-    page = desk.open("/simulate")
-    assert list(page.field("Scenario").options) == list(scenario_names())
-    assert list(page.field("Course").options) == [GIVEN, *course_names()]
-    assert list(page.field("Ski").options) == [GIVEN, *ski_names(), "mine"]
-    assert page.field("Snow").options == {
-        NUMBERS: NUMBERS,
-        **{f"published-{name}": f"published: {name}" for name in published_names()},
-        f"kept-{id_}": f"Desk ({id_})",
-    }
 
 
 def test_a_request_without_typed_values_is_the_unchanged_scenario(desk: Desk) -> None:
@@ -219,24 +185,3 @@ def test_how_long_it_takes_follows_what_is_typed(desk: Desk, typed: dict[str, st
         page.fill(name, value)
     found = [line for line in page.outline() if "Takes about" in line]
     assert [line.endswith(told or "") for line in found] == ([] if told is None else [True])
-
-
-def test_how_long_it_takes_follows_the_last_run_with_the_method(desk: Desk) -> None:
-    """A run of 2 s took 6 s, 4 s of it to compute: 2 s for each of a run of 5 s, and 2 s around it."""
-    place = desk.lab.runs / "before"
-    place.mkdir()
-    job = {
-        "name": "before",
-        "scenario": "carved-46m",
-        "changes": {},
-        "asked_at": "2026",
-        "state": "done",
-        "took_s": 6.0,
-    }
-    (place / "job.json").write_text(json.dumps(job), encoding="utf-8")
-    summary = {"wall_s": 4.0, "simulated_s": 2.0, "scenario": {"solver": {"method": "fast"}}}
-    (place / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    page = desk.open("/simulate")
-    assert "5 s" in page.shows("Takes about")  # as long as it goes on, where nothing is known of the method
-    page.fill("Method", "fast")
-    assert page.shows("10 s")

@@ -2,7 +2,6 @@
 
 import io
 import json
-import threading
 import tomllib
 import warnings
 from collections.abc import Mapping
@@ -12,17 +11,14 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 import httpx
-import numpy as np
 import pytest
 from nicegui import ui
 
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning, SkisnowError
-from skisnow.ski import Ski, read_ski, ski_names
-from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
+from skisnow.ski import read_ski
 from skisnow.web import lab_skis as measured_ski
 from skisnow.web.lab_skis import (
     LabSkis,
-    SkiTexts,
     check_ski_texts,
     read_ski_files,
     ski_of_texts,
@@ -30,13 +26,34 @@ from skisnow.web.lab_skis import (
     texts_of_ski,
 )
 from skisnow.web.settings import Limits
-from skisnow.web.ski_editor import CELLS, FACTORS, SkiEditInput, edit_ski_texts
+from skisnow.web.ski_editor import FACTORS, SkiEditInput, edit_ski_texts
 from skisnow.web.subprocesses import SKI_BOUNDS
 from tests.coded import Coded, coded, raises
 
-from ...test_tool_pages import DESIGN, TABLE, TYPED, WITH_TABLE
 from ..desk import Desk, Sheet
 from .shared import CARVER, HEAVY, TEXT, files, opened, saved_place
+
+TYPED = {
+    "length_mm": "1593", "running_length_mm": "1396", "sidecut_length_mm": "1458", "tip_width_mm": "116",
+    "waist_width_mm": "68", "tail_width_mm": "101", "mass_kg": "2,231", "camber_mm": "7",
+    "EI_N_m2": "100 250; 440, 260,5 100", "GJ_N_m2": "60 140 175 140 60",
+}  # fmt: skip
+DESIGN = {
+    "board": {
+        "name": "Board", "nose length": "15 cm", "effective edge length": "130 cm", "tail length": "10 cm",
+        "sidecut radius": "13 m", "waist width": "9.3 cm", "taper": "0 cm", "stance setback": "0 cm",
+        "nose width": "12 cm",
+        "edge shape": {"type": "Basic Arc"},
+    }
+}  # fmt: skip
+TABLE = "station_m;width_mm;EI_N_m2\n0,845;25;100\n0,729;116;100\n0;68;440\n-0,729;101;100\n-0,749;101;100\n"
+WITH_TABLE = """name = "my slalom"
+running_length_mm = 1396
+sidecut_length_mm = 1458
+mass_kg = 2.231
+GJ_N_m2 = [60, 140, 175, 140, 60]
+table = "rows.csv"
+"""
 
 
 def type_ski(page: Sheet, name: str, typed: Mapping[str, str]) -> None:
@@ -146,11 +163,6 @@ def folder_of(folder: Path, texts: Mapping[str, str]) -> list[str]:
     return sorted(texts)
 
 
-def test_a_file_alone_stays_as_it_is_written(tmp_path: Path) -> None:
-    names = folder_of(tmp_path, {"mine.TOML": "\ufeff" + TEXT})
-    assert read_ski_files(str(tmp_path), names, {}) == SkiTexts("carver", TEXT, "", "")
-
-
 def test_a_file_with_its_table_is_written_again(tmp_path: Path) -> None:
     names = folder_of(tmp_path, {"mine.toml": WITH_TABLE, "rows.csv": TABLE})
     found = read_ski_files(str(tmp_path), names, {})
@@ -196,20 +208,6 @@ def test_uploads_are_named_without_their_folders(confined_words: list[tuple[obje
     assert not Path(str(folder)).exists()
     with raises(ParameterError, "too_many_files", most=1):
         ski_of_uploads(uploads, {}, Limits(files=1))
-
-
-def test_skis_are_listed_without_regard_to_capitals_after_the_catalogue(tmp_path: Path) -> None:
-    skis = LabSkis(tmp_path)
-    for name in ("b", "A", "c"):
-        skis.save_texts(name, TEXT, "")
-    (tmp_path / "skis" / "empty").mkdir()
-    (tmp_path / "skis" / "carver").mkdir()
-    (tmp_path / "skis" / "carver" / "ski.toml").write_text(TEXT, encoding="utf-8")
-    assert skis.saved() == ["A", "b", "c", "carver"]
-    assert skis.names() == [*ski_names(), "A", "b", "c"]
-    assert skis.word("A") == str(tmp_path.absolute() / "skis" / "A" / "ski.toml")
-    with raises(ParameterError, "unknown_ski", name="d"):
-        skis.texts("d")
 
 
 @pytest.mark.parametrize("name", ["a", "Ä", "9", "a b-c_d", "x" * 40, "con1", "com", "nothing else", "kž"])
@@ -289,29 +287,6 @@ def test_a_text_is_read_with_its_table_and_its_warnings() -> None:
         ski_of_texts(named, "x\n")
 
 
-def test_two_texts_at_once_are_warned_of_each_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Warnings are a setting of the whole process: a thread that came second would take it away from the first."""
-    begun, entered = threading.Event(), threading.Event()
-    found: list[str] = []
-    read = read_ski
-
-    def held(place: Path) -> Ski:
-        if begun.is_set():
-            entered.set()
-        begun.set()
-        if not found:
-            entered.wait(0.1)  # for nothing where one waits for the other
-        return read(place)
-
-    monkeypatch.setattr("skisnow.web.lab_skis.read_ski", held)
-    threads = [threading.Thread(target=lambda: found.append(ski_of_texts(HEAVY, "")[1])) for _ in range(2)]
-    for each in threads:
-        each.start()
-    for each in threads:
-        each.join()
-    assert [words.count("mass_kg is 20") for words in found] == [1, 1]
-
-
 @pytest.mark.parametrize(
     ("line", "code"), [('shape = "ski.csv"', "foreign_shape"), ('table = "other.csv"', "wrong_table")]
 )
@@ -342,29 +317,3 @@ def test_whether_only_the_file_says_what_the_ski_is(
     assert found.ski.name == ("carver" if is_file else "carver, edited")
     assert (found.ski.source == CARVER.source) is is_file
     assert edit_ski_texts(asked, name="mine").ski.name == "mine"
-
-
-def test_an_edit_is_what_the_library_makes_of_it() -> None:
-    stations = edit_stations(CARVER)
-    factors = {key: str(1.0 + 0.1 * i) for i, key in enumerate(FACTORS)}
-    cells = {("width_mm", 3): "85,5", ("base_height_mm", 2): "−2", ("EI_N_m2", 4): "500", ("GJ_N_m2", 8): "70"}
-    found = edit_ski_texts(SkiEditInput(HEAVY, "", factors, cells))
-    assert found.warned.startswith("ski.toml")
-    assert found.station == tuple(stations)
-    values = {column: np.full(9, np.nan) for column in CELLS}
-    values["width_mm"][3], values["base_height_mm"][2] = 0.0855, -0.002
-    values["EI_N_m2"][4], values["GJ_N_m2"][8] = 500.0, 70.0
-    edit = SkiEdit(stations, {key: float(text) for key, text in factors.items()}, values)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        heavy, _ = ski_of_texts(HEAVY, "")
-    edited = edited_ski(heavy, edit, name="x", source="x")
-    for attribute in ("width", "base_height", "bending_stiffness", "torsional_stiffness", "mass_per_length"):
-        assert getattr(found.ski, attribute) == pytest.approx(getattr(edited, attribute))
-    for words in ("GJ × 1.4", "Width (mm) 85,5 at 0.268 m", "Base height (mm) −2 at 0.537 m"):
-        assert words in found.ski.source
-    assert found.ski.source.endswith(heavy.source)
-    assert {place: found.cells[place] for place in cells} == cells  # as typed
-    shown = {(column, i) for column in CELLS for i in range(9)}
-    assert set(found.cells) == shown
-    assert found.cells["width_mm", 4] == f"{float(np.interp(0.0, -edited.station, edited.width)) * 1000:.4g}"

@@ -40,7 +40,6 @@ CARVER_FACTS = [
     "GJ at the boot", "195 N m²",
     "Mass", "2.25 kg",
 ]  # fmt: skip
-SLALOM_FACTS = ["1.593 m", "1.396 m", "116 – 68.0 – 101 mm", "13.1 m", "440 N m²", "175 N m²", "2.23 kg"]
 
 
 def test_the_page_shows_facts_charts_and_the_editor_of_a_ski(desk: Desk) -> None:
@@ -59,18 +58,6 @@ def test_the_page_shows_facts_charts_and_the_editor_of_a_ski(desk: Desk) -> None
     assert (page.field(FILE).value, page.field(TABLE_FIELD).value) == (TEXT, "")
     assert page.field("Ski").options == {name: name for name in ski_names()}
     assert list(page.field("Compared with").options) == ["nothing", "the edited ski", *ski_names()]
-
-
-def test_parts_of_the_page_have_names_and_roles(desk: Desk) -> None:
-    page = opened(desk)
-    sections = [each.props["aria-label"] for each in page.of() if each.tag == "section"]
-    assert sections == ["Drawing", "Editor"]
-    heads = [each.props["scope"] for each in page.of() if each.tag == "th"]
-    assert heads == ["col"] + ["row"] * 7 + ["col"] * 5 + ["row"] * 9
-    status = [each for each in page.of(ui.label) if "status" in each.classes]
-    assert [each.props["role"] for each in status] == ["status"] * 3
-    folded = [each for each in page.of() if each.tag == "details"]
-    assert len(folded) == len([each for each in page.of() if each.tag == "summary"]) == 5
 
 
 def sent(values: Any) -> Any:
@@ -101,27 +88,6 @@ def test_curves_of_the_ski_charts(desk: Desk) -> None:
             assert not line["points"]
             assert line["x"] == sent([*ski.station[:-1:2], ski.station[-1]])
             assert line["y"] == sent([*table[:-1:2], table[-1]])
-
-
-def test_two_skis_stand_beside_each_other(desk: Desk) -> None:
-    page = opened(desk, "/skis?ski=slalom", "slalom")
-    assert page.field("Ski").value == "slalom"
-    page.shows("Begun from slalom")
-    page.fill("Compared with", "carver")
-    page.shows("(slalom, carver)")
-    lines = page.outline()
-    facts = lines[lines.index("slalom") : next(i for i, line in enumerate(lines) if line.startswith("chart"))]
-    rows = zip(CARVER_FACTS[::2], SLALOM_FACTS, CARVER_FACTS[1::2], strict=True)
-    assert facts == ["slalom", "carver", *(each for row in rows for each in row)]
-    for ski in (SLALOM, CARVER):
-        page.shows(f"[quiet] {ski.name}: {source_words(ski)}")
-    colours = [each.style["color"] for each in page.of() if each.tag in ("td", "th") and "color" in each.style]
-    assert colours == ["#0b4f8a", "#b3450b"] * 8
-    page.fill("Compared with", "nothing")
-    page.shows("100 to 440 (slalom)")
-    assert "carver" not in page.outline()
-    page.fill("Ski", "carver")
-    page.shows("100 to 460 (carver)")
 
 
 def test_a_ski_that_there_is_not_opens_the_first_one(desk: Desk) -> None:
@@ -300,13 +266,6 @@ def page_downloads(page: Sheet) -> list[dict[str, Any]]:
     return [literal_eval(each.removeprefix("download ")) for each in page.scripts if each.startswith("download ")]
 
 
-def test_the_file_is_downloaded_as_it_is_written(desk: Desk) -> None:
-    page = opened(desk)
-    page.press("Download the file")
-    page.told("download")
-    assert downloads(page) == {"ski.toml": TEXT}
-
-
 def test_an_edited_ski_is_downloaded_with_its_table(desk: Desk, tmp_path: Path) -> None:
     page = opened(desk)
     page.fill("GJ ×", "2")
@@ -380,25 +339,6 @@ def test_a_table_that_was_changed_is_drawn_too(desk: Desk) -> None:
     page.press(SAVE)
     page.shows("Saved: again.")
     assert skis.texts("again")[1] == table
-
-
-def test_an_edit_restarts_from_the_chosen_ski(desk: Desk) -> None:
-    page = opened(desk)
-    page.fill("EI ×", "2")
-    page.fill("Width (mm) at 0.000 m", "80")
-    page.shows("127 – 80.0 – 111 mm")
-    page.fill("Ski", "slalom")
-    page.shows("(slalom, carver, edited)")
-    page.press("Begin again from the ski above")
-    page.shows("(slalom, slalom)")
-    page.shows("field Width (mm) at 0.000 m = '68' numeric")
-    lines = page.outline()
-    page.shows("Begun from slalom")
-    assert "field EI × = '1' numeric" in lines
-    assert between(lines, "Position (m)", "field GJ (N m²) at -0.749") == cells_of(SLALOM)
-    assert page.field(FILE).value == LabSkis(desk.lab.runs).texts("slalom")[0]
-    page.press("Download the file")
-    page.told("download")
 
 
 def test_cells_are_written_as_in_the_language_of_the_page(desk: Desk) -> None:

@@ -2,26 +2,19 @@
 
 import io
 import json
-import math
-import tomllib
 import zipfile
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pytest
 
-import skisnow
 from skisnow.report.formatting import significant
-from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
-from skisnow.snow import SnowProperties
-from skisnow.studies import read_study, run_study
-from skisnow.web.lab_skis import LabSkis
 from skisnow.web.pages import study as study_page
 from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
 from ..desk import Desk
-from .shared import ANGLE, FIRST, LOAD, SPEED, TURN, VALUES, asked, estimate
+from .shared import ANGLE, LOAD, TURN, asked
 
 TABLE_LINK = "link[main] Table and figure -> /study/a%20study"
 OF_CARVES = {
@@ -165,46 +158,6 @@ def test_of_two_inputs_the_one_with_more_values_is_along_the_axis(desk: Desk) ->
     assert page.tagged("th")[0].slots["default"].children[0].text == LOAD
 
 
-def test_several_skis_are_lines_of_their_names(desk: Desk) -> None:
-    LabSkis(desk.lab.runs).save_texts("mine", LabSkis(desk.lab.runs).texts("slalom")[0], "")
-    page = desk.open("/study")
-    page.fill("Further skis", ["slalom", "mine"])
-    page.fill(FIRST, "EI_factor")
-    page.fill(VALUES, "3")
-    assert estimate(page).startswith("9 points")
-    job, text = asked(desk, page)
-    mine = "ski/mine/ski.toml"
-    assert text["grid"] == {"ski": ["carver", "slalom", mine], "EI_factor": {"from": 0.5, "to": 2.0, "n": 3}}
-    assert "ski" not in text["fixed"]
-    folder = desk.lab.runs / "studies" / job["name"]
-    study = read_study(folder / "study.toml")
-    run_study(study, workers=1)
-    (folder / "job.json").write_text(json.dumps(job | {"state": "done"}), encoding="utf-8")
-    page = desk.open(f"/study/{job['name']}")
-    lines = page.charts()["Carved radius (m)"]["lines"]
-    assert [line["name"] for line in lines] == ["carver", "mine", "slalom"]
-    assert lines[1]["y"] == lines[2]["y"] != lines[0]["y"]
-    snow = SnowProperties(2e8, 5e5, source="numbers")
-    softer = skisnow.read_ski("slalom")
-    softer = edited_ski(softer, SkiEdit(edit_stations(softer), {"EI_N_m2": 0.5}), name="softer", source="test")
-    answer = skisnow.carve(softer, snow, edge_angle=math.pi / 4, load=800.0, unloading_ratio=10.0)
-    assert lines[2]["x"] == [0.5, 1.25, 2.0]
-    assert lines[2]["y"][0] == pytest.approx(answer.turn_radius_boot, abs=1e-3)
-    assert page.outline().count("mine") == 3  # in the table
-
-
-def test_a_table_of_runs(desk: Desk) -> None:
-    what = StudyQuestion("carved-46m", {"start.speed_m_per_s": Range(6.0, 9.0, 2)}, {"sledge.mass_kg": 90.0})
-    result = {"run_length_m": 30.0, "simulated_s": 5.0, "end_speed_m_per_s": 6.5, "turn_radius_median_m": 12.0}
-    rows = [{"start.speed_m_per_s": speed, **result, "outcome": "left_course"} for speed in (6.0, 9.0)]
-    page = desk.open(f"/study/{finished(desk, what, rows)}")
-    lines = page.outline()
-    assert f"[quiet] {SPEED}: 6 to 9, 2 values" in lines
-    assert lines[8:16] == [SPEED, *OF_RUNS.values(), "Outcome"]
-    assert lines[16:24] == ["6.00", "30.0", "5.00", "6.50", "12.0", "–", "–", "left course"]
-    assert page.field("Result").options == OF_RUNS
-
-
 @pytest.mark.parametrize("count", [200, 201])
 def test_a_long_table_is_shown_in_part(desk: Desk, count: int) -> None:
     rows = [{"edge_angle_deg": 10.0 + n, "outcome": "equilibrium"} for n in range(count)]
@@ -266,19 +219,3 @@ def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
     assert desk.get(f"/study/{name}").status_code == 404
     assert (desk.code, len(desk.failures)) == ("unknown_file", 1)
     desk.failures.clear()
-
-
-def test_values_are_in_the_file_as_the_command_reads_them() -> None:
-    fixed = {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": (6.0, 8.0), "ski.name": "x"}
-    what = StudyQuestion("carved-46m", {"friction.mu_0": Range(0.1, 1.0, 3, log=True)}, fixed)
-    assert tomllib.loads(what.text()) == {
-        "out": "table.csv",
-        "scenario": "carved-46m",
-        "fixed": {"shear.law": 'a "b" ü', "solver.fixed": True, "sledge.inertia_kg_m2": [6.0, 8.0], "ski.name": "x"},
-        "grid": {"friction.mu_0": {"from": 0.1, "to": 1.0, "n": 3, "log": True}},
-    }
-    assert what.fixed_words() == {}
-    assert "0.1 to 1" in what.varied_words()
-    assert Range(2.0, 5.0, 3).middle == 3.5
-    assert (what.method, what.unit_s, what.named, what.beside) == ("", 0.0, (), {})
-    assert what.files() == {"study.toml": what.text().encode()}
