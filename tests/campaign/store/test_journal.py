@@ -145,15 +145,6 @@ def test_undoing_takes_the_last_entry_back_and_keeps_it_in_the_history(store: St
     assert test.undoable is not None and test.undoable.cells["depth_mm"] == "1.5"
 
 
-def test_a_load_filled_in_late_is_in_its_place(store: Store) -> None:
-    journals = Journals(store)
-    id_ = journals.begin(TOML)
-    first = journals.append(id_, reading("1", 2, "60", "3"), seen=0)
-    journals.append(id_, reading("1", 0, "20", "1.5"), seen=first.sequence)
-    rows = replay_journal(journals.entries(id_)).test("penetration.csv", "1").rows
-    assert [row.cells["load_N"] for row in rows] == ["20", "60"]
-
-
 def test_two_who_write_about_one_test_do_not_overwrite_each_other(store: Store) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5")
@@ -179,13 +170,6 @@ def test_only_what_is_there_can_be_corrected(store: Store) -> None:
         journals.append(id_, wrong, seen=last)
     with raises(StoreError, "unknown_id"):
         journals.entries("0123456789ab")
-
-
-def test_the_list_counts_entries(store: Store) -> None:
-    journals = Journals(store)
-    id_, _ = campaign_with(journals, "1.5", "2")
-    (head,) = journals.list()
-    assert (head.id, head.n_entries) == (id_, 3)
 
 
 @pytest.mark.parametrize(
@@ -362,16 +346,6 @@ def test_what_was_undone_is_not_exported(store: Store, tmp_path: Path) -> None:
     assert [entry.action for entry in test.history] == ["add", "correct", "undo"]
     export_corrected(store, id_, tmp_path / "out")
     assert (tmp_path / "out" / "corrections.csv").read_bytes() == (place / "corrections.csv").read_bytes()
-
-
-def test_a_cancelled_test_takes_no_part(store: Store, tmp_path: Path) -> None:
-    place = tmp_path / "kept"
-    id_ = kept(store, place, PLAIN.encode())
-    entry = NewEntry(action="cancel", file="penetration.csv", test="2", who="Ada", why="the tool, slipped")
-    Journals(store).correct(id_, entry, seen=0, standing=standing(place, "2"))
-    export_corrected(store, id_, tmp_path / "out")
-    tests = read_campaign(tmp_path / "out").penetration
-    assert tests is not None and tests.cancelled == ("", "the tool, slipped")
 
 
 def test_an_entry_after_an_unseen_one_is_rejected(store: Store, tmp_path: Path) -> None:

@@ -171,8 +171,8 @@ def test_killed_at_many_moments(nursery: Nursery, folder: Path, tmp_path: Path) 
         rounds += 1
         place = tmp_path / str(rounds)
         place.mkdir()
-        seen += kill_many(nursery, folder, place, 14)
-    assert seen.total() - seen["half-written log", False] == 14 * rounds
+        seen += kill_many(nursery, folder, place, 10)
+    assert seen.total() - seen["half-written log", False] == 10 * rounds
     assert seen["writing", False] >= 1, seen
 
 

@@ -48,12 +48,9 @@ def test_a_campaign_is_given_back_byte_for_byte(address: str, tmp_path: Path) ->
     ("statements", "said"),
     [
         (["UPDATE chunk SET data = '\\x00' WHERE position = 2"], "SMP.PNT: the bytes"),
-        (["DELETE FROM campaign_file WHERE path = 'case.csv'"], "added with"),
         (["UPDATE campaign SET added_at = 'yesterday'"], "is damaged"),
         (["SET session_replication_role = replica", "DELETE FROM content WHERE size = 0"], "table campaign_file"),
-        (["DROP TABLE chunk"], "cannot be read"),
         (["UPDATE journal_entry SET cells = replace(cells, '2.25', '2.35') WHERE sequence = 3"], "'2.35'"),
-        (["UPDATE journal_entry SET uid = NULL WHERE sequence = 3"], "its uid"),
     ],
 )
 def test_verify_finds(server: Server, statements: list[str], said: str, tmp_path: Path) -> None:
@@ -174,7 +171,6 @@ def test_a_connection_that_breaks_is_reported_and_the_next_one_works(server: Ser
         ("ada:not-the-word", "emptied", "is wrong"),
         ("ada", "emptied", "PGPASSWORD"),
         (f"ada:{QUOTED}", "nowhere", "no database"),
-        (f"ada:{QUOTED}", "bare", "not allowed"),
         (f"ada:{QUOTED}", "emptied?sslmode=require", "no TLS"),
     ],
 )
@@ -244,16 +240,6 @@ def test_other_databases_are_left_alone(server: Server) -> None:
         Store.open(latin)
     with pytest.raises(StoreError, match="no store at"):
         Store.open(server.new_database(), create=False)
-
-
-def test_a_newer_store_is_rejected(server: Server) -> None:
-    address = server.new_database()
-    Store.open(address).close()
-    name = address.split("/")[3].split("?")[0]
-    server.execute("UPDATE alembic_version SET version_num = '9999'", database=name)
-    with pytest.raises(StoreError) as caught:
-        Store.open(address)
-    assert caught.value.code == "unknown_schema"
 
 
 def test_what_is_missing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:

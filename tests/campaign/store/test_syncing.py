@@ -149,15 +149,6 @@ def test_changes_of_different_cells_go_together(ada: Laptop, bo: Laptop, group: 
     assert (row.cells["depth_mm"], row.cells["edge_angle_deg"]) == ("1.75", "35")
 
 
-def test_the_same_correction_twice_is_none_to_choose(ada: Laptop, bo: Laptop, group: Store) -> None:
-    id_ = shared(ada, bo, group)
-    for laptop in (ada, bo):
-        laptop.change(id_, "1", cells={"depth_mm": "1.75"})
-    both_sync(ada, bo, group)
-    assert_alike(id_, ada.store, bo.store, group)
-    assert ada.depths(id_, "1") == ["1.75", "2.25"]
-
-
 def conflict_of_corrections(ada: Laptop, bo: Laptop, group: Store) -> str:
     id_ = shared(ada, bo, group)
     ada.change(id_, "1", cells={"depth_mm": "1.75"}, why="misheard")
@@ -310,23 +301,6 @@ def test_corrections_of_a_stored_campaign(ada: Laptop, bo: Laptop, store: Store,
     assert files[0]["corrections.csv"].decode().count("\n") == 3
     assert store.verify() == ada.store.verify() == bo.store.verify() == ()
     assert [head.id for head in bo.journals.list()] == []
-
-
-def test_conflicts_on_a_stored_campaign(ada: Laptop, bo: Laptop, group: Store, tmp_path: Path) -> None:
-    place = tmp_path / "kept"
-    id_ = kept(ada.store, place, PLAIN.encode())
-    ada.sync(group)
-    bo.sync(group)
-    for laptop, depth in ((ada, "2.25"), (bo, "2.26")):
-        entry = replace(correction("1", {"3/depth_mm": depth}), who=laptop.who)
-        laptop.journals.correct(id_, entry, seen=0, standing=standing(place, "1"))
-    ada.sync(group)
-    (conflict,) = bo.sync(group).conflicts
-    assert (conflict.name, conflict.here[0][-6:]) == ("Kept", "'2.26'")
-    bo.sync(group, {"all": "there"})
-    both_sync(ada, bo, group)
-    files = corrected_files({}, bo.journals.corrections(id_))["corrections.csv"].decode()
-    assert ("2.25" in files, "2.26" in files) == (True, False)
 
 
 def test_a_choice_about_what_has_changed_since_is_rejected(ada: Laptop, bo: Laptop, group: Store) -> None:
