@@ -73,7 +73,7 @@ def by_hand(time: float, exaggeration: float = 1.0) -> np.ndarray:
     return place + np.stack([one + 0.5 * STANCE * left, one - 0.5 * STANCE * left])
 
 
-@pytest.mark.parametrize("time", [0.0, 0.503, 1.2345, 2.0, 3.9961, 4.0])
+@pytest.mark.parametrize("time", [0.0, 1.2345, 3.9961])
 def test_skis_are_where_the_circle_has_them_at_any_time(model: GlbFile, time: float) -> None:
     found = edges_in(model, time, 10.0 * DEGREE)
     # between keys 10 ms apart a straight line cuts the circle by v² t² / 8 R = 0.067 mm; the skis turn with it

@@ -230,7 +230,8 @@ def test_synthetic_stands_wherever_the_numbers_do(reference: Reported) -> None:
 
 @pytest.mark.usefixtures("svg_alone")
 def test_a_measured_campaign_is_not_called_synthetic(campaign: Campaign, tmp_path: Path) -> None:
-    found = reported(replace(campaign, name="Hintertux", place="glacier", penetration=None), tmp_path)
+    measured = replace(campaign, name="Hintertux", place="glacier", penetration=None, shear=first_shear(campaign, 2))
+    found = reported(measured, tmp_path)
     page = re.sub(r"base64,[A-Za-z0-9+/=]+", "", found.html)
     assert "ynthetic" not in page
     assert not [path for path in tmp_path.rglob("*") if "synthetic" in path.name]
@@ -261,6 +262,8 @@ def test_what_is_not_stated_is_reported(campaign: Campaign, tmp_path: Path) -> N
         lever_arm_uncertainty=None,
         density=None,
         drop_cone=None,
+        penetration=first_series(campaign, 30),
+        shear=first_shear(campaign, 30),
     )
     text = " ".join(" ".join(_Reader(reported(silent, tmp_path).html).text).split())
     assert "no interval carries" in text
@@ -442,11 +445,13 @@ def test_results_json_is_that_of_the_estimates(reference: Reported) -> None:
 
 
 def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
-    reference: Reported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    campaign: Campaign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The second time under other settings of the drawing library, which stay as they are."""
     written: list[str] = []
     said: list[str] = []
+    small = {"penetration": first_series(campaign, 2), "shear": first_shear(campaign, 2), "drop_cone": None}
+    once = reported(replace(campaign, **small), tmp_path / "once")  # type: ignore[arg-type]
 
     def noting(path: Path, content: str | bytes) -> None:
         written.append(path.name)
@@ -455,11 +460,11 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
     monkeypatch.setattr("skisnow.report.campaign.page.write_file", noting)
     others: Any = {"font.size": 31.0, "svg.fonttype": "path", "axes.grid": True}
     with matplotlib.rc_context(others), only_drawn("svg"):
-        write_report(reference.analysis, tmp_path, progress=said.append)
+        write_report(once.analysis, tmp_path / "again", progress=said.append)
         assert matplotlib.rcParams["font.size"] == 31.0
         assert matplotlib.rcParams["svg.fonttype"] == "path"
         assert matplotlib.rcParams["axes.grid"]
-    again, first = _contents(tmp_path), _contents(reference.folder)
+    again, first = _contents(tmp_path / "again"), _contents(once.folder)
     assert again.keys() == first.keys()
     assert [name for name in first if again[name] != first[name]] == []
     assert written[-2:] == ["report.html", "results.json"]

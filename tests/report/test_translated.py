@@ -133,9 +133,9 @@ def texts_of_figure(draw: Callable[[], object], language: str) -> set[str]:
 def test_no_word_in_a_german_figure_is_left_in_english(reference: Reported, number: int) -> None:
     data = ReportData(reference.analysis)
     names = frozenset(map(figure_text, data.names))
-    english, german = (texts_of_figure(lambda: DRAWERS[number](data, site_styles(data)), code) for code in ("en", "de"))
+    german = texts_of_figure(lambda: DRAWERS[number](data, site_styles(data)), "de")
     german = {re.sub(r"\$[^$]*\$", "", each) for each in german} - names
-    assert {each for each in english if re.search("[a-z]{4}", each)} - names
+    assert any(re.search("[a-z]{4}", each) for each in german)
     assert {each for each in german if ENGLISH.search(each) and not CODES.fullmatch(each)} == set()
     assert {each for each in german if re.search(r"\d\.\d", each)} == set()
 
@@ -180,12 +180,16 @@ def test_no_word_in_german_figures_of_tracks_is_left_in_english() -> None:
     )
     found = compare_tracks(simulated, measured)
     summary = track_summary(measured)
-    drawings = [*(lambda name=name: next(each for each in track_drawings(summary) if each.name == name)
-                  for name in ("map", "speed", "radius", "along")), lambda: comparison_drawing(found)]  # fmt: skip
-    for draw in drawings:
-        english, german = (texts_of_figure(draw, code) for code in ("en", "de"))
-        german = {re.sub(r"\$[^$]*\$", "", each) for each in german}
-        assert {each for each in german if ENGLISH.search(each)} == set()
+    shown: dict[str, list[set[str]]] = {}
+    for code in ("en", "de"):
+        with journal_style(), in_language(code):
+            drawings = [*track_drawings(summary), comparison_drawing(found)]
+            for each in drawings:
+                local_axes(each.figure)
+            shown[code] = [set(written(each)) for each in drawings]
+    assert len(shown["en"]) == 5
+    for english, german in zip(shown["en"], shown["de"], strict=True):
+        assert {each for each in german if ENGLISH.search(re.sub(r"\$[^$]*\$", "", each))} == set()
         assert len(english) > 5
         assert {each for each in english & german if re.search("[a-z]{4}", each)} == set()
 
