@@ -22,6 +22,7 @@ from skisnow.estimation.hardness import (
     hardness_of_all_readings,
 )
 from skisnow.estimation.layering import growing_hardness, second_moment, site_growth
+from skisnow.estimation.parts import _hardness_change
 from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.estimation.spread_groups import bartlett
 from skisnow.geometry import Disc, LyingCylinder, SkiPiece, Tool
@@ -84,6 +85,13 @@ def test_at_zero_depth_there_is_no_hardness() -> None:
     for measured in found.values():
         assert np.isnan(measured.value).all()
         assert np.isnan(measured.interval).all()
+
+
+def test_the_change_of_hardness_by_the_seating_by_hand() -> None:
+    """Flat, V ~ e: 2 mm less 0.5 mm are 4/3 of the hardness; of a seating as deep as the reading nothing is left."""
+    readings = pressed(SkiPiece(0.2, 0.062), 0.0, np.array([[0.001, 0.002]] * 3), np.array([100.0, 200.0]))
+    found = _hardness_change(readings, np.array([0.0, 0.5e-3, 2e-3]))
+    assert found == pytest.approx([0.0, 1.0 / 3.0, math.nan], nan_ok=True)
 
 
 def test_the_interval_of_eqn_1_by_hand() -> None:

@@ -73,6 +73,14 @@ def test_each_site_has_its_own_mean_with_the_interval_of_its_experiments() -> No
     assert math.isnan(second.own.low)
 
 
+def test_values_without_a_logarithm_have_no_geometric_mean_and_no_interval() -> None:
+    none = own_mean(np.array([0.0, 1.0]), ["A"] * 2, geometric=True)
+    assert np.isnan([none.value, none.low, none.high, none.minimum, none.maximum]).all()
+    below = own_mean(np.array([-1.0, 0.5]), ["A"] * 2, geometric=False)
+    assert below.value == -0.25
+    assert math.isnan(below.low) and math.isnan(below.high)
+
+
 def test_published_values_are_those_that_the_paper_prints() -> None:
     own = own_mean(np.array([1.0, 2.0]), ["A", "A"], geometric=False)
     density = own_mean(np.array([500.0, 500.0]), ["A", "A"], geometric=False)
@@ -327,6 +335,17 @@ def test_sites_share_a_letter_where_they_are_not_shown_to_differ() -> None:
     assert letters_of_groups(pairs, ["C", "B", "A"]) == {"C": "a", "B": "b", "A": "b"}
     means = site_means("H_V_N_per_mm3", values, names, geometric=True, pairs=pairs)
     assert [(row.site, row.letters) for row in means] == [("A", "b"), ("B", "b"), ("C", "a")]
+
+
+def test_sites_are_lettered_from_the_largest_mean() -> None:
+    scatter = 0.02 * np.array([-1.0, 0.0, 1.0, 0.5, -0.5])
+    logs = np.concatenate([each + scatter for each in (0.0, 2.0, 1.99)])
+    sites = [*"AAAAABBBBBCCCCC"]
+    pairs = compare_groups(of(logs, site=sites), "site")
+    means = site_means("H_V", np.exp(logs), sites, geometric=True, pairs=pairs)
+    assert [(mean.site, mean.letters) for mean in means] == [("A", "b"), ("B", "a"), ("C", "a")]
+    (alone,) = site_means("H_V", np.exp(logs[:5]), sites[:5], geometric=True)
+    assert alone.letters == ""
 
 
 def test_errors_come_from_the_intervals() -> None:
