@@ -150,7 +150,7 @@ class TestChangingInclination:
             np.concatenate([[0.0], np.cumsum(part * np.diff(way))]) for part in (np.cos(middle), -np.sin(middle))
         )
         path = folder / "profile.csv"
-        rows = "\n".join(f"{a:.9f},{b:.9f}" for a, b in zip(x[::10], height[::10], strict=True))
+        rows = "\n".join(f"{a:.9f},{b:.9f}" for a, b in zip(x[::20], height[::20], strict=True))
         path.write_text(f"x,y\n{rows}\n", encoding="utf-8")
         return path
 
