@@ -139,10 +139,14 @@ def test_a_fault_is_reported_with_its_place(tmp_path: Path, text: str, said: str
     assert str(error.value).startswith(str(path))
 
 
-@pytest.mark.parametrize("step", [0.1, 1.0, 20.0])
-def test_curve_that_falls_below_zero_is_rejected(step: float) -> None:
-    """From 4 to 0.01 and on as flat: central differences let the curve swing 0.3 below, however far apart they are."""
-    values = np.array([4.0, 4.0, 0.01, 0.01]) * N_PER_MM3
+@pytest.mark.parametrize("step", [0.1, 20.0])
+@pytest.mark.parametrize("curve", [[4.0, 4.0, 0.01, 0.01], [2.5, 1.0, 0.01, 3.0], [3.0, 0.01, 1.0, 2.5]])
+def test_curve_that_falls_below_zero_is_rejected(curve: list[float], step: float) -> None:
+    """From 4 to 0.01 and on as flat: central differences let the curve swing 0.3 below, however far apart they are.
+
+    In the others it does so beside one low place only, before it or behind it.
+    """
+    values = np.array(curve) * N_PER_MM3
     with pytest.raises(ParameterError, match="goes below 0 at x = "):
         SnowMap(hardness=Grid.along(step * np.arange(4.0), values))
     with pytest.raises(ParameterError, match="goes below 0 at x = 0 m, y = "):
