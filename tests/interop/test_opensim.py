@@ -75,8 +75,10 @@ def test_a_table_of_another_program(tmp_path: Path) -> None:
     [
         (MOT.replace("endheader\n", ""), "endheader"),
         (MOT.replace("nRows=2", "nRows=5"), "nRows=5"),
+        (MOT.replace("nRows=2", f"nRows={'9' * 5000}"), "nRows=9999"),
         (MOT.replace("nColumns=3", "nColumns=4"), "nColumns=4"),
         (MOT.replace("0.75", "O.75"), "line 11"),
+        (MOT.replace("0.75\t", ""), "line 11: 2"),
         (MOT.replace("0.01\t", "0.00\t"), "row 2 is 0 s"),
         (MOT.replace("time\t", "t\t"), "line 9"),
     ],
@@ -187,11 +189,13 @@ def test_axes_with_z_up_need_no_turn() -> None:
     ("changes", "words"),
     [
         ({"time": np.zeros(0), "place": np.zeros((0, 2, 3))}, coded("wrong_shape", field="markers", shape="(0,)")),
+        ({"time": np.zeros((2, 1))}, coded("wrong_shape", field="markers", shape="(2, 1)")),
         ({"time": np.array([0.0, np.nan])}, coded("not_a_number", field="markers", row=2)),
         ({"time": np.array([0.1, 0.1])}, coded("not_a_number", field="markers", row=2, time=0.1)),
         ({"place": np.zeros((2, 3, 3))}, coded("wrong_shape", shape="(2, 3, 3)", needed="(2, 2, 3)")),
         ({"names": ("a", "a")}, "repeated"),
         ({"rate": 0.0}, coded("out_of_range", rate=0.0)),
+        ({"rate": np.inf}, "out_of_range"),
     ],
 )
 def test_markers_that_do_not_fit_are_rejected(changes: dict[str, object], words: str | Coded) -> None:

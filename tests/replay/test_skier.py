@@ -238,7 +238,11 @@ def test_a_round_shape_is_closed_in_the_middles_of_its_end_rings() -> None:
             "lower leg": [-8, -7, -6, 8, 7, 47], "thigh": [-10, -9, -5, 10, 9, 47],
             "upper arm": [-7, -6, -7, 7, 6, 36], "forearm": [-5, -5, -4, 5, 5, 33], "pole": [-4, -4, -9, 4, 4, 116],
         }),
-
+        (1.5, {
+            "trunk": [-13, -19, -9, 12, 19, 47], "head": [-9, -9, -2, 12, 9, 26], "boot": [-20, -6, 1, 20, 6, 17],
+            "lower leg": [-8, -7, -6, 8, 7, 41], "thigh": [-10, -9, -4, 10, 9, 40],
+            "upper arm": [-7, -6, -6, 7, 6, 31], "forearm": [-5, -5, -3, 5, 5, 29], "pole": [-4, -4, -9, 4, 4, 99],
+        }),
     ],
 )  # fmt: skip
 def test_parts_are_as_large_as_those_that_were_looked_at(height: float, boxes: dict[str, list[int]]) -> None:

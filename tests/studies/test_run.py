@@ -305,7 +305,7 @@ def test_rows_of_a_point_that_differ_are_rejected(study_file: Path) -> None:
         merge_shards(study_file.parent / "merged.csv", parts)
 
 
-@pytest.mark.parametrize("word", ["0/3", "3", "a/b", "1/20000"])
+@pytest.mark.parametrize("word", ["0/3", "4/3", "3", "a/b", "1/0", "1/20000"])
 def test_an_invalid_part_is_rejected(word: str) -> None:
     with raises(ParameterError, "out_of_range"):
         Shard.of(word)

@@ -158,8 +158,11 @@ def test_scenario_of_a_file_and_files_of_points_count_in_the_fingerprint(tmp_pat
     ("old", "new", "told"),
     [
         ('"carved-46m"', '"carved-46"', "carved-46"),
+        ('"carved-46m"', "3", "scenario is 3"),
         ("drag_area_m2", "drag_aria_m2", "drag.drag_area_m2?"),
         ("drag_area_m2 = 0", "drag_area_m2 = 0\ndrag = { drag_area_m2 = 1 }", "given twice"),
+        ("drag_area_m2 = 0", "drag_area_m2 = -1", "drag_area_m2 is -1"),
+        ("drag_area_m2 = 0", "drag_area_m2 = 0\nski.name = 'slalon'", "slalom?"),
         ("slope.angle_deg", "duration_s", "in [grid] and in [fixed]"),
         ("[5, 6, 7]", "[[5, 6, 7], [6, 7, 8]]", "[a, b, c]"),
     ],

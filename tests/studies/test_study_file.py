@@ -99,6 +99,7 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
     [
         (OUT + FIXED, "contradiction"),
         (OUT + FIXED + GRID + "[latin_hypercube]\nn = 3\nseed = 1\nload_N = { from = 1, to = 2 }", "contradiction"),
+        (OUT + FIXED + "[grid]\n", "missing"),
         (OUT + FIXED + "[gird]\nload_N = [1]\n", coded("unknown_name", similar="grid", key="gird")),
         (
             OUT + FIXED + "[grid]\nedge_angel_deg = [30]\n",
@@ -109,9 +110,14 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         (OUT + FIXED + "[grid]\nedge_angle_deg = []\n", "out_of_range"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = [30, 30.0]\n", coded("repeated", repeated=30.0)),
         (OUT + FIXED + '[grid]\nedge_angle_deg = [30, "forty"]\n', coded("wrong_kind", value="'forty'")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = [true]\n", "wrong_kind"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "missing"),
         (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", coded("unknown_name", name="till")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", coded("missing", name="to")),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "wrong_kind"),
+        (OUT + FIXED.replace("race-piste", "race-pist") + GRID, coded("unknown_name", similar="race-piste")),
         (OUT + FIXED.replace("slalom", "slalon") + GRID, coded("unknown_name", similar="slalom", name="slalon")),
+        (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "cannot_read"),
         (
             OUT + FIXED.replace("_ratio = 10", "_ratio = 0.5") + GRID,
             coded("out_of_range", low=1.0, name="unloading_ratio", value="0.5"),
@@ -126,7 +132,9 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
         ),
         (OUT + FIXED + "clamp_length_m = 300\n" + GRID, coded("out_of_range", in_metres=0.3)),
         (OUT + FIXED + 'results = "nowhere.json"\n' + GRID.replace("[grid]", "[grid]"), "contradiction"),
+        (OUT + FIXED.replace("published", "results") + GRID, "wrong_kind"),
         (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "contradiction"),
+        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", "out_of_range"),
         (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
             coded("out_of_range", name="to", value="nan"),
@@ -136,18 +144,36 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
             coded("out_of_range", low=0.0),
         ),
         (
+            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
+            coded("out_of_range", low=2, name="n", value="1"),
+        ),
+        (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "wrong_kind"),
+        (
             OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n",
             coded("out_of_range", n=2000000),
         ),
+        (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", coded("no_data", name="twist")),
         (OUT + FIXED + "[grid]\nelements = [80, 80.5]\n", coded("wrong_kind", value="80.5")),
+        (OUT + FIXED + "edge_angle_deg = [3]\n[grid]\nelements = [80]\n", "wrong_kind"),
+        (
+            OUT + FIXED + "[latin_hypercube]\nn = 5\nedge_angle_deg = { from = 3, to = 60 }\n",
+            coded("missing", name="seed"),
+        ),
         (
             OUT + FIXED + "[latin_hypercube]\nn = 0\nseed = 1\nelements = [80]\n",
             coded("out_of_range", low=1, name="n", value="0"),
         ),
+        (
+            OUT + FIXED + "[latin_hypercube]\nn = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n",
+            "contradiction",
+        ),
         (FIXED + GRID, "wrong_kind"),
+        ('out = "table.xlsx"\n' + FIXED + GRID, "wrong_ending"),
         (OUT + GRID, coded("missing", name="ski")),
+        (OUT + FIXED.replace('published = "race-piste"\n', "") + GRID, "missing"),
         (OUT + FIXED + "H_V_N_per_mm3 = 3\n" + GRID, "contradiction"),
         (OUT + FIXED.replace("unloading_ratio = 10\n", "") + GRID, coded("missing", name="unloading_ratio")),
+        ("out = table.csv\n", "not_toml"),
     ],
 )
 def test_each_mistake_is_reported_with_the_file(text: str, told: str | Coded, tmp_path: Path) -> None:

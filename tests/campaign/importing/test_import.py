@@ -97,6 +97,13 @@ def test_everyday_workbook_needs_no_answer() -> None:
     assert proposal.files["original/Hang.xlsx"] == bytes_of(everyday()) or proposal.files["original/Hang.xlsx"]
 
 
+def test_sheet_named_like_a_table_is_imported_once() -> None:
+    book = everyday()
+    book["Hang oben"].title = "shear"
+    proposal = propose(FILE, bytes_of(book), Answers(site={"shear": "Hang oben"}))
+    require_right(proposal)
+
+
 def _set(sheet: str, cell: str, value: Any) -> Callable[[Workbook], None]:
     def change(book: Workbook) -> None:
         book[sheet][cell] = value
@@ -242,6 +249,8 @@ TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
         _merged_to_the_right,
         _set("Hang oben", "A3", "Ort: Hang oben"),
         _set("Hang oben", "C5", "Gewicht"),
+        _set("Hang oben", "C5", "Masse"),
+        _set("Hang oben", "C6", "[kg]"),
         _set("Notizen", "A1", TOOLS),
         _set("Hang oben", "F8", "gut"),
     ],
@@ -268,16 +277,23 @@ OPEN = [
     (_set("Hang oben", "C6", None), {"unit": {"penetration.Last": "kg"}}),
     (_set("Hang oben", "C6", "lbs"), {}),
     (_set("Hang oben", "D16", None), {}),
+    (_set("Hang oben", "C5", "Zusatz"), {"column": {"Zusatz": "load_N"}}),
     (_set("Hang oben", "D5", "Tiefe der Messuhr"), {"column": {"Tiefe der Messuhr": "depth_mm"}}),
     (_set("Hang oben", "E5", "Tiefe"), {"column": {"Tiefe": "-", "shear.Tiefe": "depth_mm"}}),
     (_set("Hang oben", "A1", "Schneemessung am 14.02.2026"), {"site": {"Hang oben": "Hang oben"}}),
+    (_set("Hang oben", "A3", "Ort: Gletscher"), {"site": {"Hang oben": "Hang oben"}}),
     (_set("Notizen", "A1", "Scherblatt 100 mm"), {"tool": {"": "ski 200 x 62 mm"}}),
+    (_set("Notizen", "A1", "Skistück 200 x 62; Scherblatt 100 mm"), {"tool": {"": "ski 200 x 62 mm"}}),
     (_set("Notizen", "A1", "Skistück 62 x 200 mm; Scherblatt 100 mm"), {"ignore": {"Notizen!1": "yes"},
         "tool": {"": "ski 200 x 62 mm"}, "plate": {"": "100 mm"}}),
+    (_set("Notizen", "A1", "Skistück 200 x 62 mm; Scherblatt 100 mm, ab S4 80 mm"), {"ignore": {"Notizen!1": "yes"},
+        "tool": {"": "ski 200 x 62 mm"}, "plate": {"": "100 mm"}}),
     (_set("Notizen", "A2", "Last ohne Stempel (2,1 kg)"), {"ignore": {"Notizen!2": "yes"}}),
+    (_set("Notizen", "A2", "Last in N"), {}),
     (_unmerge, {"cells": {"fill-down": "yes"}}),
     (_insert_row(13, ["Mittelwert", 30, "30,0", "1,2"]), {"ignore": {"Hang oben!13": "yes"}}),
     (_set("Hang oben", "D7", "0.63"), {}),
+    (_set("Hang oben", "D7", "ca. 0,63"), {}),
     (_set("Hang oben", "F9", "1,59"), {"ignore": {"Hang oben!F": "yes"}}),
     (_second_sheet, {"table": {"Alle Daten:5": "-", "Alle Daten:15": "-"}}),
 ]  # fmt: skip
@@ -342,17 +358,21 @@ ROWS = [["1", 30, 10, 0.63], ["1", 30, 50, 1.41], ["2", 45, 10, 0.72], ["2", 45,
 RIGHT = [
     # series in neighbouring columns
     ([["Hang oben"], ["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel: 45 °"], *PAIRS], {}),
+    ([["Versuch 1, Kantwinkel 30°", None, "Versuch 2, Kantwinkel 45°"], *PAIRS], {}),
     ([["Versuch", 1, None, 2], ["Kantwinkel [°]", 30.0, None, 45.0], [None, *PAIR * 2],
         [None, *PAIRS[1]], [None, *PAIRS[2]]], {}),
     ([["Hang oben"], [1, None, 2], [30, None, 45], *PAIRS], {
         "column": {"Hang oben:2": "experiment", "Hang oben:3": "edge_angle_deg"}, "unit": {"Hang oben:3": "°"}}),
     ([["Versuch", 1, 2], ["Kantwinkel [°]", 30, 45], ["Last [kg]", "Tiefe [mm]", "Tiefe [mm]"], [10, 0.63, 0.72],
         [50, 1.41, 1.59]], {}),
+    ([["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel 45°"], [*PAIR, "Last [N]", "Tiefe [cm]"],
+        [10, 0.63, 10 * G, 0.072], [50, 1.41, 50 * G, 0.159]], {}),
     ([["Versuch", "Kantwinkel [°]", *PAIR] * 2, [1, 30, 10, 0.63, 2, 45, 10, 0.72], [1, 30, 50, 1.41, 2, 45, 50, 1.59]],
         {}),
     # headings on two rows
     ([["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel [°]", "[kg]", "tiefe [mm]"], *ROWS], {}),
     ([["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel", None, "tiefe"], [None, "°", "kg", "mm"], *ROWS], {}),
+    ([["Test", "Edge", "Load", "Penetration"], ["no.", "angle [°]", "[kg]", "depth [mm]"], *ROWS], {}),
     ([[None, None, "Last"], ["Versuch", "Kantwinkel [°]", "[kg]", "Tiefe [mm]"], *ROWS], {}),
     ([["Versuch", "Kantwinkel", "Last", "Tiefe"], [None, None, "in kg", "in mm"], *ROWS],
         {"unit": {"Kantwinkel": "°"}}),
@@ -360,10 +380,15 @@ RIGHT = [
 ASKED = [
     [["Hang oben"], *PAIRS],
     [["Hang oben"], ["A", None, "B"], [30, None, 45], *PAIRS],
+    [["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°"], *PAIRS],
+    [["Versuch 1", None, "Versuch 2"], ["Kantwinkel", 30, "Kantwinkel 45°"], *PAIRS],
     [["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel 45°"], [*PAIR, *PAIR[::-1]], *PAIRS[1:]],
+    [["Versuch", "Kantwinkel [°]", *PAIR, "Tiefe [mm]"], [1, 30, 10, 0.63, 0.72], [1, 30, 50, 1.41, 1.59]],
     [["Versuch", "Kant-", "Last", "Nach-"], ["Nr.", "winkel [°]", "[kg]", "tiefe [mm]"], *ROWS],
     [[None, None, None, "Nach-"], ["Versuch", "Kantwinkel [°]", "Last [kg]", "tiefe [mm]"], *ROWS],
     [[None, None, "Auflast", "Kegel"], ["Versuch", "Kantwinkel [°]", "Last [kg]", "Tiefe [mm]"], *ROWS],
+    [["Versuch", "Kantwinkel", "Last", None, "Tiefe"], ["Nr.", "°", "Masse [kg]", "Kraft [N]", "mm"],
+        ["1", 30, 10, 98.1, 0.63]],
     [["Versuch", "Kantwinkel", "Last", "Tiefe"], ["A", "30°", "100 N", "0,5 mm"], ["A", "30°", "200 N", "0,9 mm"]],
 ]  # fmt: skip
 

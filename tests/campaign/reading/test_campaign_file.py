@@ -176,6 +176,10 @@ def test_a_broken_file_of_corrections(
     assert (problem.code, problem.row, problem.column) == expected
 
 
+def test_a_header_alone_is_no_correction(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    assert check_campaign(write_campaign({**small_campaign, FILE: corrections()})) == ()
+
+
 @pytest.mark.parametrize(("standing", "old"), [("2.s", ""), ("2.s", "abc"), ("", "unknown")])
 def test_two_texts_that_are_no_numbers_are_not_equal(
     write_campaign: WriteCampaign, small_campaign: dict[str, str], standing: str, old: str
@@ -270,6 +274,12 @@ def test_toml_that_python_cannot_hold(value: str) -> None:
     described, (problem,) = read(f"a = {value}")
     assert described is None
     assert problem.code == "bad_toml"
+
+
+@pytest.mark.parametrize(("digits", "row"), [(20, None), (400, 1)])
+def test_whole_number_beyond_those_of_toml(digits: int, row: int | None) -> None:
+    _, (problem,) = read("load_uncertainty_N = 1" + "0" * digits)
+    assert (problem.code, problem.row) == ("bad_toml", row)
 
 
 def test_number_too_large_for_a_float() -> None:

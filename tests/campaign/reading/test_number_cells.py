@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -79,6 +80,12 @@ def test_a_long_cell_is_rejected_after_one_pass() -> None:
     for cell in ("1" * 1_000_000 + "x", "1" * 1_000_000, "." * 1_000_000, "1e" + "1" * 1_000_000 + "e"):
         assert not is_number(cell, ".")  # with backtracking this would take hours
         assert math.isnan(number(cell))
+
+
+def test_every_number_in_double_precision_can_be_written_in_full() -> None:
+    longest = format(Decimal(-math.nextafter(2.0**-1022, 0.0)), "f")
+    assert len(longest) == 1077
+    assert number(longest) == -math.nextafter(2.0**-1022, 0.0)
 
 
 @pytest.mark.parametrize("length", [200, 201, 30_000])

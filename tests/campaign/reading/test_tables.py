@@ -217,12 +217,14 @@ def test_decode(data: bytes, text: str, foreign: str | None) -> None:
     "data",
     [
         b"PK\x03\x04\x14\x00\x06\x00\x08\x00",  # a workbook
+        b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR",
         b"a,b\n1,\x00\n",
         b"\xff\xfea",  # half a UTF-16 character
-        # promises UTF-8
+        b"\xef\xbb\xbfa\xff",  # promises UTF-8
         b"\xe9\x81",  # 0x81 is not a Windows-1252 character
-        # without byte order mark
+        "a,b\n1,2\n".encode("utf-16-le"),  # without byte order mark
         "a,b\n1,2\n".encode("utf-32"),
+        bytes(range(1, 32)) * 10,
         b"\xe9" + bytes([1, 2, 3, 4]) * 3,
     ],
 )
@@ -238,9 +240,12 @@ def test_binary_is_rejected(data: bytes) -> None:
         (b"a,b;c,d\n", ","),
         (b"a;b;c\n1,5;2,5;3,5\n", ";"),
         (b'"a,b,c,d";e\n', ";"),
+        (b'"a\nb,c,d";e\n', ";"),
         (b"a\tb\n", "\t"),
+        (b"a\n", ","),
         (b";;;\r\n\r\na,b\r\n", ","),
         (b"sep=;\na,b,c;d\n", ";"),
+        (b'"sep=\t"\r\na,b\n', "\t"),
         (b"SEP=,\na;b;c\n", ","),
     ],
 )

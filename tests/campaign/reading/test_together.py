@@ -62,6 +62,11 @@ def test_the_spot_may_be_in_any_row(write_campaign: WriteCampaign, small_campaig
     assert tests.spot == ("a", "")
 
 
+def test_samples_of_one_name_are_fine(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+    small_campaign[DENSITY] = small_campaign[DENSITY].replace("D2", "D1")
+    assert check_campaign(write_campaign(small_campaign)) == ()
+
+
 def test_unknown_tool_is_reported_once_in_each_experiment(
     write_campaign: WriteCampaign, small_campaign: dict[str, str]
 ) -> None:
@@ -113,6 +118,13 @@ def test_angles_that_look_like_radians(
     problems = check_campaign(write_campaign(small_campaign))
     expected = ("angles_look_like_radians", PEN, None, "edge_angle_deg", None, f"{angle} to {angle}")
     assert [(problem.severity, where(problem)) for problem in problems] == [("warning", expected)] * warned
+
+
+def test_flat_tests_alone_do_not_look_like_radians(
+    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+) -> None:
+    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", "piece,0")
+    assert check_campaign(write_campaign(small_campaign)) == ()
 
 
 # Shear experiments of several rows: one moment for each turning angle

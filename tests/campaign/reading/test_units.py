@@ -88,7 +88,9 @@ def test_loads_that_look_like_kg_are_rejected_with_both_readings(write_campaign:
     [
         "Last [kg]",
         "Last (kg)",
+        "Last / kg",
         "Last in kg",
+        "Last kg",
         "Last_kg",
     ],
 )
@@ -98,7 +100,7 @@ def test_a_heading_in_kg_is_believed(write_campaign: WriteCampaign, heading: str
     assert [each.code for each in check_campaign(folder)] == ["converted_unit"]
 
 
-@pytest.mark.parametrize("heading", ["Last [N]", "Last / N", "Last_N", "load_N"])
+@pytest.mark.parametrize("heading", ["Last [N]", "Last (N)", "Last / N", "Last N", "Last_N", "load_N"])
 def test_a_heading_in_newtons_is_believed(write_campaign: WriteCampaign, heading: str) -> None:
     folder = write_campaign(campaign(load=heading))
     assert loads_of(read_campaign(folder)) == [10.0, 30.0, 50.0]
@@ -124,8 +126,10 @@ def test_a_unit_in_campaign_toml_is_believed(write_campaign: WriteCampaign, line
     ("loads", "refused"),
     [
         ([10, 30, 50], True),
+        ([10.5, 30, 79.5], True),
         ([10, 30, 80], False),
         ([10, 30.25, 50], False),
+        ([12, 92, 492], False),
         ([98.07, 196.13], False),
     ],
 )
@@ -156,6 +160,8 @@ def test_lever_arms_in_cm_are_rejected_with_both_readings(write_campaign: WriteC
     [
         ("Hebelarm [cm]", 25, 250.0),
         ("Hebelarm [m]", 0.25, 250.0),
+        ("Hebelarm_m", 6, 6000.0),
+        ("Hebelarm [mm]", 25, 25.0),
         ("lever_arm_mm", 6000, 6000.0),
     ],
 )
@@ -169,11 +175,17 @@ def test_stated_lever_arms_are_believed(
     assert float(shear.lever_arm[0]) == pytest.approx(1e-3 * millimetres)
 
 
-@pytest.mark.parametrize(("arm", "unit"), [(0.25, "m"), (25, "cm"), (5001, "µm"), (250000, "µm")])
+@pytest.mark.parametrize(("arm", "unit"), [(0.25, "m"), (25, "cm"), (60, "cm"), (5001, "µm"), (250000, "µm")])
 def test_lever_arms_that_are_rejected(write_campaign: WriteCampaign, arm: float, unit: str) -> None:
     (problem,) = problems(write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{arm},23.1\n", load="Last [N]")))
     assert (problem.code, problem.severity) == ("unit_missing", "error")
     assert f'units."Hebelarm" = "{unit}"' in problem.action
+
+
+def test_one_lever_arm_above_five_metres_is_enough(write_campaign: WriteCampaign) -> None:
+    rows = SHEAR + "S3,A,blade,90,5.8,5000.5,23.1\n"
+    (problem,) = [each for each in problems(write_campaign(campaign(shear=rows, load="Last [N]"))) if each.row]
+    assert problem.code == "unit_missing"
 
 
 @pytest.mark.parametrize(
@@ -200,6 +212,8 @@ def test_other_quantities_below_silent_headings(
     ("heading", "column", "cell", "value"),
     [
         ("Dichte [g/cm³]", SNOW_DENSITY, 0.41, 410.0),
+        ("Dichte g/cm3", SNOW_DENSITY, 0.41, 410.0),
+        ("Dichte [kg/l]", SNOW_DENSITY, 0.41, 410.0),
         ("Dichte [g/l]", SNOW_DENSITY, 410.0, 410.0),
     ],
 )
@@ -244,9 +258,12 @@ def test_ranges_and_corrections_are_those_of_the_file(write_campaign: WriteCampa
     ("changes", "code", "file", "column"),
     [
         ({"toml": 'units.Last = "kgg"'}, "bad_toml", "campaign.toml", "units.Last"),
+        ({"toml": "units.Last = 3"}, "bad_toml", "campaign.toml", "units.Last"),
         ({"toml": 'units.Lasst = "kg"', "load": "Last [N]"}, "bad_toml", "campaign.toml", "units.lasst"),
         ({"toml": 'units.shear.Last = "kg"', "load": "Last [N]"}, "bad_toml", "campaign.toml", "units.shear.last"),
         ({"toml": 'units.Last = "mm"'}, "other_unit", "penetration.csv", "load_N"),
+        ({"toml": 'units."Last [N]" = "kg"', "load": "Last [N]"}, "other_unit", "penetration.csv", "load_N"),
+        ({"toml": 'units.load_N = "kg"', "load": "load_N"}, "other_unit", "penetration.csv", "load_N"),
         ({"load": "Last [MN]"}, "other_unit", "penetration.csv", "load_N"),
     ],
 )
@@ -271,6 +288,11 @@ def test_a_row_of_units_that_contradicts_is_rejected(write_campaign: WriteCampai
     for changes in ({"load": "Last [N]"}, {"load": "load_N"}, {"toml": 'units.Last = "N"'}):
         (problem,) = problems(write_campaign(campaign(f",,,°,kg,mm\n{LOADS}", **changes)))  # type: ignore[arg-type]
         assert (problem.code, problem.column) == ("other_unit", "load_N")
+
+
+def test_a_row_with_numbers_is_not_one_of_units(write_campaign: WriteCampaign) -> None:
+    found = problems(write_campaign(campaign(f"1,A,ski,30,kg,mm\n{LOADS}", load="Last [kg]")))
+    assert [(each.code, each.row) for each in found] == [("not_a_number", 2), ("not_a_number", 2)]
 
 
 def test_the_same_unit_twice_is_no_contradiction(write_campaign: WriteCampaign) -> None:

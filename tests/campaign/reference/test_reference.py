@@ -16,7 +16,7 @@ import skisnow
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.campaign.reading import read_campaign
 from skisnow.campaign.reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
-from skisnow.campaign.reference.design import PENETRATION_SITES
+from skisnow.campaign.reference.design import FURTHER_SHEAR_SITES, PENETRATION_SITES
 from skisnow.campaign.screening import screen_penetration
 
 QUIET = ReferenceNoise(
@@ -221,6 +221,19 @@ def test_density_and_drop_cone_know_nothing_of_the_hardness() -> None:
         assert values.mean() == pytest.approx(mean, rel=1e-3)  # the paper's mean, to its digits
 
 
+def test_drop_cones_at_the_shear_tests_have_no_relation_with_density() -> None:
+    drawn = reference_campaign(1)
+    cone = drawn.drop_cone.site_means()
+    at_90 = np.isfinite(drawn.shear.snow_density)
+    sites = np.array(drawn.shear.site)[at_90]
+    assert at_90.sum() == 58
+    assert set(sites) <= cone.keys()
+    every: list[Any] = [*PENETRATION_SITES, *FURTHER_SHEAR_SITES]
+    planned = {site.name: site for site in every}
+    density, depth = ([getattr(planned[site], name) for site in sites] for name in ("snow_density", "drop_cone_depth"))
+    assert abs(np.corrcoef(density, depth)[0, 1]) < 0.05  # p above 0.7 over 58 tests
+
+
 def test_same_seed_same_bits_another_seed_others() -> None:
     first, again, other = reference_campaign(11), reference_campaign(11), reference_campaign(12)
     for name in ("snow_hardness", "seating_offset", "layering", "penetration_depth", "failure_shear_stress"):
@@ -306,6 +319,12 @@ def test_an_existing_campaign_is_not_overwritten(tmp_path: Path, name: str) -> N
         write_reference(tmp_path, seed=1)
     assert [path.name for path in tmp_path.iterdir()] == [name]
     assert (tmp_path / name).read_text() == "mine"
+
+
+def test_other_files_in_the_folder_are_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    write_reference(tmp_path, seed=1)
+    assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
 def test_a_move_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

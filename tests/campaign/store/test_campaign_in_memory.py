@@ -169,9 +169,12 @@ PENETRATION = FORMS["penetration.csv"]
     [
         ("experiment", " P1 ", "P1"),
         ("spot", "", ""),
+        ("remark", "", ""),
         (SNOW_DENSITY, "350", "350"),
+        (SNOW_DENSITY, " ", ""),
         ("load_N", "70.5", "70.5"),
         ("load_N", "70,5", "70.5"),
+        ("load_N", "70", "70"),
     ],
 )
 def test_what_is_written_down(column: str, typed: str, written: str) -> None:
@@ -184,6 +187,8 @@ def test_what_is_written_down(column: str, typed: str, written: str) -> None:
         ("penetration.csv", "experiment", "  ", "empty", NAME),
         ("penetration.csv", "load_N", "", "empty", Message(ABOVE, low=0.0)),
         ("penetration.csv", "load_N", "0", "not_allowed", Message(ABOVE, low=0.0)),
+        ("penetration.csv", "load_N", "1,234.5", "not_allowed", Message(ABOVE, low=0.0)),
+        ("penetration.csv", "load_N", "seventy", "not_allowed", Message(ABOVE, low=0.0)),
         ("penetration.csv", "depth_mm", "-1", "not_allowed", Message(AT_LEAST, low=0.0)),
         ("penetration.csv", "edge_angle_deg", "90", "not_allowed", Message(BETWEEN[False, True], low=0.0, high=90.0)),
         ("penetration.csv", "air_temperature_C", "nan", "not_allowed", ANY_NUMBER),
@@ -193,6 +198,14 @@ def test_what_is_written_down(column: str, typed: str, written: str) -> None:
             "918",
             "not_allowed",
             Message(BETWEEN[True, False], low=0.0, high=917.0),
+        ),
+        ("shear.csv", "edge_angle_deg", "91", "not_allowed", Message(BETWEEN[True, False], low=0.0, high=90.0)),
+        (
+            "shear.csv",
+            "turning_angle_deg",
+            "361",
+            "not_allowed",
+            Message(BETWEEN[False, False], low=-360.0, high=360.0),
         ),
         ("penetration.csv", "remark", "x" * (LONGEST_TEXT + 1), "too_long", SHORT_LINE),
         ("penetration.csv", "remark", "two\nlines", "too_long", SHORT_LINE),
@@ -212,6 +225,10 @@ def test_both_sentences_are_in_german_with_the_name_of_the_field() -> None:
     assert error.problem(error.code, "Tiefe").text("de") == "Tiefe: „2,o“ ist nicht erlaubt. Eine Zahl ab 0,5 eingeben."
 
 
+def test_the_longest_text_is_taken() -> None:
+    assert checked_cell(PENETRATION, "remark", "x" * LONGEST_TEXT) == "x" * LONGEST_TEXT
+
+
 __all__ = ["ada", "bo"]
 
 FILE = "penetration.csv"
@@ -229,6 +246,7 @@ DEEPER, SHALLOWER = (entry(n, "correct", cells={"depth_mm": text}, about=1) for 
 DEEPER_TOO = entry(12, "correct", cells={"depth_mm": "2"}, about=1)
 REMARKED = entry(13, "correct", cells={"remark": "wind"}, about=1)
 CANCELLED, CANCELLED_TOO = (entry(n, "cancel", why="it slipped") for n in (4, 14))
+CANCELLED_OTHERWISE = entry(14, "cancel", why="it broke")
 TAKEN_BACK = entry(5, "undo", about=1)
 SECOND, SECOND_TOO = (entry(n, "add", cells={"experiment": "7", "depth_mm": "3"}, position=1) for n in (6, 16))
 
@@ -262,7 +280,9 @@ def test_what_can_stand_together(here: Any, there: Any, common: Any) -> None:
         ([DEEPER], [SHALLOWER], [BEGUN], "corrected", False),
         ([BEGUN], [entry(11, "add", position=0)], [], "begun twice", True),
         ([SECOND], [SECOND_TOO], [BEGUN], "added to", False),
+        ([SECOND], [REMARKED], [BEGUN], "added to", False),
         ([CANCELLED], [REMARKED], [BEGUN], "cancelled", True),
+        ([CANCELLED], [CANCELLED_OTHERWISE], [BEGUN], "cancelled", True),
         ([CANCELLED, DEEPER], [SHALLOWER], [BEGUN], "cancelled", False),
         ([SECOND], [CANCELLED_TOO], [BEGUN], "cancelled", True),
         ([TAKEN_BACK], [REMARKED], [BEGUN], "taken back", False),

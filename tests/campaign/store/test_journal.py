@@ -348,6 +348,16 @@ def test_what_was_undone_is_not_exported(store: Store, tmp_path: Path) -> None:
     assert (tmp_path / "out" / "corrections.csv").read_bytes() == (place / "corrections.csv").read_bytes()
 
 
+def test_a_cancelled_test_takes_no_part(store: Store, tmp_path: Path) -> None:
+    place = tmp_path / "kept"
+    id_ = kept(store, place, PLAIN.encode())
+    entry = NewEntry(action="cancel", file="penetration.csv", test="2", who="Ada", why="the tool, slipped")
+    Journals(store).correct(id_, entry, seen=0, standing=standing(place, "2"))
+    export_corrected(store, id_, tmp_path / "out")
+    tests = read_campaign(tmp_path / "out").penetration
+    assert tests is not None and tests.cancelled == ("", "the tool, slipped")
+
+
 def test_an_entry_after_an_unseen_one_is_rejected(store: Store, tmp_path: Path) -> None:
     place = tmp_path / "kept"
     id_ = kept(store, place, PLAIN.encode())

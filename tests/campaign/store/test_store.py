@@ -17,6 +17,7 @@ from tests.coded import raises
 from skisnow._support.errors import StoreError
 from skisnow.campaign.problems import Problem
 from skisnow.campaign.store import Store, default_path, schema
+from skisnow.campaign.store import folder as store_folder
 from skisnow.campaign.store.folder import manifest_sha256
 
 PENETRATION = "experiment,site,tool,edge_angle_deg,load_N,depth_mm\nP1,A,ski,45,100,1.5\n"
@@ -257,6 +258,13 @@ def test_export_to_a_disk_that_fails_leaves_nothing(
         assert sorted(tmp_path.iterdir()) == before
         store.export(id_, tmp_path / "out")
     assert contents(tmp_path / "out") == FILES
+
+
+def test_a_file_whose_name_exists_is_rejected(tmp_path: Path) -> None:
+    file = store_folder.StoredFile("a.csv", 1, hashlib.sha256(b"a").hexdigest())
+    store_folder.write_file(tmp_path, file, [b"a"])
+    with raises(StoreError, "same_name"):
+        store_folder.write_file(tmp_path, file, [b"a"])
 
 
 def test_the_users_own_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -73,11 +73,13 @@ def test_a_flipped_bit_is_found_named_and_repaired(folder: Path, place: Path, tm
         ("UPDATE chunk SET data = x'00' WHERE position = 2", "SHA-256"),
         ("DELETE FROM chunk WHERE position = 1", "SHA-256"),
         ("UPDATE content SET size = size + 1 WHERE size = 0", "SHA-256"),
+        ("DELETE FROM campaign_file WHERE path = 'case.csv'", "added with"),
         ("DELETE FROM content WHERE size = 0", "table content"),
         ("DELETE FROM campaign", "table campaign"),
         ("PRAGMA ignore_check_constraints = 1; UPDATE content SET size = -1 WHERE size = 0", "CHECK constraint"),
         ("UPDATE campaign SET added_at = 'yesterday'", "damaged"),
         ("UPDATE campaign SET name = x'ff00'", "damaged"),
+        ("UPDATE content SET size = 'many' WHERE size = 0", "SHA-256"),
         ("UPDATE campaign_file SET path = x'ff' WHERE path = 'case.csv'", "damaged"),
         (f"{ENTRY} x'00', '{{}}')", "entry j is damaged"),
         (f"{ENTRY} 'describe', '{{\"a\": 1}}')", "entry j is damaged"),
@@ -104,7 +106,11 @@ def test_verify_continues_behind_each_damage(folder: Path, place: Path) -> None:
 
 @pytest.mark.parametrize(
     "statement",
-    ["UPDATE campaign_file SET path = 'cate.csv' WHERE path = 'case.csv'", "DELETE FROM campaign_file"],
+    [
+        "UPDATE campaign_file SET path = 'cate.csv' WHERE path = 'case.csv'",
+        "DELETE FROM campaign_file WHERE path = 'case.csv'",
+        "DELETE FROM campaign_file",
+    ],
 )
 def test_nothing_is_exported_under_a_damaged_name(statement: str, folder: Path, place: Path, tmp_path: Path) -> None:
     with Store.open(place) as store:
@@ -300,7 +306,12 @@ def as_bytes(old: str, entry: int) -> str:
         (cells("}", "|", 3), "penetration.csv: test 1, row 2: its cells"),
         (cells("a day", "a bay", 1), 'campaign.toml: column campaign.toml: \'name = "a bay"'),
         ("UPDATE journal_entry SET who = 'Ava' WHERE sequence = 2", "penetration.csv: test 1, row 1: its who"),
+        ("UPDATE journal_entry SET position = 6 WHERE sequence = 2", "test 1, row 7: its position"),
         ("UPDATE journal_entry SET file = 'x.csv' WHERE sequence = 2", "x.csv: test 1, row 1: its file"),
+        (
+            "UPDATE journal_entry SET sums = replace(sums, '\"who\"', '\"hwo\"'), who = 'Ava' WHERE sequence = 3",
+            "test 1, row 2: neither",
+        ),
         (
             "UPDATE journal_entry SET sums = replace(sums, 'depth', 'death') WHERE sequence = 3",
             "test 1, row 2: its checksum",
@@ -353,7 +364,7 @@ def test_a_bit_of_a_cell_is_noticed_and_named(journal_place: Path) -> None:
             Journals(store).entries(id_)
 
 
-@pytest.mark.parametrize("key", ["", "/depth_mm", "-3/depth_mm", "9" * 5000 + "/depth_mm"])
+@pytest.mark.parametrize("key", ["", "/", "3/", "/depth_mm", "x/depth_mm", "-3/depth_mm", "9" * 5000 + "/depth_mm"])
 def test_a_key_that_names_no_cell_is_damaged(key: str) -> None:
     with raises(StoreError, "damaged"):
         cell_of(key)

@@ -52,6 +52,11 @@ def test_connections_are_set_up(place: Path) -> None:
     }
 
 
+def test_default_patience_is_thirty_seconds(place: Path) -> None:
+    with Store.open(place) as store, store.engine.connect() as connection:
+        assert connection.exec_driver_sql("PRAGMA busy_timeout").scalar_one() == 30_000
+
+
 def test_writing_takes_the_lock_at_once_and_rolls_back(place: Path) -> None:
     with Store.open(place, busy_timeout_s=0.0) as store:
         insert = text("INSERT INTO content VALUES ('a', 1)")

@@ -114,7 +114,7 @@ def rewrite_unseen(file: Path) -> None:
     ],
     ids=["unseen", "shorter", "longer", "came", "touched", "went"],
 )
-@pytest.mark.parametrize("share", [1.0])
+@pytest.mark.parametrize("share", [0.5, 1.0])
 def test_a_campaign_that_changes_meanwhile_is_rejected(meddle, share, folder: Path, place: Path, request) -> None:  # type: ignore[no-untyped-def]
     if share == 1.0 and "unseen" in request.node.callspec.id:
         pytest.skip("what was stored then is what was hashed: the campaign as it was")
@@ -143,7 +143,12 @@ def test_a_campaign_that_changes_meanwhile_is_rejected(meddle, share, folder: Pa
         ("\ufeffname = 'Sölden'\r\n".encode(), "Sölden"),
         ('name = "Sölden"'.encode("utf-16"), "Sölden"),
         ('name = "Sölden"'.encode("cp1252"), "Sölden"),
+        (b'name = """\n two\n\tlines """', "two lines"),
+        (b'name = "  "', "the folder"),
+        (b"name = 3", "the folder"),
         (b"place = 'x'", "the folder"),
+        (b"name = ", "the folder"),
+        (b"\xff\xfe\x00", "the folder"),
         (b"\x00\x01\x02", "the folder"),
     ],
 )
@@ -168,7 +173,25 @@ def test_paths_that_are_safe_nowhere(path: str, for_windows: bool) -> None:
     assert unsafe_because(path, for_windows=for_windows) is not None
 
 
-@pytest.mark.parametrize("path", ["NUL.txt", "a/Com1", "COM¹", "con .txt", "a./b", "q?", "ab:c", "a|b"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "nul",
+        "NUL.txt",
+        "a/Com1",
+        "lpt9.csv",
+        "COM¹",
+        "con .txt",
+        "CONIN$",
+        "a./b",
+        "a ",
+        "q?",
+        "ab:c",
+        "a\\b",
+        "a\tb",
+        "a|b",
+    ],
+)
 def test_paths_that_windows_forbids(path: str) -> None:
     assert unsafe_because(path, for_windows=True)
 
