@@ -22,7 +22,7 @@ from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
-from ..report.track.comparison_page import page_of_folders
+from ..report.track.comparison_page import page_of_folders, page_of_tracks
 from ..report.track.page import file_of_track, page_of_track
 from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import Ski, read_ski
@@ -152,12 +152,13 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         language = language_of_request(request)
         return _confined_page(request, _page_of_folders, lambda: (runs.folder_of(run), runs.folder_of(ghost), language))
 
-    def turns(request: Request, track: str) -> Response:
-        def arguments() -> tuple[Path, str, str]:
-            path, placing = TrackFolders(runs.folder).file(track)
-            return path, placing.called, language_of_request(request)
+    def turns(request: Request, track: str, other: str = "") -> Response:
+        def arguments() -> tuple[Path | str, ...]:
+            files = map(TrackFolders(runs.folder).file, (track, other) if other else (track,))
+            named = [part for path, placing in files for part in (path, placing.called)]
+            return *named, language_of_request(request)
 
-        return _confined_page(request, _page_of_track, arguments)
+        return _confined_page(request, _page_of_tracks if other else _page_of_track, arguments)
 
     def track_file(request: Request, track: str, file: str) -> Response:
         def arguments() -> tuple[Path, str, str]:
@@ -206,6 +207,10 @@ def _confined_page(
 
 def _page_of_folders(folder: Path, other: Path, language: str) -> str:
     return page_of_folders(folder, other, language, back=LIST)
+
+
+def _page_of_tracks(path: Path, name: str, other: Path, other_name: str, language: str) -> str:
+    return page_of_tracks(path, name, other, other_name, language, back=LIST)
 
 
 def _page_of_track(path: Path, name: str, language: str) -> str:

@@ -197,6 +197,10 @@ def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
     assert [row["side"] for row in DictReader(io.StringIO(table.text))] == ["left", "right"]
     assert table.headers["content-disposition"].endswith(f"{name}-turns.csv")
     assert client.get(f"/replay/turns/track.gpx?track={name}").status_code == 404  # in the axes of a slope
+    both = client.get(f"{page}&other={name}", language="de")
+    assert both.status_code == 200 and both.text.count("<img ") == 1 and both.text.count('id="table-turns_') == 2
+    assert "from above" not in both.text
+    assert client.get(f"{page}&other=nothing").status_code == 404
     found = [client.get(f"/replay/turns{file}?track=nothing").status_code for file in ("", "/turns.csv")]
     assert found == [404, 404]
     assert client.get(f"/replay/turns/about.json?track={name}").status_code == 404

@@ -10,6 +10,8 @@ from typing import Any
 from ..._support.messages import ENGLISH, Message, in_language
 from ...comparison import compare_tracks, comparison_dict
 from ...track.course.gates_table import GateGap, read_gate_gaps
+from ...track.read import read_track
+from ...track.summary import track_summary
 from ..figures.drawing import Picture
 from ..figures.figure_files import render_pictures
 from ..formatting import html
@@ -17,6 +19,7 @@ from ..pair_verdicts import read_compared, time_verdict
 from ..race.folder import gap_drawings, gaps_headline, gaps_section
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table
+from .page import turns_table
 from .report import comparison_drawing
 from .summary import TITLES, track_verdict
 
@@ -28,6 +31,7 @@ def comparison_page(
     verdict: Message | None = None,
     gaps: tuple[GateGap, ...] | None = None,
     language: str = ENGLISH,
+    further: Sequence[Section] = (),
     back: str = "",
 ) -> str:
     """HTML of the page.
@@ -37,6 +41,7 @@ def comparison_page(
     verdict: verdict on the times of two computed runs (default: none).
     gaps: time lost from gate to gate (default: no gates in common).
     language: language of the page (en, de).
+    further: sections at the end.
     back: address of the page of the lab that links here (default: none).
     """
     names = comparison["simulated"]["name"], comparison["measured"]["name"]
@@ -52,7 +57,7 @@ def comparison_page(
             sections.insert(0 if not measured else 1, gaps_section(gaps, names, of_gates))
         title = Message("{run} compared with {other}", run=names[0], other=names[1])
         headline = (gaps_headline(gaps) if gaps is not None else "") or next(iter(key), "")
-        return sheet(Header(Message("Two tracks"), title, [], headline=headline, back=back), sections)
+        return sheet(Header(Message("Two tracks"), title, [], headline=headline, back=back), [*sections, *further])
 
 
 def _distances_table(comparison: Mapping[str, Any]) -> Table:
@@ -68,6 +73,23 @@ def _distances_table(comparison: Mapping[str, Any]) -> Table:
     exact = comparison["known_to_m"]
     note = Message("A place is known to {exact:g} m.", exact=exact) if exact else ""
     return Table("distances", Message("Distances between the tracks."), columns, rows, note=note)
+
+
+def page_of_tracks(
+    path: Path, name: str, other: Path, other_name: str, language: str = ENGLISH, *, back: str = ""
+) -> str:
+    """HTML of the page that compares two measured tracks, with the turns of both; errors as in `page_of_track`."""
+    first, second = replace(read_track(path), name=name), replace(read_track(other), name=other_name)
+    comparison = compare_tracks(first, second)
+    pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
+    with in_language(language):
+        tables = [
+            replace(turns_table(summary), name=f"turns_{number}")
+            for number, summary in enumerate(map(track_summary, (first, second)), start=1)
+            if summary.turns
+        ]
+        further = [Section("turns", Message("Turns"), tables=tables)] if tables else []
+    return comparison_page(comparison_dict(comparison), pictures, language=language, further=further, back=back)
 
 
 def page_of_folders(folder: Path, other: Path, language: str = ENGLISH, *, back: str = "") -> str:

@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..._support.messages import Message
+from ..._support.messages import Message, local_number
 from ..._support.spreadsheet_text import csv_text, guarded
 from ..._support.units import DEGREE
 from ...track.projection import earth_centred, east_north_up_axes, geodetic
@@ -205,19 +205,19 @@ def track_verdict(comparison: Mapping[str, Any]) -> Message:
     Two places that are each known to u differ by √2 u if the tracks are the same; twice that counts as certain.
     """
     rms, exact = comparison["nearest"]["rms_m"], comparison["known_to_m"] or 0.0
-    apart = metres(rms, exact)
+    apart = local_number(metres(rms, exact))
     if not exact:
         return Message("The tracks are {apart} apart (root mean square, nearest place).", apart=apart)
     if rms > 2.0 * math.sqrt(2.0) * exact:
         return Message(
             "The tracks are {apart} apart (root mean square, nearest place): certain, as a place is known to {exact} "
             "m.",
-            apart=apart, exact=plain(exact, 1),
+            apart=apart, exact=local_number(plain(exact, 1)),
         )  # fmt: skip
     return Message(
         "The tracks are {apart} apart (root mean square, nearest place): not certain, as a place is known to {exact} m "
         "only.",
-        apart=apart, exact=plain(exact, 1),
+        apart=apart, exact=local_number(plain(exact, 1)),
     )  # fmt: skip
 
 
@@ -236,7 +236,7 @@ def rounded(value: float | None, exact: float, digits: int = 3) -> str:
         return plain(value, digits)
     decimals = -math.floor(math.log10(exact))
     if 0.0 < abs(value) < 0.5 * 10.0**-decimals:
-        return f"below {10.0**-decimals:.{max(decimals, 0)}f}"
+        return str(Message("below {limit}", limit=f"{10.0**-decimals:.{max(decimals, 0)}f}"))
     fewest = digits - 1 - math.floor(math.log10(abs(value))) if value else 0
     return f"{round(value, min(decimals, max(fewest, 0))):.{max(min(decimals, max(fewest, 0)), 0)}f}"
 

@@ -63,6 +63,7 @@ def add_page(lab: Lab) -> None:
             _track_form(is_open=not placings)
             if placings:
                 heading(Message("Measured tracks"), 2)
+                _two_tracks_form(list(placings))
             for name, placing in placings.items():
                 asked = f"?track={quote(name, safe='')}"
                 files = {TURNS_FILE: Message("Turns as CSV")}
@@ -108,10 +109,20 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
         submit_button(Message("Compare tracks and times"), address=GATES)
 
 
-def _select(key: str, text: str, names: dict[str, str], chosen: str) -> None:
-    with ui.element("label").props(f"for=replay-{key}"):
+def _two_tracks_form(names: list[str]) -> None:
+    """Form for two measured tracks on one plan."""
+    if len(names) < 2:
+        return
+    with ui.element("form").props(f'action="{TURNS}" method="get"').classes("acts"):
+        _select("track", Message("Track"), {name: name for name in names}, names[0], form="pair")
+        _select("other", Message("Compared with"), {name: name for name in names}, names[1], form="pair")
+        submit_button(Message("Compare the tracks"))
+
+
+def _select(key: str, text: str, names: dict[str, str], chosen: str, *, form: str = "replay") -> None:
+    with ui.element("label").props(f"for={form}-{key}"):
         Words(text)
-    with ui.element("select").props(f"id=replay-{key} name={key}").classes("act"):
+    with ui.element("select").props(f"id={form}-{key} name={key}").classes("act"):
         for name, title in names.items():
             shown = _quoted(said(Message("none")) if name == NONE else title)
             properties = f'value="{_quoted("" if name == NONE else name)}" label="{shown}"'
