@@ -166,7 +166,10 @@ target = 11.0
     assert skisnow.read_ski(tmp_path / "out" / "ski.toml").tip_width == pytest.approx(
         printed["keys"]["tip_width_mm"] / 1e3, rel=1e-9
     )
-    assert main(["design", str(tmp_path / "eleven.toml"), "--out", str(tmp_path / "out"), "--language", "de"]) == 0
+    words = ["--out", str(tmp_path / "out"), "--language", "de", "--figure", str(tmp_path / "both.svg")]
+    assert main(["design", str(tmp_path / "eleven.toml"), *words]) == 0
+    drawn = (tmp_path / "both.svg").read_text(encoding="utf-8")
+    assert "slalom" in drawn and "slalom, designed" in drawn and "Durchbiegung" in drawn
     heading, row, _, _, first, *_ = capsys.readouterr().out.splitlines()
     assert heading.split() == ["Variable", "Entwurf"]
     assert row.split() == ["sidecut_mm", f"{printed['values']['sidecut_mm']:.6g}".replace(".", ",")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -180,13 +180,20 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--front", type=whole_number(2, 1000), metavar="N", help="front.csv instead: N designs between two targets"
     )
+    drawn = "draw both skis in the turn of the first condition: .png, .svg or .pdf"
+    parser.add_argument("--figure", type=Path, metavar="FILE", help=drawn)
     parser.add_argument("--json", action="store_true", help="print JSON alone to standard output")
-    add_language(parser, "the printed result")
+    add_language(parser, "the printed result and the figure")
     parser.set_defaults(run=design_ski)
 
 
 def design_ski(options: argparse.Namespace) -> int:
     """Search, write, print; 1 where a goal is not reached."""
+    if options.figure is not None:
+        from ..report.figures.figure_files import require_drawable
+
+        require_drawable(options.figure)
+        list_fonts()
     with announced("loading"):
         from ..design import design_ski, read_design
 
@@ -196,6 +203,9 @@ def design_ski(options: argparse.Namespace) -> int:
     with Progress() as progress:
         design = design_ski(task, progress=lambda done, count: progress(f"{done} of {count} starts"))
     paths = design.write(options.out or options.design.parent)
+    if options.figure is not None:
+        _draw_design(options, task, design)
+        paths = (*paths, options.figure)
     if options.json:
         print_json(design.as_dict())
     else:
@@ -203,6 +213,19 @@ def design_ski(options: argparse.Namespace) -> int:
             print(_summary(design))
         print("\n".join(f"written: {path}" for path in paths))
     return 0 if design.reached else 1
+
+
+def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) -> None:
+    """Draw the initial ski and the design in the turn of the first condition."""
+    from ..carving.answer import answered, answers_dict
+    from ..report.carving_figure import carved_skis
+    from ..report.figures.figure_files import write_figure
+
+    answers = []
+    for name, keys in ((design.before.name, design.before.keys), (design.ski.name, design.keys)):
+        task.sources.take_ski(name, keys or {})
+        answers.append(answered(replace(task.conditions[0], ski=name), sources=task.sources))
+    write_figure(options.figure, lambda: carved_skis(answers_dict(answers)), language=options.language)
 
 
 def _front(options: argparse.Namespace, task: DesignTask) -> int:
