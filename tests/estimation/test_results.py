@@ -219,3 +219,11 @@ def test_the_numbers_are_those_of_the_analysis(tmp_path: Path) -> None:
     found = experiment_results(campaign)
     assert found["penetration"]["experiments"] == results["penetration"]["experiments"]
     assert found["shear"]["experiments"] == results["shear"]["experiments"]
+
+
+def test_each_entry_of_a_list_has_a_line_of_its_own() -> None:
+    """Unless a name contains what parts the rows."""
+    text = results_json({"a": 1, "b": {"c": [{"d": 1, "e": [1, 2]}, {"d": 2}], "f": {}}, "g": [{"h": "},{"}]})
+    rows = [b'   {"d":1,"e":[1,2]},', b'   {"d":2}']
+    wanted = [b"{", b' "a": 1,', b' "b": {', b'  "c": [', *rows, b"  ],", b'  "f": {}', b" },", b' "g": [{"h":"},{"}]']
+    assert text.split(b"\n") == [*wanted, b"}", b""]
