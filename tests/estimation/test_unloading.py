@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy import stats
 
 import skisnow
 from skisnow.campaign import Campaign, ReferenceNoise, reference_campaign, write_reference
@@ -355,6 +356,15 @@ def test_an_exact_test_gives_its_way_back(make_campaign: MakeCampaign) -> None:
     assert row["n_turning"] == 4  # below 10 % the plate comes to lie, above 90 % the snow fails, behind it has failed
     assert row["shear_displacement_mm"] == pytest.approx(WAY, rel=1e-9)
     assert row["S_f_N_per_mm2"] == pytest.approx(LARGEST / 0.25 / 600)
+
+
+def test_stated_uncertainties_widen_an_exact_test_s_interval(make_campaign: MakeCampaign) -> None:
+    """2 % of the moment and 1.5 % of the lever arm are 2.5 % together; two of four readings are left."""
+    rows = analysed_shear_tests(make_campaign, turned(), moment=0.02 * LARGEST, arm=0.015 * ARM).results["shear"]
+    half = 0.025 * float(stats.t.ppf(0.975, 2))
+    assert rows["experiments"][0][SHEAR_DISPLACEMENT_INTERVAL] == pytest.approx(
+        [WAY * math.exp(-half), WAY * math.exp(half)], rel=1e-6
+    )
 
 
 def test_a_pole_that_twists_is_taken_off(make_campaign: MakeCampaign) -> None:
