@@ -63,10 +63,6 @@ class RacingLine(Shown):
         The number of turns is not that of gates, a turn is too short, or the apexes do not follow each other down the
         slope.
 
-    See Also
-    --------
-    skisnow.race
-
     Notes
     -----
     Between two apexes the first turn ends at the share τ₁, and the next one begins at 1 - τ₂. The slope of the line

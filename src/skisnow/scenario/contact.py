@@ -67,11 +67,6 @@ class Contact:
     friction_law, temperature, liquid_water
         μ over speed and snow instead of μ_0 and μ_1, which are 0 then; temperature of the snow's surface (°C), None:
         not known; liquid water (% of the volume), None: dry.
-
-    See Also
-    --------
-    skisnow.Scenario
-    skisnow.SnowField
     """
 
     snow: Annotated[SnowProperties, Section("snow", otherwise=True)]

@@ -13,13 +13,7 @@ from ..ski.beam import MOST_ELEMENTS
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Start:
-    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad).
-
-    See Also
-    --------
-    skisnow.Scenario
-    skisnow.scenario.Stop
-    """
+    """Place of the boots' middle (m), speed along the skis (m/s), heading from the fall line, positive left (rad)."""
 
     x: Annotated[
         float,
@@ -76,13 +70,7 @@ class Start:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Stop:
-    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first.
-
-    See Also
-    --------
-    skisnow.Scenario
-    skisnow.scenario.Start
-    """
+    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
 
     duration: Annotated[
         float | None,

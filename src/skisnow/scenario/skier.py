@@ -41,10 +41,6 @@ class Skier:
     control_period
         Time between two decisions (s).
 
-    See Also
-    --------
-    skisnow.Scenario
-
     References
     ----------
     The page docs/methods/skier.md.

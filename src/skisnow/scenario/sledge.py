@@ -127,12 +127,7 @@ class RigidSledge:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Air:
-    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m).
-
-    See Also
-    --------
-    skisnow.Scenario
-    """
+    """Air drag: drag area C_dA (m²), density (kg/m³), height of the centre of pressure above the bases (m)."""
 
     drag_area: Annotated[
         float,

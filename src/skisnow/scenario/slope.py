@@ -37,12 +37,7 @@ STEEPEST_DEG: Final = 75.0
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Plane:
-    """A plane with its inclination (rad).
-
-    See Also
-    --------
-    skisnow.Profile
-    """
+    """A plane with its inclination (rad)."""
 
     angle: Annotated[
         float,
