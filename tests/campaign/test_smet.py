@@ -12,7 +12,7 @@ import pytest
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign import Problem
 from skisnow.campaign.smet import read_smet
-from skisnow.interop.smet import write_smet
+from skisnow.interop.convert import write_smet
 
 CASES = Path(__file__).parents[2].parent / "shared" / "cases" / "weather"
 

@@ -10,7 +10,7 @@ from skisnow.campaign.caaml import read_caaml
 from skisnow.cli import main
 from skisnow.interop.caaml import write_caaml
 from skisnow.interop.snowex import site_pit
-from skisnow.scenario.snow_layers import read_snow_layers
+from skisnow.scenario.snow_map import read_snow_layers
 
 from ..campaign.recordings import NEWTON, STEP_MM, built, plain_snow
 from .pits import full_pit

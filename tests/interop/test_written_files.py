@@ -16,7 +16,7 @@ from skisnow.campaign.smet import StationSeries
 from skisnow.campaign.snow_pit import DepthTemperature, LayerDensity, PlateValue, SnowLayer, SnowPit
 from skisnow.interop.caaml import caaml_text, write_caaml
 from skisnow.interop.campaign_netcdf import write_campaign_netcdf
-from skisnow.interop.smet import write_smet, write_weather_csv
+from skisnow.interop.convert import write_smet, write_weather_csv
 from skisnow.interop.snowex import write_snowex_force, write_snowex_pit
 from tests.coded import raises
 

@@ -18,7 +18,7 @@ from skisnow.scenario import Profile, SnowMap, load_scenario, read_snow_map, sce
 from skisnow.scenario.plausibility import implausible_values
 from skisnow.scenario.run_settings import Start
 from skisnow.scenario.sledge import Shear
-from skisnow.scenario.snow_layers import read_snow_layers
+from skisnow.scenario.snow_map import read_snow_layers
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises

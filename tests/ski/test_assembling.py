@@ -12,7 +12,7 @@ from tests.coded import Coded, coded, raises
 from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve
 from skisnow.ski import BaseShape, Ski, arc_ski, layout_of_lengths, read_ski
-from skisnow.ski.outline import ArcOutline, width_of_table
+from skisnow.ski.assembling import ArcOutline, width_of_table
 from skisnow.ski.table_file import StationTable
 from skisnow.snow import SnowProperties
 

@@ -15,7 +15,7 @@ from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski
 from skisnow.ski.layout import LONGEST, BaseShape, layout_of_lengths
-from skisnow.ski.outline import radius_of_least_squares_circle
+from skisnow.ski.ski import radius_of_least_squares_circle
 
 N = 801
 STATION = np.linspace(0.8, -0.8, N)

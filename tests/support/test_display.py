@@ -11,8 +11,7 @@ import pytest
 import skisnow
 from skisnow import SnowProperties, Track
 from skisnow._support.arrays import cross
-from skisnow._support.small_figure import SmallFigure
-from skisnow._support.units import Facts, Shown, field_facts
+from skisnow._support.units import Facts, Shown, SmallFigure, field_facts
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
 from skisnow.identification import Identified, Parameter

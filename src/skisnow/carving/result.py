@@ -12,8 +12,7 @@ import numpy as np
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.small_figure import SmallFigure
-from .._support.units import MM, Facts, Shown, amount
+from .._support.units import MM, Facts, Shown, SmallFigure, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine

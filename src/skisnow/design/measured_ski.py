@@ -22,9 +22,8 @@ import numpy as np
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.units import DEGREE, MM
-from ..ski.assembling import SkiParts
+from ..ski.assembling import ArcOutline, SkiParts, width_of_table
 from ..ski.layout import TAIL_OVERHANG, Layout, layout_of_lengths
-from ..ski.outline import ArcOutline, width_of_table
 from ..ski.ski_file import read_ski
 from ..ski.table_file import StationTable
 from .ski_tables import BEND_TEST, TORSION_TEST, Mapped, read_ski_table

@@ -12,8 +12,7 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.errors import ParameterError
-from .._support.small_figure import SmallFigure
-from .._support.units import MM, Facts, Shown, amount, span
+from .._support.units import MM, Facts, Shown, SmallFigure, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..geometry import GeometryForm

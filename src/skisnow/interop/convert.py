@@ -5,9 +5,13 @@ A further conversion is one more entry in `CONVERSIONS`.
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -18,18 +22,90 @@ from .._support.staging import write_file
 from .._support.units import MM
 from ..campaign import read_campaign, read_snow_micro_pen
 from ..campaign.caaml import read_caaml
-from ..campaign.smet import read_smet
+from ..campaign.smet import StationSeries, read_smet
 from ..campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
 from ..campaign.snow_pit import ForceProfile, SnowPit
+from ..estimation.weather import QUANTITIES
 from ..parameters import nearest
 from .caaml import write_caaml
 from .campaign_netcdf import write_campaign_netcdf
-from .opensim import read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
-from .smet import write_smet, write_weather_csv
+from .opensim import Markers, read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
 from .snowex import site_pit, sites_of, write_snowex_force, write_snowex_pit
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+NO_DATA: Final = -999.0
+
+
+def write_smet(series: StationSeries, path: str | Path) -> Path:
+    """Write all fields in SI, with the times in the file's own time zone.
+
+    Raises ParameterError: a value is exactly -999, which means none.
+    Raises OutputError: the file cannot be written.
+    """
+    write_file(path, smet_text(series))
+    return Path(path)
+
+
+def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
+    """Write the station's columns that a campaign uses: time with its zone, temperatures in °C, humidity in percent.
+
+    Raises ParameterError: the station has no such quantity.
+    Raises OutputError: the file cannot be written.
+    """
+    available = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
+    if not available:
+        wanted = ", ".join(name for name, *_ in QUANTITIES.values())
+        raise ParameterError(
+            "{file} has no field of {wanted}; nothing was written", code="no_data", file=series.file, wanted=wanted
+        )
+    columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in available.values()]
+    rows = (
+        ",".join((when, *("" if math.isnan(value) else f"{value:.10g}" for value in values)))
+        for when, *values in zip(_times(series, zone=True), *columns, strict=True)
+    )
+    write_file(path, "\n".join((",".join(("time", *available)), *rows)) + "\n")
+    return Path(path)
+
+
+def smet_text(series: StationSeries) -> str:
+    """Content of an SMET 1.1 file with all fields in SI."""
+    return "\n".join(_smet(series)) + "\n"
+
+
+def _smet(series: StationSeries) -> Iterator[str]:
+    place = {
+        "latitude": series.latitude_deg,
+        "longitude": series.longitude_deg,
+        "altitude": series.altitude,
+    }
+    yield "SMET 1.1 ASCII"
+    yield "[HEADER]"
+    name = re.sub("[#;]", " ", series.station)  # these begin a comment
+    yield f"station_id = {''.join(name.split()) or 'station'}"
+    yield f"station_name = {name}"
+    yield from (f"{key} = {NO_DATA if value is None else value:.10g}" for key, value in place.items())
+    yield f"nodata = {NO_DATA:g}"
+    yield f"tz = {series.utc_offset:g}"
+    yield f"fields = {' '.join(('timestamp', *series.fields))}"
+    yield "[DATA]"
+    columns = [column.tolist() for column in series.fields.values()]
+    for when, *values in zip(_times(series, zone=False), *columns, strict=True):
+        if NO_DATA in values:
+            raise ParameterError(
+                "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET",
+                code="out_of_range",
+                file=series.file,
+                no_data=NO_DATA,
+                when=when,
+            )
+        yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
+
+
+def _times(series: StationSeries, *, zone: bool) -> Iterator[str]:
+    own = timezone(timedelta(hours=series.utc_offset))
+    for seconds in series.time.tolist():
+        moment = datetime.fromtimestamp(seconds, UTC).astimezone(own)
+        yield (moment if zone else moment.replace(tzinfo=None)).isoformat()
+
 
 CAMPAIGN: Final = "campaign"
 CSV: Final = "CSV"
@@ -228,12 +304,7 @@ def _to_c3d(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, 
     return (target,)
 
 
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    from .opensim import Markers
-
-    Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...]]
+Conversion: TypeAlias = Callable[[Path, Path, ConvertOptions], tuple[Path, ...]]
 
 CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     (CAMPAIGN, "CAAML"): _to_caaml(_pit_of_campaign),

@@ -19,7 +19,7 @@ from ..campaign.smet import StationSeries
 from ..campaign.snow_pit import DepthTemperature, LayerDensity, SnowLayer, SnowPit
 from ..carving.equilibrium import carve
 from ..interop.caaml import caaml_text
-from ..interop.smet import smet_text
+from ..interop.convert import smet_text
 from ..scenario import Plane, Scenario, load_scenario
 from ..simulation.simulated_run import simulate
 from ..track.projection import GeodeticPoint, earth_centred, geodetic

@@ -24,8 +24,7 @@ from .keys import SCENARIO_KEYS, full_name
 from .resolution import CONDITIONS, DISPLACEMENT, H_V, S_F, UNLOADING, ContradictionError, Resolution
 from .scenario import Scenario, course_on_slope
 from .slope import Plane, read_profile
-from .snow_layers import read_snow_layers
-from .snow_map import SnowMap
+from .snow_map import SnowMap, read_snow_layers
 from .terrain import Slope, read_terrain
 
 LAW_FILE = "friction.law_file"

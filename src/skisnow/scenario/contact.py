@@ -15,8 +15,7 @@ from ..forces.shear.slip import SHEAR_DISPLACEMENT
 from ..parameters import APART, Condition, Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
 from ..snow.measured_range import without_range_warnings
-from .snow_layers import SnowLayers
-from .snow_map import SnowMap
+from .snow_map import SnowLayers, SnowMap
 
 Penetration: TypeAlias = Literal["hypoplastic", "elastic"]
 

@@ -1,4 +1,4 @@
-"""Snow that varies over the place (H_V, S_f, friction): over a grid or along the slope, from a CSV or raster file."""
+"""Snow that varies, from files: H_V, S_f and friction over a grid or along the slope, and layers over the depth."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
-from .._support.units import N_PER_MM2, N_PER_MM3, Facts, Shown, span
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, span
 from ..geometry.surfaces import Grid
 from ..snow import SnowProperties
 from .raster import number_within
@@ -238,3 +238,50 @@ def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> di
     even = np.linspace(x[0], x[-1], count)
     columns = {name: SIZES[name] * np.array([row.number(name) for row in rows]) for name in names}
     return {name: Grid.along(even, PchipInterpolator(x, values)(even)) for name, values in columns.items()}
+
+
+MOST_LAYERS: Final = 100
+"""Rows of a profile; a run evaluates the pressure between each two."""
+_LAYERS_ACTION: Final = Message(
+    "Write depth_mm, the top of each layer from 0 on, and hardness_share (of H_V) or force_N (of a SnowMicroPen)."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SnowLayers:
+    """Tops (m), rising from 0, and hardness over H_V of each layer, with the file."""
+
+    tops: tuple[float, ...]
+    shares: tuple[float, ...]
+    source: str
+
+
+def read_snow_layers(path: str | Path) -> SnowLayers:
+    """Read the hardness over the depth.
+
+    path: CSV with ``depth_mm``, the top of each layer, the first 0, and ``hardness_share`` (hardness over H_V) or
+        ``force_N``, whose mean over the depth of the file stands for H_V.
+    """
+    rows = list(csv_rows(path, ("depth_mm",), further=("hardness_share", "force_N"), action=_LAYERS_ACTION))
+    names = [name for name in ("hardness_share", "force_N") if rows and name in rows[0].cells]
+    if len(names) != 1 or len(rows) > MOST_LAYERS:
+        raise ParameterError(
+            "{path}: {count} rows with the columns {columns}; allowed are 1 to {most} rows with one of hardness_share "
+            "and force_N. {action}",
+            code="wrong_kind",
+            path=path,
+            count=len(rows),
+            columns=names,
+            most=MOST_LAYERS,
+            action=_LAYERS_ACTION,
+        )
+    tops = np.array([row.number("depth_mm") for row in rows]) * MM
+    values = np.array([row.number(names[0]) for row in rows])
+    for row, step, value in zip(rows, np.diff(tops, prepend=-1.0), values, strict=True):
+        if not value > 0.0:
+            raise row.refused(names[0], Message("A number above 0 is needed."), code="out_of_range")
+        if step <= 0.0 or (row is rows[0] and step != 1.0):
+            raise row.refused("depth_mm", Message("Depths rise from 0."), code="not_rising", action=_LAYERS_ACTION)
+    if names[0] == "force_N":
+        values = values / (np.average(values[:-1], weights=np.diff(tops)) if len(rows) > 1 else values[0])
+    return SnowLayers(tuple(tops.tolist()), tuple(values.tolist()), str(path))

@@ -10,8 +10,7 @@ from typing import Any, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.small_figure import SmallFigure
-from .._support.units import DEGREE, MM, Facts, Shown, amount, field_facts, name_with_values, span
+from .._support.units import DEGREE, MM, Facts, Shown, SmallFigure, amount, field_facts, name_with_values, span
 from ..contact import Laws
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track

@@ -17,10 +17,9 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import MM
 from ..parameters import nearest
-from .assembling import moved_stations, stiffness_table
+from .assembling import ArcOutline, moved_stations, stiffness_table
 from .file_keys import BASE, COLUMNS, LISTS, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
 from .layout import BaseShape, Layout, layout_of_lengths
-from .outline import ArcOutline
 from .ski import Ski
 from .ski_file import MADE_OF_KEYS, ski_of_keys
 from .table_file import StationTable

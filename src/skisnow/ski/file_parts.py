@@ -10,12 +10,11 @@ import numpy as np
 
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, template
-from .assembling import SkiParts, stiffness_table
+from .assembling import ArcOutline, SkiParts, stiffness_table, width_of_table
 from .file_keys import BASE, LISTS, RIGID, STIFFNESSES, TIP_END, WIDTHS
 from .file_values import FileValues
 from .layout import BaseShape, Layout, StationFunction, layout_of_lengths
 from .monkeycam import monkeycam_shape
-from .outline import ArcOutline, width_of_table
 from .ski import Ski
 from .table_file import StationTable
 

@@ -20,10 +20,9 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import CM, MM
 from .._support.user_files import read_json
-from .assembling import SkiParts, stiffness_table
+from .assembling import ArcOutline, SkiParts, stiffness_table
 from .file_values import refuse
 from .layout import BaseShape, layout_of_lengths
-from .outline import ArcOutline
 from .ski import Ski
 
 STRAIGHTEST: Final = 1000.0

@@ -13,8 +13,7 @@ import numpy.typing as npt
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.small_figure import SmallFigure
-from .._support.units import Facts, Shown, amount
+from .._support.units import Facts, Shown, SmallFigure, amount
 from ..parameters import APART
 from .checks import (
     STRAIGHT,
@@ -27,7 +26,6 @@ from .checks import (
     require_tables,
 )
 from .layout import BaseShape, Layout, SkiSections
-from .outline import radius_of_least_squares_circle
 
 _EDGE_POINTS = 401  # of the circle through the edge line, evenly spaced whatever the spacing of the tables
 
@@ -269,3 +267,33 @@ class Ski(Shown):
         front, rear = self.sidecut_ends
         along = np.linspace(front, rear, _EDGE_POINTS)
         return radius_of_least_squares_circle(along, self.at(along).width / 2.0)
+
+
+def radius_of_least_squares_circle(along: FloatArray, across: FloatArray) -> float:
+    """Radius of the circle with the smallest sum of squared distances to points of a plane (m).
+
+    along, across: coordinates of the points (m). Shape (n,), n ≥ 3.
+    Returns: above 0, in m; infinite where the points lie on a straight line to a tenth of a micrometre.
+
+    Pratt's form A (x² + y²) + B x + C y + D = 0 with B² + C² - 4 A D = 1 (Pratt 1987, Computer Graphics 21:145). It
+    minimises Σ (d + d²/2R)², d the distance of a point from the circle. The edge of a ski is within 0.1 mm of its
+    circle and R is metres, so it is the circle of least squares to 5 digits beyond the first. Unlike the centre
+    and radius themselves it stays well posed as the line becomes straight.
+
+    >>> turn = np.linspace(-0.05, 0.05, 41)
+    >>> round(radius_of_least_squares_circle(13.0 * np.sin(turn), 0.034 + 13.0 * (1.0 - np.cos(turn))), 9)
+    13.0
+    """
+    x, y = along - along.mean(), across - across.mean()
+    scale = float(np.max(np.abs(x)))
+    curvature = _pratt_curvature(x / scale, y / scale) / scale
+    return 1.0 / curvature if curvature * scale**2 / 2.0 > STRAIGHT else float("inf")
+
+
+def _pratt_curvature(x: FloatArray, y: FloatArray) -> float:
+    points = np.column_stack([x**2 + y**2, x, y, np.ones_like(x)])
+    constraint = np.array([[0.0, 0, 0, -2], [0, 1, 0, 0], [0, 0, 1, 0], [-2, 0, 0, 0]])
+    residuals, circles = np.linalg.eig(np.linalg.solve(constraint, points.T @ points / len(x)))
+    # the constraint has one negative direction, whose circle is imaginary: the answer is the one nearest to 0
+    A, B, C, D = np.real(circles[:, np.argmin(np.abs(residuals))])
+    return float(2.0 * abs(A) / np.sqrt(B**2 + C**2 - 4.0 * A * D))

@@ -7,8 +7,7 @@ from typing import Annotated, Final, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.small_figure import SmallFigure
-from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, amount, span
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, SmallFigure, amount, span
 from ..parameters import Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]

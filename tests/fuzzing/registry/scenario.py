@@ -18,8 +18,7 @@ from skisnow.scenario.boots import read_boots
 from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.reading import load_input
-from skisnow.scenario.snow_layers import read_snow_layers
-from skisnow.scenario.snow_map import read_snow_map
+from skisnow.scenario.snow_map import read_snow_layers, read_snow_map
 from tests.forces.friction.test_law_file import STATES
 
 from ..binaries import BINARY
@@ -238,7 +237,7 @@ READERS = (
     _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
     _of("along.csv", _ALONG, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
     _of("friction.toml", _FRICTION, _used_friction, TOML, "forces.friction.law_file:read_friction_file"),
-    _of("layers.csv", _LAYERS, _used_layers, TABLE, "scenario.snow_layers:read_snow_layers"),
+    _of("layers.csv", _LAYERS, _used_layers, TABLE, "scenario.snow_map:read_snow_layers"),
     _of("boots.csv", _BOOTS, _used_boots, TABLE, "scenario.boots:read_boots"),
     _of("boots.mot", _MOT, _used_boots, TEXT, "scenario.boots:read_boots"),
 )  # fmt: skip
