@@ -34,7 +34,7 @@ def python_calls(
             yield node.lineno, name, literals, []
 
 
-ERRORS = ("Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
+ERRORS = ("Given", "Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
 WARNINGS = ("Range", "ModelLimit", "Fit")
 CLASSES = {**{f"{name}Error": None for name in ERRORS}, **{f"{name}Warning": None for name in WARNINGS}}
 COUNTED = {"count_message": (1, 2), "counted": (2, 3)}

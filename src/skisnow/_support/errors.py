@@ -13,25 +13,21 @@ from typing import Any, Self
 from .messages import ENGLISH, Message, count_message, joined, languages, translated
 
 
-class _Coded(Exception):  # noqa: N818 -- of errors and warnings
-    """A message with a code.
+def templated(message: str, fields: Mapping[str, Any]) -> str:
+    """A `Message` of a template; messages, and texts with braces and no fields, as they are."""
+    is_template = not isinstance(message, Message) and (fields or not {*"{}"} & {*message})
+    return Message(message, **fields) if is_template else message
 
-    Parameters
-    ----------
-    message
-        Template of a `Message`, a literal as there, or a message.
-    code
-        Identifier that does not change with the wording, such as ``contradiction``; empty without one.
-    fields
-        Values of the template. Text with braces and no fields is not a template.
+
+class _Coded(Exception):  # noqa: N818 -- of errors and warnings
+    """A message, or a template with its fields, and a code that does not change with the wording.
 
     >>> print(ParameterError("{name} is {value:g}; it must be above 0", code="out_of_range", name="load", value=-1.0))
     load is -1; it must be above 0
     """
 
     def __init__(self, message: str = "", /, *, code: str = "", **fields: Any) -> None:
-        is_template = not isinstance(message, Message) and (fields or not {*"{}"} & {*message})
-        super().__init__(Message(message, **fields) if is_template else message)
+        super().__init__(templated(message, fields))
         self.code = code
 
     @property

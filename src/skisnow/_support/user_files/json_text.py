@@ -10,7 +10,6 @@ from dataclasses import MISSING, fields
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from ..messages import Message
 from .text_files import LARGEST_WHOLE, GivenError, plain_text, require_sound, shown, too_deep
 
 if TYPE_CHECKING:
@@ -41,12 +40,9 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
     except RecursionError:
         raise too_deep().of(title) from None
     except ValueError as error:
-        sentence = (
-            Message("{file} is not JSON text: {reason}. Correct that place.", file=title, reason=str(error))
-            if title
-            else Message("This is not JSON text: {reason}. Correct that place.", reason=str(error))
-        )
-        raise GivenError(sentence, code="not_json") from error
+        raise GivenError(
+            "This is not JSON text: {reason}. Correct that place.", code="not_json", title=title, reason=str(error)
+        ) from error
     return value
 
 
@@ -59,30 +55,23 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     entries = dict(pairs)
     if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
-        raise GivenError(
-            Message("the key {key} is twice in one object. Remove one.", key=shown(twice)),
-            code="repeated_key",
-        )
+        raise GivenError("the key {key} is twice in one object. Remove one.", code="repeated_key", key=shown(twice))
     return entries
 
 
 def _whole(digits: str) -> int:
     if len(digits) > _MOST_DIGITS:
         raise GivenError(
-            Message(
-                "a whole number has {count} digits; allowed is ±{largest}. Correct it.",
-                count=len(digits),
-                largest=LARGEST_WHOLE,
-            ),
+            "a whole number has {count} digits; allowed is ±{largest}. Correct it.",
             code="number_too_large",
+            count=len(digits),
+            largest=LARGEST_WHOLE,
         )
     return int(digits)
 
 
 def _refuse_constant(word: str) -> None:
-    raise GivenError(
-        Message("{word} is not a number of JSON. Write null or a finite number.", word=word), code="not_json"
-    )
+    raise GivenError("{word} is not a number of JSON. Write null or a finite number.", code="not_json", word=word)
 
 
 T = TypeVar("T", bound="DataclassInstance")
@@ -95,31 +84,30 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
     """
     values = read_json(path)
     if not isinstance(values, dict):
-        raise GivenError(Message("{path} is damaged: it is not a JSON object. Remove it.", path=path), code="damaged")
+        raise GivenError("{path} is damaged: it is not a JSON object. Remove it.", code="damaged", path=path)
     hints = get_type_hints(kind)
     for name in values if only_known else ():
         if name not in hints:
             raise GivenError(
-                Message("{path} is damaged: {key!r} is not one of its keys. Remove it.", path=path, key=name[:60]),
+                "{path} is damaged: {key!r} is not one of its keys. Remove it.",
                 code="damaged",
+                path=path,
+                key=name[:60],
             )
     fields_given = {name: value for name, value in values.items() if name in hints}
     for field in fields(kind):
         if field.name not in fields_given and field.default is MISSING and field.default_factory is MISSING:
             raise GivenError(
-                Message("{path} is damaged: the key {key} is missing. Remove it.", path=path, key=field.name),
-                code="damaged",
+                "{path} is damaged: the key {key} is missing. Remove it.", code="damaged", path=path, key=field.name
             )
     for name, value in fields_given.items():
         if not _fits(value, hints[name]):
             raise GivenError(
-                Message(
-                    "{path} is damaged: {key} is {value!r}, of another type. Remove it.",
-                    path=path,
-                    key=name,
-                    value=str(value)[:60],
-                ),
+                "{path} is damaged: {key} is {value!r}, of another type. Remove it.",
                 code="damaged",
+                path=path,
+                key=name,
+                value=str(value)[:60],
             )
     return kind(**fields_given)
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from ..errors import ParameterError
+from ..errors import ParameterError, templated
 from ..messages import Message
 
 
@@ -37,25 +37,25 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
         raise
     except OSError as error:
         raise GivenError(
-            Message("{path} cannot be read: {reason}. Check the path.", path=path, reason=error.strerror or error),
+            "{path} cannot be read: {reason}. Check the path.",
             code="cannot_read",
+            path=path,
+            reason=error.strerror or error,
         ) from error
     except UnicodeEncodeError as error:
         raise GivenError(
-            Message("{path!r} cannot be read: its name is not valid text. Correct it.", path=path), code="cannot_read"
+            "{path!r} cannot be read: its name is not valid text. Correct it.", code="cannot_read", path=path
         ) from error
     except ValueError as error:  # the system's paths end at a NUL character
         raise GivenError(
-            Message("{path!r} is not a path: it has a NUL character. Correct it.", path=path), code="invalid_character"
+            "{path!r} is not a path: it has a NUL character. Correct it.", code="invalid_character", path=path
         ) from error
     if len(data) > most_bytes:
         raise GivenError(
-            Message(
-                "{path} is too large: at most {limit:g} MiB are read of such a file.",
-                path=path,
-                limit=most_bytes / 2**20,
-            ),
+            "{path} is too large: at most {limit:g} MiB are read of such a file.",
             code="too_large",
+            path=path,
+            limit=most_bytes / 2**20,
         )
     return data
 
@@ -75,13 +75,11 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise GivenError(
-            Message(
-                "{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.",
-                path=path,
-                reason=error.reason,
-                byte=error.start + 1,
-            ),
+            "{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.",
             code="not_text",
+            path=path,
+            reason=error.reason,
+            byte=error.start + 1,
         ) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
@@ -89,15 +87,16 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
 class GivenError(ParameterError):
     """A file, or a text in its stead, cannot be read.
 
-    what: problem and allowed values, without the file.
+    what, fields: problem and allowed values, without the file.
     line: line of the file, where one can be named.
     title: the file, or another name of the text; empty until it is known.
     sentence: the whole message, if it is not made of the others.
     """
 
     def __init__(
-        self, what: str, *, code: str = "", line: int | None = None, title: str = "", sentence: str = ""
+        self, what: str, *, code: str = "", line: int | None = None, title: str = "", sentence: str = "", **fields: Any
     ) -> None:
+        what = templated(what, fields)
         super().__init__(sentence or _placed(what, line, title), code=code)
         self.what, self.line = what, line
 
@@ -157,8 +156,7 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
     elif isinstance(value, float):
         if not infinite and not math.isfinite(value):
             raise GivenError(
-                Message("{place} is beyond the numbers, ±1.8e308. Correct it.", place=named(place)),
-                code="number_too_large",
+                "{place} is beyond the numbers, ±1.8e308. Correct it.", code="number_too_large", place=named(place)
             )
     elif isinstance(value, dict | list):
         if len(place) >= DEEPEST:
@@ -174,22 +172,18 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
 def too_deep(line: int | None = None) -> GivenError:
     """The error for brackets within brackets within brackets."""
     return GivenError(
-        Message("brackets are nested more than {deepest} deep. Remove some.", deepest=DEEPEST),
-        line=line,
-        code="nested_too_deep",
+        "brackets are nested more than {deepest} deep. Remove some.", line=line, code="nested_too_deep", deepest=DEEPEST
     )
 
 
 def _require_text(text: str, place: Place, longest: int) -> None:
     if len(text) > longest:
         raise GivenError(
-            Message(
-                "{place} has {count} characters; allowed are {longest}. Shorten it.",
-                place=named(place),
-                count=len(text),
-                longest=longest,
-            ),
+            "{place} has {count} characters; allowed are {longest}. Shorten it.",
             code="text_too_long",
+            place=named(place),
+            count=len(text),
+            longest=longest,
         )
     if text.isascii():
         sound = "\0" not in text
@@ -197,8 +191,9 @@ def _require_text(text: str, place: Place, longest: int) -> None:
         sound = not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
     if not sound:
         raise GivenError(
-            Message("{place} has a NUL character or half a letter, which no text has. Remove it.", place=named(place)),
+            "{place} has a NUL character or half a letter, which no text has. Remove it.",
             code="invalid_character",
+            place=named(place),
         )
 
 
@@ -258,12 +253,10 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     try:
         if len(text) > MOST_TOML_BYTES:
             raise GivenError(
-                Message(
-                    "the text has {count} characters; allowed are {longest}.",
-                    count=len(text),
-                    longest=MOST_TOML_BYTES,
-                ),
+                "the text has {count} characters; allowed are {longest}.",
                 code="too_large",
+                count=len(text),
+                longest=MOST_TOML_BYTES,
             )
         _require_short(text)
         values = tomllib.loads(text)
@@ -301,9 +294,10 @@ def _require_short(text: str) -> None:
             dots += word.count(".")
             if dots > MOST_DOTS:
                 raise GivenError(
-                    Message("a key has more than {count} dots. Shorten it.", count=MOST_DOTS),
+                    "a key has more than {count} dots. Shorten it.",
                     line=_line(text, token),
                     code="key_too_long",
+                    count=MOST_DOTS,
                 )
             if len(word) > LONGEST_KEY:
                 problem = Message(

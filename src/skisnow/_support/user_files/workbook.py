@@ -17,7 +17,6 @@ from functools import partial
 from typing import Any, Final, TypeAlias
 from xml.parsers import expat
 
-from ..messages import Message
 from .text_files import GivenError
 
 Rows: TypeAlias = list[list[str]]
@@ -73,12 +72,10 @@ def workbook_sheets(
         book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
         if len(book.worksheets) > MOST_SHEETS:
             raise GivenError(
-                Message(
-                    "The workbook has {count} sheets; at most {limit} are read. Remove some.",
-                    count=len(book.worksheets),
-                    limit=MOST_SHEETS,
-                ),
+                "The workbook has {count} sheets; at most {limit} are read. Remove some.",
                 code="too_large",
+                count=len(book.worksheets),
+                limit=MOST_SHEETS,
             )
         places: dict[str, list[tuple[int, int]]] = {} if fractions is None else fractions
         return {
@@ -119,10 +116,8 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
         raise
     except Exception as error:
         raise GivenError(
-            Message(
-                "This is not a workbook that can be read, or it is damaged. Open it in a spreadsheet program, "
-                "and save it as .xlsx."
-            ),
+            "This is not a workbook that can be read, or it is damaged. Open it in a spreadsheet program, "
+            "and save it as .xlsx.",
             code="not_readable",
         ) from error
 
@@ -136,12 +131,10 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
         for cells in sheet.iter_rows(values_only=True):
             if len(rows) >= MOST_ROWS:
                 raise GivenError(
-                    Message(
-                        "The sheet {sheet!r} has more than {limit} rows. Remove some.",
-                        limit=MOST_ROWS,
-                        sheet=sheet.title,
-                    ),
+                    "The sheet {sheet!r} has more than {limit} rows. Remove some.",
                     code="too_large",
+                    limit=MOST_ROWS,
+                    sheet=sheet.title,
                 )
             texts = [_text(value) for value in cells]
             for value in cells:
@@ -152,15 +145,13 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
                 texts.pop()
             if len(texts) > MOST_COLUMNS:
                 raise GivenError(
-                    Message(
-                        "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
-                        "Remove the unused ones.",
-                        row=len(rows) + 1,
-                        sheet=sheet.title,
-                        count=len(texts),
-                        limit=MOST_COLUMNS,
-                    ),
+                    "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
+                    "Remove the unused ones.",
                     code="too_large",
+                    row=len(rows) + 1,
+                    sheet=sheet.title,
+                    count=len(texts),
+                    limit=MOST_COLUMNS,
                 )
             rows.append(texts)
 
@@ -192,23 +183,18 @@ def _moment(value: date | time) -> str:
 def _require_sound(data: bytes) -> None:
     if len(data) > MOST_WORKBOOK_BYTES:
         raise GivenError(
-            Message(
-                "The workbook is too large: at most {limit} MiB are read. Save it as CSV.",
-                limit=MOST_WORKBOOK_BYTES >> 20,
-            ),
+            "The workbook is too large: at most {limit} MiB are read. Save it as CSV.",
             code="too_large",
+            limit=MOST_WORKBOOK_BYTES >> 20,
         )
     if data.startswith(_OLD_KIND):
         raise GivenError(
-            Message(
-                "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password."
-            ),
+            "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password.",
             code="not_readable",
         )
     if data.count(b"PK\1\2") > MOST_PARTS:
         raise GivenError(
-            Message("The workbook has more than {limit} parts, which no table has.", limit=MOST_PARTS),
-            code="too_large",
+            "The workbook has more than {limit} parts, which no table has.", code="too_large", limit=MOST_PARTS
         )
     archive: zipfile.ZipFile = _undamaged(lambda: zipfile.ZipFile(io.BytesIO(data)))
     with archive:
@@ -225,11 +211,9 @@ def _require_small(archive: zipfile.ZipFile) -> None:
             if unpacked > MOST_UNPACKED_BYTES:
                 most = MOST_UNPACKED_BYTES >> 20
                 raise GivenError(
-                    Message(
-                        "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV.",
-                        limit=most,
-                    ),
+                    "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV.",
                     code="too_large",
+                    limit=most,
                 )
             if looked_at is not None:
                 looked_at.take(piece)
@@ -264,11 +248,9 @@ class _Part:
 
     def _refuse_document_type(self, *_: object) -> None:
         raise GivenError(
-            Message(
-                "The workbook has a document type in its part {part}, which no spreadsheet program writes.",
-                part=self._name,
-            ),
+            "The workbook has a document type in its part {part}, which no spreadsheet program writes.",
             code="not_readable",
+            part=self._name,
         )
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
@@ -276,10 +258,9 @@ class _Part:
         self._depth += 1
         if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
             raise GivenError(
-                Message(
-                    "The part {part} of the workbook is larger than any table. Save its sheets as CSV.", part=self._name
-                ),
+                "The part {part} of the workbook is larger than any table. Save its sheets as CSV.",
                 code="too_large",
+                part=self._name,
             )
         local = name.rpartition(" ")[2]
         if local == "c":
@@ -292,11 +273,9 @@ class _Part:
         self._depth -= 1
         if name.endswith(" c") and self._in_cell == {"f"}:
             raise GivenError(
-                Message(
-                    "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
-                    "spreadsheet program and save it.",
-                    cell=self._cell[:20],
-                    part=self._name,
-                ),
+                "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
+                "spreadsheet program and save it.",
                 code="formula_without_value",
+                cell=self._cell[:20],
+                part=self._name,
             )

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Final
 from xml.parsers import expat
 
-from ..messages import Message
 from .text_files import GivenError
 
 DEEPEST: Final = 60
@@ -56,12 +55,10 @@ class _Builder:
         self._count += 1
         if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
             raise GivenError(
-                Message(
-                    "More than {count} elements, or {depth} within each other, are not read.",
-                    count=MOST_ELEMENTS,
-                    depth=DEEPEST,
-                ),
+                "More than {count} elements, or {depth} within each other, are not read.",
                 code="too_large",
+                count=MOST_ELEMENTS,
+                depth=DEEPEST,
             )
         namespace, _, local = name.rpartition("}")
         element = Element(namespace, local, {key.rpartition("}")[2]: value for key, value in attributes.items()})
@@ -80,8 +77,7 @@ class _Builder:
 
     def document_type(self, *_what: object) -> None:
         raise GivenError(
-            Message("A document type is declared, which is rejected: it may have endless entities."),
-            code="document_type",
+            "A document type is declared, which is rejected: it may have endless entities.", code="document_type"
         )
 
 
@@ -95,19 +91,21 @@ def xml_tree(data: bytes) -> Element:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         raise GivenError(
-            Message("This is not XML, or it is damaged ({reason}).", reason=expat.ErrorString(error.code)),
+            "This is not XML, or it is damaged ({reason}).",
             line=error.lineno,
             code="not_xml",
+            reason=expat.ErrorString(error.code),
         ) from error
     except GivenError:
         raise
     except (LookupError, ValueError) as error:  # Python's codec of the encoding that the first line declares
         what = str(error)[:_LONGEST_REASON]
         raise GivenError(
-            Message("The text has an encoding that cannot be read ({reason}). Save it as UTF-8.", reason=what),
+            "The text has an encoding that cannot be read ({reason}). Save it as UTF-8.",
             line=1,
             code="not_text",
+            reason=what,
         ) from error
     if builder.root is None:
-        raise GivenError(Message("The file has no element."), code="not_xml")
+        raise GivenError("The file has no element.", code="not_xml")
     return builder.root
