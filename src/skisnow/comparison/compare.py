@@ -110,7 +110,7 @@ def compare_tracks(
     _require_options(fit, time_from, known_to, slope_angle)
     if simulated.origin is not None and measured.origin is not None and simulated.origin != measured.origin:
         simulated = simulated.at_origin(measured.origin)
-    placed, together = set(fit) >= _PLACED, _share_frame(simulated, measured)
+    placed, together = set(fit) >= _PLACED, (simulated.axes == "east_north_up") == (measured.axes == "east_north_up")
     laid = lay_for_fit(simulated, measured, slope_angle) if placed else LaidTracks(simulated, measured)
     dimensions, seen = _dimensions(laid, from_above=from_above, heights_agree=together or laid.angle is not None)
     lines = track_polyline(laid.simulated, dimensions=dimensions), track_polyline(laid.measured, dimensions=dimensions)
@@ -288,10 +288,6 @@ def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Trac
     azimuth = (fitted.azimuth or 0.0) / DEGREE
     error = "other directions fit too" if fitted.turned_error is None else f"± {fitted.turned_error / DEGREE:.2g}°"
     return f"laid on the map {slope}, x of {name} points {azimuth:.1f}° from north ({error})"
-
-
-def _share_frame(simulated: Track, measured: Track) -> bool:
-    return (simulated.axes == "east_north_up") == (measured.axes == "east_north_up")
 
 
 def _coverage_warnings(comparison: Comparison) -> list[str]:

@@ -213,23 +213,19 @@ def shear_experiments(
 def model_rows(table: ModelTable | None) -> list[Json]:
     """The rows ``penetration.models``: the nine candidate models, without numbers if the campaign has no data."""
     if table is None:
-        return _no_models()
+        nothing = dict.fromkeys(("a0", "a1", "b0", "b1"))
+        return [
+            _model_head(model)
+            | nothing
+            | {"n": 0, "n_series": 0, "n_parameters": model.n_parameters}
+            | {"rmse_N": None, "rmse_dof_N": None, "rmse_free_N": None, "at_bound": [], "intervals": dict(nothing)}
+            for model in MODELS
+        ]
     return [_model(fit, table.intervals.get(fit.model)) for fit in table.fits]
 
 
 def _model_head(model: Model) -> Json:
     return {"id": model.id, "hardness": model.hardness, "a": model.a, "b": model.b}
-
-
-def _no_models() -> list[Json]:
-    nothing = dict.fromkeys(("a0", "a1", "b0", "b1"))
-    return [
-        _model_head(model)
-        | nothing
-        | {"n": 0, "n_series": 0, "n_parameters": model.n_parameters}
-        | {"rmse_N": None, "rmse_dof_N": None, "rmse_free_N": None, "at_bound": [], "intervals": dict(nothing)}
-        for model in MODELS
-    ]
 
 
 def _model(fit: ModelFit, intervals: FloatArray | None) -> Json:

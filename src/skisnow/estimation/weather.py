@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from typing import Any, Final, TypeAlias
@@ -81,15 +81,11 @@ def _experiments(campaign: Campaign) -> Iterator[tuple[str, str, str, str]]:
         cells = tests.further.get("time", ("",) * len(tests.load))
         for index, (experiment, site) in enumerate(zip(tests.experiment, tests.site, strict=True)):
             own = cells[int(tests.first[index]) : int(tests.first[index + 1])]
-            yield "penetration", experiment, site, _first(own)
+            yield "penetration", experiment, site, next(filter(None, own), "")
     if campaign.shear is not None:
         sheared = campaign.shear
         cells = sheared.further.get("time", ("",) * len(sheared))
         yield from zip(("shear",) * len(sheared), sheared.experiment, sheared.site, cells, strict=True)
-
-
-def _first(cells: Sequence[str]) -> str:
-    return next(filter(None, cells), "")
 
 
 def _moment(text: str, utc_offset: float) -> float:

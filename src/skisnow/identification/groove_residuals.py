@@ -21,10 +21,8 @@ from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError, SkisnowError
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ..carving.equilibrium import carve
-from ..carving.result import Equilibrium
 from ..scenario import Plane, ScenarioFile
 from ..scenario.terrain import normals_of
-from ..ski import Ski
 from ..snow import SnowProperties
 from .data_tables import MeasuredGrooves
 from .problem import Fit, Kind, Values
@@ -241,12 +239,6 @@ def _groove(scenario: ScenarioFile, values: Mapping[str, Any]) -> Groove | None:
         )  # fmt: skip
     except SkisnowError:
         return None
-    return _groove_of_equilibrium(equilibrium, scenario.scenario.ski, angle, ratio, load)
-
-
-def _groove_of_equilibrium(
-    equilibrium: Equilibrium, ski: Ski, angle: float, ratio: float, load: float
-) -> Groove | None:
     depth, twist, radius, limit = (
         equilibrium.edge_depth,
         equilibrium.twist,
@@ -257,6 +249,6 @@ def _groove_of_equilibrium(
         return None
     deepest = int(np.argmax(depth))
     local = angle + float(twist[deepest])
-    reach = float(ski.at(float(equilibrium.station[deepest])).width) * math.cos(local)
+    reach = float(scenario.scenario.ski.at(float(equilibrium.station[deepest])).width) * math.cos(local)
     width = min(float(depth[deepest]) / math.tan(local), reach)
     return Groove(float(depth[deepest]) * (1.0 - 1.0 / ratio), width, radius, limit / N_PER_MM2, load)

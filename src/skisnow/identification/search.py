@@ -138,7 +138,7 @@ class Search:
         damping = _FIRST_DAMPING
         for _ in range(self.options.most_rounds):
             here = self._with_jacobian(self._require_best())
-            left = self._left_to_gain(here)
+            left = self._in_noise(here, self._full_step(here))
             ends = left <= self.options.tolerance or self._settled(here)
             if ends and here.is_central:
                 return replace(here, state="converged")
@@ -232,9 +232,6 @@ class Search:
         if self.options.accuracy_is_stated:
             return 1.0
         return float(np.sqrt(state.cost / max(len(state.residuals) - len(state.place), 1)))
-
-    def _left_to_gain(self, state: SearchState) -> float:
-        return self._in_noise(state, self._full_step(state))
 
     def _in_noise(self, state: SearchState, step: FloatArray) -> float:
         assert state.jacobian is not None

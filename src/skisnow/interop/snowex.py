@@ -171,7 +171,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     is_at_surface = bool(temperatures) or not all(density.top for density in densities)
     return SnowPit(
         name=site,
-        time=min(_times(campaign, site), default=""),
+        time=min((cell for cell in _cells(campaign, site, "time") if cell[:4].isdigit()), default=""),
         observer=", ".join(campaign.observers),
         comment=f"{campaign.name}. {_NO_DEPTH}" if is_at_surface else campaign.name,
         region=campaign.place,
@@ -219,10 +219,6 @@ def _station_air(analysis: Analysis, site: str) -> float | None:
 def _notes(campaign: Campaign, site: str, column: str) -> list[float]:
     """Numbers of a column that is kept as text; each was checked when it was read."""
     return [float(cell.replace(",", ".")) for cell in _cells(campaign, site, column)]
-
-
-def _times(campaign: Campaign, site: str) -> list[str]:
-    return [cell for cell in _cells(campaign, site, "time") if cell[:4].isdigit()]
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:

@@ -133,7 +133,9 @@ def least_of(
     batches.evaluate([np.asarray(start, float)])
     if count == 1:
         return batches.least
-    optimiser = _optimiser(start, population, spread, seed)
+    optimiser = optimiser_within(
+        np.tile([0.0, 1.0], (len(start), 1)), np.clip(start, 0.0, 1.0), spread, seed, population=population
+    )
     while len(batches.found) < count and not optimiser.should_stop():
         candidates = [optimiser.ask() for _ in range(optimiser.population_size)]
         batches.evaluate(candidates)
@@ -142,12 +144,6 @@ def least_of(
         if max(values) - min(values) < settled:
             break
     return batches.least
-
-
-def _optimiser(start: FloatArray, population: int | None, spread: float, seed: Sequence[int]) -> Any:
-    return optimiser_within(
-        np.tile([0.0, 1.0], (len(start), 1)), np.clip(start, 0.0, 1.0), spread, seed, population=population
-    )
 
 
 def optimiser_within(

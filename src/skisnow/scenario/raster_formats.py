@@ -325,7 +325,7 @@ def _even(
             code="out_of_range",
             path=path,
             column=column,
-            places=_listed(different),
+            places=", ".join(f"{value:g} m" for value in different) or "nothing",
         )
     step = float(np.min(np.diff(different)))
     close = np.diff(different) > ROUNDED * (different[-1] - different[0]) / len(different)
@@ -347,10 +347,6 @@ def _even(
             action=Message("Interpolate onto evenly spaced places, or add the missing ones."),
         )
     return distinct[0] + step * np.arange(len(distinct)), number
-
-
-def _listed(values: FloatArray) -> str:
-    return ", ".join(f"{value:g} m" for value in values) or "nothing"
 
 
 def _require_each_once(

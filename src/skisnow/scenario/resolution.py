@@ -144,7 +144,9 @@ def resolve(scenario_input: ScenarioInput, sources: Sources) -> Resolution:
     snow_provider, measured = _named_snow(providers, snows)
     counting = {name for _, name in providers.values() if name not in NAMED_SNOWS} | {snow_provider[1]}
     values = {
-        name: value for name, value in scenario_input.values.items() if name in counting or not _replaceable(name)
+        name: value
+        for name, value in scenario_input.values.items()
+        if name in counting or name not in (*OVERRIDES_NAMED_SNOW, *NAMED_SNOWS, *ALTERNATIVES, "snow.map_file")
     }
     if UNLOADING in counting and values[UNLOADING] != 1.0 and values.get("snow.penetration") == "elastic":
         del values["snow.penetration"]  # the number comes from a later layer, else the two contradict each other
@@ -229,11 +231,6 @@ def _quantities(
         yield ALTERNATIVES.get(name, name)
         if name == "snow.penetration" and value == "elastic" and layer.values.get(UNLOADING) != 1.0:
             yield UNLOADING
-
-
-def _replaceable(name: str) -> bool:
-    """True for keys that count only while they give a quantity."""
-    return name in (*OVERRIDES_NAMED_SNOW, *NAMED_SNOWS, *ALTERNATIVES, "snow.map_file")
 
 
 def _strongest(quantity: str, names: list[str], layer: Layer) -> str:

@@ -149,7 +149,9 @@ def simulate(
     for code, text in model_limits(scenario.ski).items():
         warnings.warn(ModelLimitWarning(text, code=code), stacklevel=2)
     if controller is not None:
-        boots = _led(scenario, controller, boots)
+        if boots is not None:
+            raise ParameterError("boots and controller both move the boots; give one of them", code="contradiction")
+        boots = BalancedSkier(scenario, controller)
     run, setup = _run_once(scenario, progress, laws=laws, boots=boots, strength_along=strength_along)
     if run.outcome == "energy_open" and boots is None and not scenario.solver.fixed:
         spacing = run.numbers["line_spacing_m"]
@@ -212,13 +214,6 @@ def _warn_of_unseen_tracks(setup: Setup) -> None:
             force=force,
         )
         warnings.warn(ModelLimitWarning(text, code="tracks_between_lines"), stacklevel=3)
-
-
-def _led(scenario: Scenario, controller: Controller, boots: BootControl | None) -> BalancedSkier:
-    """The scenario's skier with a controller."""
-    if boots is not None:
-        raise ParameterError("boots and controller both move the boots; give one of them", code="contradiction")
-    return BalancedSkier(scenario, controller)
 
 
 def _warn_of_friction(run: Run) -> None:

@@ -69,7 +69,11 @@ class FileParts:
             stations=self.table["station_m"].station if self.table else None,
             keys=None if self.table or "shape" in values else dict(values.values),
         ).assembled(like=like)
-        self._require_mass(ski)
+        # a stated mass must be the integral of the mass per length
+        mass = self.values.said.mass
+        if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
+            allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)
+            self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or remove mass_kg."))
         self._warn_of_lengths(ski)
         return ski
 
@@ -174,13 +178,6 @@ class FileParts:
             raise ParameterError(
                 "{key} and stiffness_station_mm: {problem}", code=error.code, key=key, problem=error
             ) from error
-
-    def _require_mass(self, ski: Ski) -> None:
-        """Reject a stated mass that differs from the integral of the mass per length."""
-        mass = self.values.said.mass
-        if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
-            allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)
-            self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or remove mass_kg."))
 
     def _warn_of_lengths(self, ski: Ski) -> None:
         for key, length in (("running_length_mm", ski.running_length), ("sidecut_length_mm", ski.sidecut_length)):

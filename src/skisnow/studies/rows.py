@@ -176,7 +176,11 @@ class ParquetRows(StoredRows):
             self._file = parquet.ParquetFile(path)
             super().__init__(self._file.metadata.num_rows)
             self.columns = tuple(self._file.schema_arrow.names)
-            self._groups = _group_begins(self._file.metadata)
+            metadata = self._file.metadata
+            ends = [0]
+            for group in range(metadata.num_row_groups):
+                ends.append(ends[-1] + metadata.row_group(group).num_rows)
+            self._groups = list(itertools.pairwise(ends))
         self._texts = [is_text(name, keys) for name in self.columns]
         self._read: tuple[int, Any] = (-1, None)
 
@@ -207,13 +211,6 @@ class ParquetRows(StoredRows):
         for place, row in enumerate(rows, start=first + 1):
             require_kinds(f"{self._path}, row {place}", row, self._texts)
         return rows
-
-
-def _group_begins(metadata: Any) -> list[tuple[int, int]]:
-    ends = [0]
-    for group in range(metadata.num_row_groups):
-        ends.append(ends[-1] + metadata.row_group(group).num_rows)
-    return list(itertools.pairwise(ends))
 
 
 def require_pyarrow() -> Any:

@@ -172,7 +172,10 @@ def written(
     stored = None
     if any(row[columns.index("outcome")] != FAILED for row in finished_rows.values()):
         if previous is not None:
-            _move(out, previous)
+            try:
+                out.rename(previous)
+            except OSError as error:
+                raise cannot_write(previous, error) from error
         begins = write_table(out, columns, rows)
         stored = None if rows.held is not None else stored_rows(out, keys, begins)
     elif len(finished_rows) > MOST_ROWS_HELD:
@@ -214,13 +217,6 @@ def _stamp(path: Path) -> tuple[int, int, int] | None:
     except OSError:
         return None
     return status.st_ino, status.st_size, status.st_mtime_ns
-
-
-def _move(table: Path, place: Path) -> None:
-    try:
-        table.rename(place)
-    except OSError as error:
-        raise cannot_write(place, error) from error
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.processes.kept_rows import Row
 from .._support.units import MM, ShownFields
 from .._support.user_files.json_text import json_number
-from ..carving.answer import CarveAnswer, answered, inputs_dict, scalars_dict
+from ..carving.answer import answered, inputs_dict, scalars_dict
 from ..carving.question import CARVE_KEYS, carve_question, require_clamp, require_complete
 from ..parameters import Quantity
 from ..scenario import ScenarioFile
@@ -114,17 +114,14 @@ class CarveModel(ShownFields):
         carves = points.distinct("at_rest") != [True]
         point = next(point for point in points if not (carves and point.get("at_rest") is True))
         require_complete(point)
-        self._require_snow(point, fixed, carves=carves)
+        # the snow that all points share must be there, with S_f from one side and not from both
+        named = {"published", "results", "site"} & set(point)
+        if named and named <= set(fixed):
+            require_stress(self._sources.named_snow(fixed), point.get("S_f_N_per_mm2"), carves=carves)
         if "ski" in fixed:
             ski, _ = self._sources.ski(fixed["ski"])
             if "clamp_length_m" in fixed or "clamp_length_m" not in points[0]:
                 require_clamp(ski, fixed.get("clamp_length_m", CLAMP_LENGTH))
-
-    def _require_snow(self, point: Point, fixed: Point, *, carves: bool) -> None:
-        """The snow that all points share must be there, with S_f from one side and not from both."""
-        named = {"published", "results", "site"} & set(point)
-        if named and named <= set(fixed):
-            require_stress(self._sources.named_snow(fixed), point.get("S_f_N_per_mm2"), carves=carves)
 
     def files(self, points: Points) -> list[Path]:
         """Ski files and results files."""
@@ -134,27 +131,24 @@ class CarveModel(ShownFields):
     def __call__(self, point: Point) -> Row:
         """One row; whatever is wrong with a point is in it."""
         try:
-            return _carve_row(answered(carve_question(point), sources=self._sources))
+            answer = answered(carve_question(point), sources=self._sources)
+            equilibrium = answer.equilibrium
+            scalars = scalars_dict(equilibrium)
+            depth, force = equilibrium.edge_depth, equilibrium.force_per_length
+            return {
+                **inputs_dict(answer),
+                **{name: scalars[name] for name in CARVE_RESULTS if name in scalars},
+                "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
+                "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
+                "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
+                "ski_name": answer.ski.name,
+                "warnings": "; ".join(answer.warnings),
+                "reason": equilibrium.remedy,
+            }
         except SkisnowError as error:
             return _failure(point, str(error))
         except Exception as error:  # a study never stops for one point
             return _failure(point, f"unexpected {type(error).__name__}: {error}")
-
-
-def _carve_row(answer: CarveAnswer) -> Row:
-    equilibrium = answer.equilibrium
-    scalars = scalars_dict(equilibrium)
-    depth, force = equilibrium.edge_depth, equilibrium.force_per_length
-    return {
-        **inputs_dict(answer),
-        **{name: scalars[name] for name in CARVE_RESULTS if name in scalars},
-        "greatest_edge_depth_mm": None if depth is None else float(np.max(depth)) / MM,
-        "greatest_force_per_length_N_per_m": None if force is None else float(np.max(force)),
-        "sidecut_radius_of_three_widths_m": json_number(answer.ski.sidecut_radius_of_three_widths),
-        "ski_name": answer.ski.name,
-        "warnings": "; ".join(answer.warnings),
-        "reason": equilibrium.remedy,
-    }
 
 
 def _failure(point: Point, reason: str) -> Row:
