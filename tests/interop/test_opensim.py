@@ -194,7 +194,7 @@ def test_axes_with_z_up_need_no_turn() -> None:
         ({"time": np.array([0.1, 0.1])}, coded("not_a_number", field="markers", row=2, time=0.1)),
         ({"place": np.zeros((2, 3, 3))}, coded("wrong_shape", shape="(2, 3, 3)", needed="(2, 2, 3)")),
         ({"names": ("a", "a")}, "repeated"),
-        ({"rate": 0.0}, coded("out_of_range", rate=0.0)),
+        ({"rate": 0.0}, coded("out_of_range", name="rate", value=0.0)),
         ({"rate": np.inf}, "out_of_range"),
     ],
 )

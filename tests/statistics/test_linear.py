@@ -194,7 +194,7 @@ def test_bad_input_is_named() -> None:
             linear_fit(nothing, [])
     with raises(ParameterError, "wrong_shape"):
         linear_fit([1.0, 2.0, 3.0], [1.0, 2.0])
-    with raises(ParameterError, "out_of_range", confidence=95):
+    with raises(ParameterError, "out_of_range", name="confidence", value=95):
         linear_fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0], confidence=95)
 
 

@@ -7,10 +7,11 @@ instead of the wording.
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Self
 
-from .messages import ENGLISH, Message, count_message, joined, languages, translated
+from .messages import ENGLISH, Message, count_message, joined, languages, template, translated
 
 
 def templated(message: str, fields: Mapping[str, Any]) -> str:
@@ -150,6 +151,28 @@ def most_like(word: str, words_allowed: Iterable[str]) -> str | None:
     by_small = {name.lower(): name for name in words_allowed}
     like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
     return by_small[like[0]] if like else None
+
+
+_RANGES = {
+    (False, False): template("{name} is {value:g}. Allowed: from {low:g} to {high:g}."),
+    (True, False): template("{name} is {value:g}. Allowed: above {low:g}, at most {high:g}."),
+    (False, True): template("{name} is {value:g}. Allowed: at least {low:g}, below {high:g}."),
+    (True, True): template("{name} is {value:g}. Allowed: above {low:g} and below {high:g}."),
+}
+_HALF_RANGES = {
+    False: template("{name} is {value:g}. Allowed: {low:g} or more."),
+    True: template("{name} is {value:g}. Allowed: above {low:g}."),
+}
+
+
+def require_range(
+    name: str, value: float, low: float, high: float = math.inf, *, above: bool = False, below: bool = False
+) -> None:
+    """Reject an argument outside its range; `above` and `below`: the ends themselves are outside, too."""
+    if (low < value if above else low <= value) and (value < high if below else value <= high):
+        return
+    problem = _HALF_RANGES[above] if high == math.inf else _RANGES[above, below]
+    raise ParameterError(problem, code="out_of_range", name=name, value=value, low=low, high=high)
 
 
 def require_choice(name: str, value: object, choices: Iterable[str]) -> None:

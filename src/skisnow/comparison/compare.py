@@ -9,7 +9,7 @@ from typing import Final, get_args
 
 import numpy as np
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_range
 from .._support.units import DEGREE, amount
 from ..track.slope_frame import STEEPEST, LaidTracks, lay_for_fit
 from ..track.track import Track, inexact_sentence
@@ -151,17 +151,8 @@ def _require_options(
             code="unknown_time_origin",
             time_from=time_from,
         )
-    if known_to is not None and not (math.isfinite(known_to) and known_to >= 0.0):
-        raise ParameterError(
-            "places are known to 0 m or more, not to {known_to!r}", code="out_of_range", known_to=known_to
-        )
-    if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
-        raise ParameterError(
-            "slope_angle is {slope_angle!r} rad. Allowed: from 0 to {steepest:.4g}.",
-            code="out_of_range",
-            slope_angle=slope_angle,
-            steepest=STEEPEST,
-        )
+    require_range("known_to", known_to or 0.0, 0.0, math.inf, below=True)
+    require_range("slope_angle", slope_angle or 0.0, 0.0, STEEPEST)
 
 
 def _dimensions(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:

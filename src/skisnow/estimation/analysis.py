@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from .._support.errors import ParameterError
+from .._support.errors import require_range
 from .._support.units import MM, Facts, Shown, SmallFigure, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
@@ -270,19 +270,8 @@ def analyse(
       snow for simulation of skiing", J. Glaciol.
     * Efron (1979), "Bootstrap methods: another look at the jackknife", Ann. Stat. 7, 1-26, doi 10.1214/aos/1176344552.
     """
-    if n_resamples < FEWEST_RESAMPLES:
-        raise ParameterError(
-            "n_resamples is {n_resamples!r}; a 95 % interval needs {fewest_resamples} or more",
-            code="out_of_range",
-            n_resamples=n_resamples,
-            fewest_resamples=FEWEST_RESAMPLES,
-        )
-    if not 0.0 < difference < np.inf:
-        raise ParameterError(
-            "difference is {difference!r}; a number above 0 is needed, 0.2 for 20 %",
-            code="out_of_range",
-            difference=difference,
-        )
+    require_range("n_resamples", n_resamples, FEWEST_RESAMPLES)
+    require_range("difference", difference, 0.0, np.inf, above=True, below=True)
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
     return _analysis(read, geometry, seed, n_resamples, difference, progress)
 

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.errors import FitError, ParameterError
+from .._support.errors import FitError, require_range
 from .._support.messages import Message, template
 from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_intervals, add_profile_intervals
 from .parameter import bounds_of
@@ -61,8 +61,7 @@ class SearchRequest:
 
 def solve(problem: Problem, plan: SearchRequest) -> Identification:
     """Search from every start and compute the result at the best place."""
-    if plan.starts < 1:
-        raise ParameterError("starts is {starts}; at least 1 is needed", code="out_of_range", starts=plan.starts)
+    require_range("starts", plan.starts, 1)
     solution = solution_of(problem, plan)
     return add_requested_intervals(
         build_identification(solution, plan.title, plan.warnings, plan.methods), solution, plan

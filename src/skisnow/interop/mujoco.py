@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_range
 from .._support.staging import write_file
 from ..contact import SnowContact
 from ..ski import Ski
@@ -46,22 +46,10 @@ def ski_mjcf(
     the middles of the segments that it joins. The free shape (camber, shovel) has no stress. Boxes are to be seen
     alone: they collide with nothing.
     """
-    if segments < 4:
-        raise ParameterError(
-            "ski_mjcf: segments is {segments!r}; it must be 4 or more", code="out_of_range", segments=segments
-        )
+    require_range("segments", segments, 4)
     length = float(ski.station[0] - ski.station[-1])
-    if not 0.0 < clamp_length < length:
-        raise ParameterError(
-            "ski_mjcf: clamp_length is {clamp_length!r} m; it must be above 0 and below {length:g}",
-            code="out_of_range",
-            clamp_length=clamp_length,
-            length=length,
-        )
-    if not (np.isfinite(damping) and damping >= 0.0):
-        raise ParameterError(
-            "ski_mjcf: damping is {damping!r} s; it must be 0 or more", code="out_of_range", damping=damping
-        )
+    require_range("clamp_length", clamp_length, 0.0, length, above=True, below=True)
+    require_range("damping", damping, 0.0, np.inf, below=True)
     half, (tip, tail) = clamp_length / 2.0, (float(ski.station[0]), float(ski.station[-1]))
     front = round(segments * (tip - half) / (length - clamp_length))
     chains = (

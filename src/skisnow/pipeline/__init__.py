@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_range
 from .._support.messages import Message
 from .._support.processes.batch import run_batch, workers_in_force
 from ..campaign import Campaign, read_campaign
@@ -173,16 +173,9 @@ def _require(unloading_ratio: float | None, shear_displacement: float | None, ru
             code="out_of_range",
             unloading_ratio=unloading_ratio,
         )
-    if shear_displacement is not None and not shear_displacement > 0.0:
-        raise ParameterError(
-            "shear_displacement is {shear_displacement} m; u_y must be above 0",
-            code="out_of_range",
-            shear_displacement=shear_displacement,
-        )
-    if runs < FEWEST:
-        raise ParameterError(
-            "runs is {runs}; a band needs {fewest} or more", code="out_of_range", runs=runs, fewest=FEWEST
-        )
+    if shear_displacement is not None:
+        require_range("shear_displacement", shear_displacement, 0.0, above=True)
+    require_range("runs", runs, FEWEST)
 
 
 def _silent(_text: str) -> None:

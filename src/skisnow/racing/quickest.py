@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import get_args
 
 from .._support.arrays import content_bytes
-from .._support.errors import ParameterError, require_choice
+from .._support.errors import ParameterError, require_choice, require_range
 from .._support.messages import Message
 from .._support.processes.batch import ExecutorLike, Pool, require_executor, workers_in_force
 from .._support.processes.kept_rows import KeptRows
@@ -220,34 +220,15 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
                     high=high,
                 )
     count = len(course.gates) if gates is None else gates
-    if not 2 <= count <= len(line.turns):
-        raise ParameterError(
-            "gates is {count}; it must be from 2 to {n_turns}",
-            code="out_of_range",
-            count=count,
-            n_turns=len(line.turns),
-        )
+    require_range("gates", count, 2, len(line.turns))
     return first_gates(line, count)
 
 
 def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int, int]:
     window = gates if window is None else window
-    if not 2 <= window <= gates:
-        raise ParameterError(
-            "window is {window}; it must be from 2 to the {gates} gates of the course",
-            code="out_of_range",
-            window=window,
-            gates=gates,
-        )
-    if not 1 <= step <= window:
-        raise ParameterError(
-            "step is {step}; it must be from 1 to the window's {window} gates",
-            code="out_of_range",
-            step=step,
-            window=window,
-        )
-    if ahead < 0:
-        raise ParameterError("ahead is {ahead}; it must be 0 or more", code="out_of_range", ahead=ahead)
+    require_range("window", window, 2, gates)
+    require_range("step", step, 1, window)
+    require_range("ahead", ahead, 0)
     return window, step
 
 
@@ -259,27 +240,11 @@ def _search(search: Search | None, model: RacerModel) -> Search:
 
 
 def _require(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
-    if evaluations < 1:
-        raise ParameterError(
-            "evaluations is {evaluations}; at least 1 is needed", code="out_of_range", evaluations=evaluations
-        )
-    if population is not None and population < 4:
-        raise ParameterError(
-            "population is {population}; at least 4 is needed", code="out_of_range", population=population
-        )
-    if not 0.0 < spread <= 1.0:
-        raise ParameterError(
-            "spread is {spread:g}; it must be above 0 and at most 1", code="out_of_range", spread=spread
-        )
-    if not 0.0 <= room <= 1.0:
-        raise ParameterError("room is {room:g}; it must be from 0 to 1", code="out_of_range", room=room)
-    if not 0.0 <= settled < NOT_PASSED:
-        raise ParameterError(
-            "settled is {settled:g}; it must be from 0 to below {not_passed:g}",
-            code="out_of_range",
-            settled=settled,
-            not_passed=NOT_PASSED,
-        )
+    require_range("evaluations", evaluations, 1)
+    require_range("population", 4 if population is None else population, 4)
+    require_range("spread", spread, 0.0, 1.0, above=True)
+    require_range("room", room, 0.0, 1.0)
+    require_range("settled", settled, 0.0, NOT_PASSED, below=True)
 
 
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:

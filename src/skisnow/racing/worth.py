@@ -13,7 +13,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from .._support.arrays import FloatArray, content_bytes
-from .._support.errors import ParameterError, require_choice
+from .._support.errors import ParameterError, require_choice, require_range
 from .._support.processes.batch import ExecutorLike, run_batch
 from .._support.processes.kept_rows import KeptRows
 from .._support.units import Facts, Shown, amount
@@ -193,10 +193,7 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
     if count == 0:
         return [snow]
     if spread is not None:
-        if not 0.0 < spread <= 10.0:
-            raise ParameterError(
-                "spread is {spread:g}; it must be above 0 and at most 10", code="out_of_range", spread=spread
-            )
+        require_range("spread", spread, 0.0, 10.0, above=True)
         snow = replace(
             snow,
             snow_hardness_interval=_about(snow.snow_hardness, spread),

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.io import netcdf_file
 
 from .._support.arrays import FloatArray
-from .._support.errors import ParameterError, SkisnowError
+from .._support.errors import ParameterError, SkisnowError, require_range
 from .._support.messages import Message, template
 from .._support.units import DEGREE
 from .._support.user_files import GivenError, json_value
@@ -76,12 +76,7 @@ def replay_of_file(
             boots = _boots(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         require_drawable(arrays)
-        if not 0.0 < spacing <= 1.0:
-            raise ParameterError(
-                "solver_line_spacing_m is {spacing:g}; it must be above 0 and at most 1",
-                code="out_of_range",
-                spacing=spacing,
-            )
+        require_range("solver_line_spacing_m", spacing, 0.0, 1.0, above=True)
         setting = _setting(path, values, outcome, spacing, ski)
         return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
     except SkisnowError as error:

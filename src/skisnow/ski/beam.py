@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import BoolArray, FloatArray, IntArray
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_range
 from .ski import Ski
 
 DOFS_PER_NODE: Final = 3
@@ -242,14 +242,9 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
             front=front,
             value=-rear,
         )
-    if elements < 4:
-        raise ParameterError("elements is {elements}; a ski needs 4 or more", code="out_of_range", elements=elements)
-    if footprint_stiffness is not None and not footprint_stiffness > 0.0:
-        raise ParameterError(
-            "footprint_stiffness is {footprint_stiffness} N/m²; it must be above 0, or absent (rigid)",
-            code="out_of_range",
-            footprint_stiffness=footprint_stiffness,
-        )
+    require_range("elements", elements, 4)
+    if footprint_stiffness is not None:
+        require_range("footprint_stiffness", footprint_stiffness, 0.0, above=True)
     mesh = _mesh(front, rear, clamp_length, elements, bedded=footprint_stiffness is not None)
     node, dof, size = mesh.node, mesh.dof, mesh.size
     length = node[:-1] - node[1:]

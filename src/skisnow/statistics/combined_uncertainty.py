@@ -19,7 +19,7 @@ import numpy.typing as npt
 from scipy.special import ndtri, stdtrit
 
 from .._support.arrays import FloatArray
-from .._support.errors import ParameterError
+from .._support.errors import ParameterError, require_range
 from .._support.units import CONFIDENCE
 
 _LEAST_SHARE: Final = 1e-12
@@ -98,12 +98,7 @@ def expanded_factor(degrees_of_freedom: npt.ArrayLike, confidence: float) -> Flo
 
 def require_confidence(confidence: float) -> None:
     """Raise `ParameterError` unless the confidence is between 0 and 1."""
-    if not 0.0 < confidence < 1.0:
-        raise ParameterError(
-            "confidence is {confidence!r}; it must lie between 0 and 1, 0.95 for a 95 % interval",
-            code="out_of_range",
-            confidence=confidence,
-        )
+    require_range("confidence", confidence, 0.0, 1.0, above=True, below=True)
 
 
 class RandomEffectsMean(NamedTuple):

@@ -186,5 +186,5 @@ def test_a_footprint_is_between_a_rigid_clamp_and_one_section() -> None:
 
 
 def test_a_footprint_without_stiffness_is_rejected() -> None:
-    with raises(ParameterError, "out_of_range", footprint_stiffness=0.0):
+    with raises(ParameterError, "out_of_range", name="footprint_stiffness", value=0.0):
         clamped(plain_ski(), 0.3, 40, 0.0)

@@ -11,7 +11,7 @@ from typing import Final, Literal
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.errors import ParameterError, require_choice
+from ..._support.errors import ParameterError, require_choice, require_range
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import write_file
 from ..._support.units import DEGREE, Facts, Shown, amount
@@ -54,10 +54,7 @@ class Markers(Shown):
             )
         if len(set(self.names)) < len(self.names):
             raise ParameterError("markers: a name is there twice; each marker needs a separate name", code="repeated")
-        if not (np.isfinite(self.rate) and self.rate > 0.0):
-            raise ParameterError(
-                "markers: rate is {rate!r} Hz; it must be above 0", code="out_of_range", rate=self.rate
-            )
+        require_range("rate", self.rate, 0.0, np.inf, above=True, below=True)
 
     def _facts(self) -> Facts:
         omitted = f", {len(self.omitted)} other points omitted" if self.omitted else ""
