@@ -142,16 +142,16 @@ class SingleForm:
         key = self._view.form.key
         test = self._view.test(cells[key])
         if (before := self._view.stored_before()) is not None:
-            return self._stored(before, cells["site"])
+            return self._announce_stored(before, cells["site"])
         if test.history and (fault := self._second_row_fault(test, cells)):
             refuse(self._fields[key], fault)
             self._view.say(Message("Not stored:"), "bad", faults([self._fields[key]]))
             return False
         if not self._view.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
             return False
-        return self._stored(test.name, cells["site"])
+        return self._announce_stored(test.name, cells["site"])
 
-    def _stored(self, name: str, site: str) -> bool:
+    def _announce_stored(self, name: str, site: str) -> bool:
         self._view.say(Message("Stored: test {name}.", name=name))
         self._live_results.follow(name, site)
         self._begun = None
