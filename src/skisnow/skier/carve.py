@@ -44,12 +44,8 @@ SLOWEST: Final = 2.0
 class Underway:
     """State of a skier, now or predicted.
 
-    Attributes
-    ----------
-    time, x, y
-        (s), (m).
-    heading, speed, acceleration
-        Of its path: from the fall line (rad), (m/s), to the left (m/s²).
+    time, x, y: (s), (m).
+    heading, speed, acceleration: of its path: from the fall line (rad), (m/s), to the left (m/s²).
     """
 
     time: float
@@ -105,9 +101,7 @@ class Pursuit:
 class CarveControl:
     """Carved turns: the lean follows from the plan, the edge from the lean.
 
-    References
-    ----------
-    The page docs/methods/skier.md.
+    Source: The page docs/methods/skier.md.
     """
 
     skier: Skier

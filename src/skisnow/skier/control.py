@@ -76,16 +76,10 @@ class Smoothed:
 class Balance:
     """Position of balance at one moment.
 
-    Attributes
-    ----------
-    balanced
-        Where the centre of mass would be in balance by the measured force, to the left of the feet (m).
-    wanted, error
-        Place that the capture point is to have, and how far it is to the left of it (m).
-    pressure
-        Centre of pressure that follows (m).
-    rate
-        Rate of the pendulum (1/s).
+    balanced: where the centre of mass would be in balance by the measured force, to the left of the feet (m).
+    wanted, error: place that the capture point is to have, and how far it is to the left of it (m).
+    pressure: centre of pressure that follows (m).
+    rate: rate of the pendulum (1/s).
     """
 
     balanced: float
@@ -99,9 +93,7 @@ class Balance:
 class SkidControl:
     """Skidded turns: the slip brakes, the edge gives the force, the centre of pressure keeps balance.
 
-    References
-    ----------
-    The page docs/methods/skier.md.
+    Source: The page docs/methods/skier.md.
     """
 
     skier: Skier

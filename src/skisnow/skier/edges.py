@@ -20,17 +20,11 @@ BEYOND_LEAN: Final = math.radians(3.0)
 class Edges:
     """The edge angle that gives an acceleration.
 
-    Attributes
-    ----------
-    radius
-        Radius of the sidecut (m).
-    gravity
-        Along the snow's normal (m/s²).
-    softness
-        2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds a side force of √(2 S_f² L tan ϑ/(H_V N)) times that
-        load.
-    greatest
-        Edge angle (rad).
+    radius: radius of the sidecut (m).
+    gravity: along the snow's normal (m/s²).
+    softness: 2 S_f² L/H_V (N): a wedge of angle ϑ under the load N holds a side force of √(2 S_f² L tan ϑ/(H_V N))
+        times that load.
+    greatest: edge angle (rad).
     """
 
     radius: float
@@ -72,14 +66,9 @@ class Edges:
     def held(self, acceleration: float, slope: float, load: float) -> float:
         """Part of an acceleration to the left that the snow gives a carve (m/s²).
 
-        Parameters
-        ----------
-        acceleration
-            Wanted, to the left (m/s²).
-        slope
-            Share of gravity along the slope that the skis hold in addition, to the left (m/s²).
-        load
-            Load of both skis (N).
+        acceleration: wanted, to the left (m/s²).
+        slope: share of gravity along the slope that the skis hold in addition, to the left (m/s²).
+        load: load of both skis (N).
         """
         wanted = (acceleration + slope) / self.gravity
         most = self._hold(abs(wanted), load)

@@ -15,14 +15,9 @@ LEAST_LOAD = 20.0
 class ForceMap:
     """Model of ski and snow that a skier assumes.
 
-    Attributes
-    ----------
-    hardness
-        H_V (N/m³).
-    strength
-        S_f (N/m²).
-    length
-        Running length of the ski (m).
+    hardness: H_V (N/m³).
+    strength: S_f (N/m²).
+    length: running length of the ski (m).
     """
 
     hardness: float

@@ -75,8 +75,6 @@ class Line(Protocol):
 class TurnsOverTime:
     """Turns to the left and to the right by turns, the first half a turn long, then straight on.
 
-    Examples
-    --------
     >>> plan = TurnsOverTime(Skier(first_turn=1.0, turn_time=2.0, turns=1.5, turn_angle=0.5))
     >>> [round(plan.course(time)[0], 3) for time in (0.5, 1.5, 2.0, 3.0, 4.0, 9.0)]
     [0.0, 0.25, 0.5, 0.0, -0.5, -0.5]
@@ -117,10 +115,7 @@ class TurnsOverTime:
 class HalfWaves:
     """A line of half waves from apex to apex.
 
-    Parameters
-    ----------
-    apexes
-        x, y (m), x rising, at least two.
+    apexes: x, y (m), x rising, at least two.
     """
 
     def __init__(self, apexes: Sequence[tuple[float, float]]) -> None:
@@ -158,15 +153,9 @@ class SideSlip:
 class RecedingLine:
     """A path from where the skier is to the next apex of a line that is far enough, and on along the line.
 
-    Parameters
-    ----------
-    line
-        Up to its last apex; behind it the turns go on.
-    apexes
-        x, y (m) of its start and apexes, x rising.
+    line: up to its last apex; behind it the turns go on.
+    apexes: x, y (m) of its start and apexes, x rising.
 
-    Notes
-    -----
     The path to the apex is a polynomial of fifth order with place, course and planned curvature of now, and those of
     the line at the apex: the planned curvature is continuous, and nothing has to lead back to the line.
     """

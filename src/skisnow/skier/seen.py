@@ -109,18 +109,11 @@ def seen_at(
 ) -> Seen:
     """State that the skier measures at a moment.
 
-    Parameters
-    ----------
-    moment
-        Moment of the run.
-    centre_of_mass
-        In the body: ahead and up (m).
-    normal
-        Normal of the snow, (3,).
-    weight
-        Weight of the skier (N).
-    yaw_inertia
-        Moment of inertia of the body (kg m²).
+    moment: moment of the run.
+    centre_of_mass: in the body: ahead and up (m).
+    normal: normal of the snow, (3,).
+    weight: weight of the skier (N).
+    yaw_inertia: moment of inertia of the body (kg m²).
     """
     rotation, boots, spin = moment.rotation, moment.boots, moment.velocity[3:]
     up = normal @ rotation

@@ -12,18 +12,11 @@ from .anthropometry import body_of
 class Segment:
     """One segment between two joints, of one side where there are two.
 
-    Attributes
-    ----------
-    length
-        Over the height of the body.
-    mass
-        Over the mass of the body.
-    centre
-        Of its mass from the upper joint, for the trunk from the hips, over its length.
+    length: over the height of the body.
+    mass: over the mass of the body.
+    centre: of its mass from the upper joint, for the trunk from the hips, over its length.
 
-    References
-    ----------
-    The page docs/methods/skier.md: Winter (2009), after Drillis and Contini (1966) and Dempster (1955).
+    Source: The page docs/methods/skier.md: Winter (2009), after Drillis and Contini (1966) and Dempster (1955).
     """
 
     length: float
@@ -48,12 +41,8 @@ HIP_WIDTH: Final = 0.191
 def height_of(mass: float, roll_inertia: float) -> float:
     """Height (m) of the body that has a mass (kg) and a roll inertia (kg m²), within 1 to 2.3 m.
 
-    References
-    ----------
-    The page docs/methods/skier.md: `body_of` the other way round.
+    Source: The page docs/methods/skier.md: `body_of` the other way round.
 
-    Examples
-    --------
     >>> round(height_of(75.0, body_of(75.0, 1.8).inertia[0]), 6)
     1.8
     """

@@ -52,9 +52,7 @@ SOLVED_EVERY: Final = 8
 class WedgeControl:
     """A wedge that brakes to a stop down the fall line.
 
-    References
-    ----------
-    The page docs/methods/skier.md.
+    Source: The page docs/methods/skier.md.
     """
 
     skier: Skier

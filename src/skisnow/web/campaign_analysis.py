@@ -48,14 +48,9 @@ SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetra
 class Choice:
     """Included data.
 
-    Attributes
-    ----------
-    excluding
-        Codes of the quality flags that exclude an experiment (default: those of the campaign).
-    left_out
-        Further excluded experiments by file and name.
-    difference
-        Relative difference of two groups that the number of needed tests is for.
+    excluding: codes of the quality flags that exclude an experiment (default: those of the campaign).
+    left_out: further excluded experiments by file and name.
+    difference: relative difference of two groups that the number of needed tests is for.
     """
 
     excluding: frozenset[str] | None = None
@@ -245,10 +240,7 @@ class AnalysisCache:
     def cached(self, kind: str, id_: str) -> CampaignSource | None:
         """The campaign if it is in the cache and nothing was entered since.
 
-        Raises
-        ------
-        StoreError
-            The store has no such campaign.
+        Raises StoreError: the store has no such campaign.
         """
         entry, state = self._subjects.get((kind, id_)), self._state(kind, id_)
         return entry[1] if entry is not None and entry[0] == state else None
@@ -256,10 +248,7 @@ class AnalysisCache:
     async def subject(self, kind: str, id_: str) -> CampaignSource:
         """The campaign in its current state.
 
-        Raises
-        ------
-        StoreError
-            The store has no such campaign.
+        Raises StoreError: the store has no such campaign.
         """
         async with self._opening:
             if (cached := self.cached(kind, id_)) is not None:

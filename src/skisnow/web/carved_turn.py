@@ -176,10 +176,7 @@ class CarvedTurn:
     def asked(self) -> Asked:
         """Questions of the current inputs.
 
-        Raises
-        ------
-        ParameterError
-            An input is not complete; the page shows it there.
+        Raises ParameterError: an input is not complete; the page shows it there.
         """
         raise NotImplementedError
 

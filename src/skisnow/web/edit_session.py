@@ -45,14 +45,9 @@ TestKey: TypeAlias = tuple[str, str]
 class QuickResults:
     """Quick results of the tests of one site.
 
-    Attributes
-    ----------
-    experiments
-        Rows of results.json. Density samples and drop-cone tests have none.
-    curves
-        Readings and law of each penetration series.
-    flags
-        Sentences of the quality flags, by code.
+    experiments: rows of results.json. Density samples and drop-cone tests have none.
+    curves: readings and law of each penetration series.
+    flags: sentences of the quality flags, by code.
     """
 
     experiments: dict[TestKey, dict[str, Any]]
@@ -187,10 +182,7 @@ class CorrectionSession(EditSession):
     def described(self) -> CampaignFile:
         """Contents of campaign.toml, or of the sheets in its place.
 
-        Raises
-        ------
-        FieldDataError, StoreError
-            The description cannot be read.
+        Raises FieldDataError or StoreError: the description cannot be read.
         """
         problems: list[Problem] = []
         try:
@@ -236,10 +228,8 @@ class CorrectionSession(EditSession):
     def write_down(self, entry: NewEntry, *, seen: int) -> JournalEntry:
         """Store a correction, cancellation, undo or attachment; see `Journals.correct`.
 
-        Raises
-        ------
-        StoreError
-            As in `Journals.correct`; or the corrections are in a sheet of a workbook, which is not edited.
+        Raises StoreError: as in `Journals.correct`; or the corrections are in a sheet of a workbook, which is not
+            edited.
         """
         if CORRECTIONS.file in self._tables.places and entry.file != ATTACHMENTS:
             raise StoreError(OWN_SHEET, code="in_a_workbook")

@@ -93,10 +93,7 @@ class Access:
     def allows_host(self, host: str) -> bool:
         """True if a request may name this host: names of this machine; on an open host also any IP address.
 
-        Raises
-        ------
-        ValueError
-            The text is not a host.
+        Raises ValueError: the text is not a host.
         """
         name = (urlsplit(f"//{host}").hostname or "").lower()
         if name in self._names:

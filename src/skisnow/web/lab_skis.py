@@ -56,10 +56,7 @@ class LabSkis:
     def word(self, name: str) -> str:
         """Word for a ski in scenarios and commands: its name in the catalogue, or the path of its file.
 
-        Raises
-        ------
-        ParameterError
-            The lab has no such ski.
+        Raises ParameterError: the lab has no such ski.
         """
         if name in ski_names():
             return name
@@ -82,12 +79,8 @@ class LabSkis:
     def save_ski(self, name: str, ski: Ski) -> None:
         """Save a ski with this name as a file with a table.
 
-        Raises
-        ------
-        ParameterError
-            The name is not valid or exists already.
-        OutputError
-            The folder cannot be written.
+        Raises ParameterError: the name is not valid or exists already.
+        Raises OutputError: the folder cannot be written.
         """
         self._save(name, lambda folder: write_ski(ski, folder / FILE))
 
@@ -153,10 +146,7 @@ class LabSkis:
 def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
     """Ski of a file's text, with the warnings of the reader.
 
-    Raises
-    ------
-    ParameterError
-        As `read_ski`; or the text names another file than its table.
+    Raises ParameterError: as `read_ski`; or the text names another file than its table.
     """
     _require_no_other_file(text)
     with TemporaryDirectory(prefix="skisnow-ski-") as name:
@@ -252,10 +242,7 @@ class SkiTexts:
 def measured_text(name: str, typed: Mapping[str, str]) -> str:
     """Text of the file of a ski with three measured widths.
 
-    Raises
-    ------
-    ParameterError
-        A field is empty or not a number.
+    Raises ParameterError: a field is empty or not a number.
     """
     return _text({NAME: name, "source": "measured, entered in the lab"}, {key: typed.get(key, "") for key in MEASURED})
 
@@ -279,10 +266,7 @@ def _numbers(words: str, text: str) -> list[float]:
 def add_ski(skis: LabSkis, name: str, texts: SkiTexts) -> str:
     """Save a ski that was read, under a name (default: its own); returns the name.
 
-    Raises
-    ------
-    ParameterError, OutputError
-        See `LabSkis.save_ski`.
+    Raises ParameterError or OutputError: see `LabSkis.save_ski`.
     """
     saved_name = " ".join((name or texts.name).split())
     skis.save_texts(saved_name, texts.text, texts.table)
@@ -292,19 +276,10 @@ def add_ski(skis: LabSkis, name: str, texts: SkiTexts) -> str:
 def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], further: Mapping[str, str], limits: Limits) -> SkiTexts:
     """Read the files of a ski in a separate process.
 
-    Parameters
-    ----------
-    uploads
-        Names and contents of a TOML file with its table, or of a design of MonkeyCAM.
-    further
-        Typed values for a design, by the keys of `STIFFNESS`.
-    limits
-        Limits of the upload.
-
-    Raises
-    ------
-    ParameterError
-        The files do not contain exactly one ski.
+    uploads: names and contents of a TOML file with its table, or of a design of MonkeyCAM.
+    further: typed values for a design, by the keys of `STIFFNESS`.
+    limits: limits of the upload.
+    Raises ParameterError: the files do not contain exactly one ski.
     """
     with TemporaryDirectory(prefix="skisnow-ski-") as folder:
         unpacking = Unpacking(Path(folder) / "ski", limits)

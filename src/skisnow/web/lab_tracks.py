@@ -49,16 +49,11 @@ _FILE: Final = "track"
 class Placing:
     """Position of a track relative to a run.
 
-    Attributes
-    ----------
-    called
-        Name of the uploaded file.
-    fall_line_azimuth_deg
-        Compass direction of the fall line; None for a track in the axes of the slope, or if it is unknown.
-    starts_at_s
-        Time of the run at the first point of the track (s).
-    is_geodetic
-        True for a track in latitude and longitude.
+    called: name of the uploaded file.
+    fall_line_azimuth_deg: compass direction of the fall line; None for a track in the axes of the slope, or if it is
+        unknown.
+    starts_at_s: time of the run at the first point of the track (s).
+    is_geodetic: True for a track in latitude and longitude.
     """
 
     called: str
@@ -86,23 +81,13 @@ class TrackFolders:
     def keep(self, content: IO[bytes], placing: Placing, *, check: Check | None = None) -> str:
         """Store a track that can be read; returns its name.
 
-        Parameters
-        ----------
-        content
-            Contents of the file.
-        placing
-            Position relative to a run.
-        check
-            Function that checks the file (default: `check_track` in this process).
-
-        Raises
-        ------
-        ParameterError
-            The track is too large, there are too many, a number is not allowed, or it cannot be placed on a slope.
-        FieldDataError
-            The file cannot be read as a track.
-        OutputError
-            The folder cannot be written.
+        content: contents of the file.
+        placing: position relative to a run.
+        check: function that checks the file (default: `check_track` in this process).
+        Raises ParameterError: the track is too large, there are too many, a number is not allowed, or it cannot be
+            placed on a slope.
+        Raises FieldDataError: the file cannot be read as a track.
+        Raises OutputError: the folder cannot be written.
         """
         _require_allowed(placing)
         if len(self.names()) >= MOST_TRACKS:
@@ -140,10 +125,7 @@ class TrackFolders:
     def file(self, name: str) -> tuple[Path, Placing]:
         """File of a track, and its position.
 
-        Raises
-        ------
-        ParameterError
-            The lab has no such track, or its folder is damaged.
+        Raises ParameterError: the lab has no such track, or its folder is damaged.
         """
         if name not in self.names():
             raise ParameterError(
@@ -163,19 +145,10 @@ class TrackFolders:
     def beside(self, name: str, replay: Replay, *, read: Read | None = None) -> ReplayTrack:
         """A track in the axes of a run.
 
-        Parameters
-        ----------
-        name
-            One of `names`.
-        replay
-            The run.
-        read
-            Function that reads the track (default: `track_on_slope` in this process).
-
-        Raises
-        ------
-        ParameterError
-            The lab has no such track, or it cannot be placed.
+        name: one of `names`.
+        replay: the run.
+        read: function that reads the track (default: `track_on_slope` in this process).
+        Raises ParameterError: the lab has no such track, or it cannot be placed.
         """
         place, placing = self.file(name)
         angle = replay.tilt if replay.profile is None else None
@@ -277,10 +250,7 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
 def number_of(text: str, words: str) -> float | None:
     """Number from a field; None for an empty field.
 
-    Raises
-    ------
-    ParameterError
-        The text is not a number.
+    Raises ParameterError: the text is not a number.
     """
     return typed_number(words, text) if text.strip() else None
 
@@ -310,10 +280,7 @@ class LabCourses:
     def change(self, name: str) -> tuple[str, str]:
         """Key and value of a scenario for this course.
 
-        Raises
-        ------
-        ParameterError
-            The lab has no such course.
+        Raises ParameterError: the lab has no such course.
         """
         if name in course_names():
             return "course.name", name
@@ -326,12 +293,8 @@ class LabCourses:
     def keep(self, called: str, content: IO[bytes]) -> str:
         """Store a course that can be read; returns its name.
 
-        Raises
-        ------
-        ParameterError
-            The file is not a course, is too large, or there are too many.
-        OutputError
-            The folder cannot be written.
+        Raises ParameterError: the file is not a course, is too large, or there are too many.
+        Raises OutputError: the folder cannot be written.
         """
         suffix = PurePosixPath(called.lower()).suffix
         if suffix not in COURSE_SUFFIXES:

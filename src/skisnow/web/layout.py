@@ -44,16 +44,10 @@ CONNECTING = Message("Connecting to the lab. The fields open as soon as it answe
 def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = False) -> Iterator[None]:
     """Frame of a page around the block. Fields and buttons are enabled while the browser is connected.
 
-    Parameters
-    ----------
-    title
-        Heading of the page and title of its window.
-    here
-        ``PATH`` of the current page in the navigation.
-    ahead
-        True if text that is typed before the connection goes to the field with the focus.
-    keeps
-        True if unstored text is restored when the page is loaded again; implied by ``ahead``.
+    title: heading of the page and title of its window.
+    here: ``PATH`` of the current page in the navigation.
+    ahead: True if text that is typed before the connection goes to the field with the focus.
+    keeps: True if unstored text is restored when the page is loaded again; implied by ``ahead``.
     """
     ui.page_title(f"{said(title)} · skisnow")
     ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')

@@ -47,14 +47,9 @@ LONGEST: Final = 200
 class PageRequest:
     """Data that the browser sends with an event.
 
-    Attributes
-    ----------
-    number
-        Number of the request that the page waits for (default: it does not wait).
-    once
-        Key of the request, equal if it is sent again.
-    text
-        Text of the field, if it is sent along.
+    number: number of the request that the page waits for (default: it does not wait).
+    once: key of the request, equal if it is sent again.
+    text: text of the field, if it is sent along.
     """
 
     number: int | None = None
@@ -76,10 +71,7 @@ def current_request() -> PageRequest:
 def answering(act: Act) -> Callable[[GenericEventArguments], None]:
     """Handler that runs an action and sends its outcome to the waiting browser.
 
-    Parameters
-    ----------
-    act
-        Action that returns False for a rejected input; the browser then keeps the typed text.
+    act: action that returns False for a rejected input; the browser then keeps the typed text.
     """
     client = ui.context.client  # the element may be deleted by the action
 
@@ -200,10 +192,7 @@ def plain_stem(called: str, otherwise: str) -> str:
 def required_id(text: str) -> str:
     """Id of a campaign from an address.
 
-    Raises
-    ------
-    StoreError
-        The text is not an id.
+    Raises StoreError: the text is not an id.
     """
     if not _ID.fullmatch(text):
         raise StoreError("This address names no campaign; the list of campaigns names all.", code="no_campaign")
@@ -225,16 +214,10 @@ def add_upload(
 ) -> None:
     """Add an address that receives a form; the guard in front of the application checks where requests come from.
 
-    Parameters
-    ----------
-    app, address
-        The application, and the address: that of the page with the form, and a further part.
-    store
-        Function that stores the upload and returns the address of the next page. Its errors are shown on a page.
-    max_files, max_fields
-        Maximum numbers of files and of other fields.
-    too_many
-        Sentence for a form with more.
+    app, address: the application, and the address: that of the page with the form, and a further part.
+    store: function that stores the upload and returns the address of the next page. Its errors are shown on a page.
+    max_files, max_fields: maximum numbers of files and of other fields.
+    too_many: sentence for a form with more.
     """
     page = address.rpartition("/")[0] or "/"
 

@@ -74,10 +74,7 @@ class RunFolders:
     def folder_of(self, name: str) -> Path:
         """Folder of a run; only names of `names` are accepted.
 
-        Raises
-        ------
-        ParameterError
-            The lab has no such run.
+        Raises ParameterError: the lab has no such run.
         """
         if name not in self.names():
             raise ParameterError(
@@ -90,10 +87,7 @@ class RunFolders:
 
         The file of the ski is given in the run's job. The uploaded track is read in a separate process.
 
-        Raises
-        ------
-        ParameterError
-            The lab has no such run, or it cannot be shown.
+        Raises ParameterError: the lab has no such run, or it cannot be shown.
         """
         place = self.folder_of(name)
         ski = _ski_of_job(place / JOB)

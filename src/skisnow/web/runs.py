@@ -115,14 +115,9 @@ class FinishedRun:
 class Runs:
     """Queue and history of runs.
 
-    Attributes
-    ----------
-    folder
-        Folder with the folders of the jobs.
-    progress
-        Last progress message of the running job.
-    kind
-        Class of the jobs.
+    folder: folder with the folders of the jobs.
+    progress: last progress message of the running job.
+    kind: class of the jobs.
     """
 
     kind: type[Job] = Job
@@ -155,20 +150,12 @@ class Runs:
     ) -> Job:
         """Store a simulation at the end of the queue.
 
-        Parameters
-        ----------
-        scenario
-            Name of the scenario.
-        changes
-            Values by key as on the command line.
-        files
-            Names and contents of files by the key that gets their path; they are stored with the run.
-        given
-            See `Job`.
-        language
-            Language of the report.
-        title
-            Words for the title, which get a number.
+        scenario: name of the scenario.
+        changes: values by key as on the command line.
+        files: names and contents of files by the key that gets their path; they are stored with the run.
+        given: see `Job`.
+        language: language of the report.
+        title: words for the title, which get a number.
         """
         asked_at = datetime.now(UTC)
         name = new_name(scenario, asked_at)
@@ -189,10 +176,7 @@ class Runs:
     def rename(self, name: str, title: str) -> None:
         """Change the title of a job.
 
-        Raises
-        ------
-        ParameterError
-            The title is blank or longer than 80 characters, or there is no such job.
+        Raises ParameterError: the title is blank or longer than 80 characters, or there is no such job.
         """
         title = " ".join(title.split())
         job = self._job(name)
@@ -208,10 +192,7 @@ class Runs:
     def cancel(self, name: str) -> None:
         """Remove a waiting job from the queue, or end the running one and keep its results.
 
-        Raises
-        ------
-        ParameterError
-            The job is neither waiting nor running.
+        Raises ParameterError: the job is neither waiting nor running.
         """
         job = self._job(name)
         if job is not None and job.state == "waiting":
@@ -332,14 +313,9 @@ _NEVER_S: Final = 1e9
 def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> float | None:
     """Estimated time of a run (s); None if its inputs do not determine its duration.
 
-    Parameters
-    ----------
-    folder
-        Folder of the runs.
-    jobs
-        Jobs, the newest first.
-    values
-        Values of the scenario by key.
+    folder: folder of the runs.
+    jobs: jobs, the newest first.
+    values: values of the scenario by key.
     """
     simulated = simulated_s(values)
     if simulated is None:

@@ -120,10 +120,7 @@ class ScenarioField:
     def check(self) -> InputValue:
         """Check the value and return it; an error is shown at the field.
 
-        Raises
-        ------
-        ParameterError
-            The value is not valid for this input.
+        Raises ParameterError: the value is not valid for this input.
         """
         self.refuse("")
         try:

@@ -49,10 +49,7 @@ else:
 def require_allowed(host: str, token: str | None) -> None:
     """Reject a host that other machines can reach without a token.
 
-    Raises
-    ------
-    ParameterError
-        The host is not this machine's loopback address and there is no token, or the token is blank.
+    Raises ParameterError: the host is not this machine's loopback address and there is no token, or the token is blank.
     """
     if token is not None and not token.strip():
         raise ParameterError("the token is blank; use one that is hard to guess, or remove --token", code="blank_token")
@@ -96,25 +93,12 @@ def serve(
 ) -> None:
     """Serve the lab until it is interrupted.
 
-    Parameters
-    ----------
-    lab
-        The lab.
-    host, port
-        Address to listen on; port 0 selects a free port.
-    token
-        See `require_allowed`.
-    tell
-        Function that is called with the address when the server is ready, then with further lines on an open host.
-    certificate
-        Certificate for an encrypted connection (default: not encrypted).
-
-    Raises
-    ------
-    ParameterError
-        See `require_allowed`.
-    OSError
-        The port is in use.
+    host, port: address to listen on; port 0 selects a free port.
+    token: see `require_allowed`.
+    tell: function that is called with the address when the server is ready, then with further lines on an open host.
+    certificate: certificate for an encrypted connection (default: not encrypted).
+    Raises ParameterError: see `require_allowed`.
+    Raises OSError: the port is in use.
     """
     require_allowed(host, token)
     with _listener(host, port) as listener:
@@ -173,17 +157,10 @@ ENCRYPTED: Final = "The traffic is encrypted. A browser asks once whether it may
 def lab_addresses(host: str, port: int, *, secure: bool, own: Iterable[str] | None = None) -> list[str]:
     """Addresses at which others can open the lab, those of private networks first.
 
-    Parameters
-    ----------
-    host, port
-        Host and port that the server listens on.
-    secure
-        True with a certificate.
-    own
-        Addresses of this machine (default: those of its adapters).
+    host, port: host and port that the server listens on.
+    secure: True with a certificate.
+    own: addresses of this machine (default: those of its adapters).
 
-    Examples
-    --------
     >>> lab_addresses("0.0.0.0", 8765, secure=False, own=["127.0.0.1", "93.184.216.34", "192.168.1.7"])
     ['http://192.168.1.7:8765/', 'http://93.184.216.34:8765/']
     >>> lab_addresses("127.0.0.1", 80, secure=True)
@@ -291,14 +268,8 @@ _HERE: Final = Path(__file__).parent
 def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     """ASGI application with the pages of a lab behind the guard. NiceGUI has one set of pages per process.
 
-    Parameters
-    ----------
-    lab
-        The lab.
-    host
-        Host that the server listens on; it determines the allowed Host headers.
-    token
-        Token that browsers must send (default on a loopback host: None).
+    host: host that the server listens on; it determines the allowed Host headers.
+    token: token that browsers must send (default on a loopback host: None).
     """
     log_to(lab.runs / LOG_FILE)
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)

@@ -25,14 +25,9 @@ BUILD_S: Final = 2.0 * STALL_S
 class Limits:
     """Limits of an upload; a campaign with a million readings has 60 MB.
 
-    Attributes
-    ----------
-    upload_bytes
-        Maximum size of the body of a request.
-    unpacked_bytes
-        Maximum size of all unpacked files of a zip.
-    files
-        Maximum number of files, packed or not.
+    upload_bytes: maximum size of the body of a request.
+    unpacked_bytes: maximum size of all unpacked files of a zip.
+    files: maximum number of files, packed or not.
     """
 
     upload_bytes: int = 100 * MEGABYTE
@@ -44,16 +39,10 @@ class Limits:
 class Lab:
     """Store, folder and settings of a lab, the argument of each page's ``add_page``.
 
-    Attributes
-    ----------
-    store
-        Open store of campaigns.
-    runs
-        Folder of runs, studies, skis, tracks and courses.
-    limits
-        Limits of uploads.
-    scheduler
-        Scheduler of studies as in ``skisnow study --scheduler`` (default: this machine).
+    store: open store of campaigns.
+    runs: folder of runs, studies, skis, tracks and courses.
+    limits: limits of uploads.
+    scheduler: scheduler of studies as in ``skisnow study --scheduler`` (default: this machine).
     """
 
     store: Store

@@ -199,10 +199,7 @@ class EditedSki:
 def edit_ski_texts(edit: SkiEditInput, *, name: str = "") -> EditedSki:
     """Ski of an edit, with another name if one is given.
 
-    Raises
-    ------
-    ParameterError
-        A field is not an allowed number, or the file is not valid.
+    Raises ParameterError: a field is not an allowed number, or the file is not valid.
     """
     ski, warned = ski_of_texts(edit.text, edit.table)
     station = edit_stations(ski)

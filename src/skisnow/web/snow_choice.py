@@ -34,16 +34,10 @@ ALL_SITES: Final = ""
 class ChosenSnow:
     """A snow that was chosen by name.
 
-    Attributes
-    ----------
-    snow
-        Snow with its known intervals.
-    words
-        Name for the reader.
-    published
-        Name of a published snow.
-    analysis, site
-        Analysis of the campaign, and the site ("" for all sites).
+    snow: snow with its known intervals.
+    words: name for the reader.
+    published: name of a published snow.
+    analysis, site: analysis of the campaign, and the site ("" for all sites).
     """
 
     snow: SnowProperties
@@ -88,10 +82,7 @@ class SnowChoice:
     def chosen(self) -> ChosenSnow | None:
         """The chosen snow; None for the numbers on the page.
 
-        Raises
-        ------
-        ParameterError
-            The chosen campaign gives no snow.
+        Raises ParameterError: the chosen campaign gives no snow.
         """
         if self.is_numbers:
             return None
@@ -169,17 +160,9 @@ def _campaigns(lab: Lab) -> dict[str, str]:
 def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources | None = None) -> ScenarioFile:
     """Read a scenario with changes as the command line would.
 
-    Parameters
-    ----------
-    scenario, changes
-        As on the command line.
-    sources
-        Sources of skis and snows in memory.
-
-    Raises
-    ------
-    ParameterError
-        A value is not valid.
+    scenario, changes: as on the command line.
+    sources: sources of skis and snows in memory.
+    Raises ParameterError: a value is not valid.
     """
     from ..scenario.keys import parse_change
     from ..scenario.reading import build_input, load_input
@@ -193,17 +176,9 @@ def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources
 def campaign_snow(lab: Lab, key: str) -> Analysis:
     """Analysis of a campaign of the lab.
 
-    Parameters
-    ----------
-    lab
-        Lab with the campaign in its store.
-    key
-        Kind (entry or kept) and id of the campaign, joined by "-".
-
-    Raises
-    ------
-    ParameterError
-        The campaign gives no snow.
+    lab: lab with the campaign in its store.
+    key: kind (entry or kept) and id of the campaign, joined by "-".
+    Raises ParameterError: the campaign gives no snow.
     """
     kind, id_ = key.split("-", 1)
     numbers = analyse_files((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
@@ -220,17 +195,9 @@ def sites_of(analysis: Analysis) -> list[str]:
 def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
     """Text of results.json of a campaign, and the resulting snow of a scenario in words.
 
-    Parameters
-    ----------
-    analysis
-        Analysis of the campaign.
-    scenario, changes
-        Scenario with changes; ``snow.site`` is the site.
-
-    Raises
-    ------
-    ParameterError
-        A value is not valid.
+    analysis: analysis of the campaign.
+    scenario, changes: scenario with changes; ``snow.site`` is the site.
+    Raises ParameterError: a value is not valid.
     """
     from ..ski.ski_file import Sources
 

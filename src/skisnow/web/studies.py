@@ -54,12 +54,8 @@ class StudyJob(Job):
 class Studies(Runs):
     """Queue and history of studies.
 
-    Parameters
-    ----------
-    folder
-        Folder of the lab's runs; studies have a subfolder.
-    scheduler
-        Scheduler as in ``--scheduler`` of the command (default: processes of this machine on all cores but one).
+    folder: folder of the lab's runs; studies have a subfolder.
+    scheduler: scheduler as in ``--scheduler`` of the command (default: processes of this machine on all cores but one).
     """
 
     kind = StudyJob
@@ -85,10 +81,7 @@ class Studies(Runs):
     def ask_for(self, question: StudyQuestion, language: str = ENGLISH) -> StudyJob:
         """Store a study at the end of the queue; ``language``: language of its map.
 
-        Raises
-        ------
-        ParameterError
-            The study is not valid; the message is that of the command.
+        Raises ParameterError: the study is not valid; the message is that of the command.
         """
         from ..studies import read_study
 
@@ -128,10 +121,7 @@ class Studies(Runs):
     def go_on(self, name: str) -> None:
         """Add a cancelled or failed study to the queue again; finished points are kept.
 
-        Raises
-        ------
-        ParameterError
-            The study is neither cancelled nor failed.
+        Raises ParameterError: the study is neither cancelled nor failed.
         """
         job = next((job for job in self.study_jobs() if job.name == name), None)
         if job is None or job.state not in ("cancelled", "failed"):
@@ -141,10 +131,7 @@ class Studies(Runs):
     def file(self, name: str, file: str) -> Path:
         """Path of a file of a study; other names are rejected.
 
-        Raises
-        ------
-        ParameterError
-            The study does not exist or does not have the file yet.
+        Raises ParameterError: the study does not exist or does not have the file yet.
         """
         names = {job.name for job in self.jobs()}
         if name not in names or file not in (STUDY, TABLE, FIGURE) or not (self.folder / name / file).is_file():
@@ -163,10 +150,7 @@ class Studies(Runs):
     def table(self, name: str) -> tuple[Study, StudyTable]:
         """A study and its table.
 
-        Raises
-        ------
-        ParameterError
-            The study has no table yet.
+        Raises ParameterError: the study has no table yet.
         """
         from ..studies import read_study, read_table
 
@@ -241,12 +225,8 @@ CARVE_S: Final = 0.03
 def unit_s(of: str, values: Mapping[str, Any]) -> float:
     """Time of a point at slowness 1 (s): one carved turn, or the simulated time of a run; 0 if unknown.
 
-    Parameters
-    ----------
-    of
-        `CARVE` or a scenario.
-    values
-        Values of the scenario by key.
+    of: `CARVE` or a scenario.
+    values: values of the scenario by key.
     """
     return CARVE_S if of == CARVE else simulated_s(values) or 0.0
 
@@ -254,18 +234,11 @@ def unit_s(of: str, values: Mapping[str, Any]) -> float:
 def estimate_words(studies: Studies, runs: Path, jobs: list[Job], *, points: int, method: str, unit: float) -> str:
     """Number of points and estimated time in words.
 
-    Parameters
-    ----------
-    studies
-        Studies of the lab.
-    runs, jobs
-        Folder and jobs of the lab's runs.
-    points
-        Number of points.
-    method
-        Method of the solver; "" for a carved turn.
-    unit
-        See `unit_s`.
+    studies: studies of the lab.
+    runs, jobs: folder and jobs of the lab's runs.
+    points: number of points.
+    method: method of the solver; "" for a carved turn.
+    unit: see `unit_s`.
     """
     if not unit:
         return Message("{points} points.", points=points)

@@ -61,18 +61,11 @@ class Range:
 class StudyQuestion:
     """Inputs of a study.
 
-    Attributes
-    ----------
-    of
-        `CARVE`, or the name of a scenario.
-    varied, fixed
-        Ranges and values by key; a list of values varies, too.
-    beside
-        Contents of the files that fixed values name, by name.
-    named
-        Inputs that were chosen by name, in words.
-    method, unit_s
-        See `StudyJob`.
+    of: `CARVE`, or the name of a scenario.
+    varied, fixed: ranges and values by key; a list of values varies, too.
+    beside: contents of the files that fixed values name, by name.
+    named: inputs that were chosen by name, in words.
+    method, unit_s: see `StudyJob`.
     """
 
     of: str
@@ -139,10 +132,7 @@ def is_number(key: Quantity) -> bool:
 def require_few_points(points: int) -> None:
     """Reject a study with more points than the lab's page can show.
 
-    Raises
-    ------
-    ParameterError
-        The study has more points than `MOST_POINTS`.
+    Raises ParameterError: the study has more points than `MOST_POINTS`.
     """
     if points > MOST_POINTS:
         raise ParameterError(
@@ -219,16 +209,10 @@ def first_range(key: Quantity) -> tuple[float, float] | None:
 class AxisFields:
     """Fields of one varied input.
 
-    Parameters
-    ----------
-    place
-        Name of the fields, such as "First input".
-    keys
-        Inputs that can vary, by name.
-    first
-        First input with its number of values (default: no input, which is then an option).
-    changed
-        Function that is called after each change.
+    place: name of the fields, such as "First input".
+    keys: inputs that can vary, by name.
+    first: first input with its number of values (default: no input, which is then an option).
+    changed: function that is called after each change.
     """
 
     def __init__(
@@ -281,10 +265,7 @@ class AxisFields:
     def range(self) -> Range:
         """The typed range.
 
-        Raises
-        ------
-        ParameterError
-            The range is not valid for the input.
+        Raises ParameterError: the range is not valid for the input.
         """
         key = self._keys[self.name]
         words = called(key)
@@ -320,10 +301,7 @@ class AxisFields:
     def count(self) -> int:
         """Number of values; 1 without a varied input.
 
-        Raises
-        ------
-        ParameterError
-            The text is not an allowed number.
+        Raises ParameterError: the text is not an allowed number.
         """
         if not self.name:
             return 1

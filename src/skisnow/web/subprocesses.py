@@ -41,10 +41,8 @@ SKI_BOUNDS: Final = Bounds(seconds=60.0)  # most of it is the start of the proce
 def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, **named: Given.kwargs) -> Answer:
     """Call a function of a module in a separate process with limits; arguments and result are copies.
 
-    Raises
-    ------
-    ParameterError
-        The function exceeds the limits or ends its process. Errors of the function are raised here, too.
+    Raises ParameterError: the function exceeds the limits or ends its process. Errors of the function are raised here,
+        too.
     """
     assert not named
     context = multiprocessing.get_context("spawn")  # never by fork: the server has threads

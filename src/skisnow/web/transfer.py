@@ -179,10 +179,7 @@ class FileImports:
     def name(self, id_: str) -> str:
         """Name of an uploaded file.
 
-        Raises
-        ------
-        ParameterError
-            No such upload waits.
+        Raises ParameterError: no such upload waits.
         """
         place = self._folder / required_id(id_) / "name"
         if not place.is_file():

@@ -45,20 +45,16 @@ class Unpacking:
     def take(self, name: str, content: IO[bytes]) -> None:
         """Write one file.
 
-        Raises
-        ------
-        ParameterError
-            The name is not valid on every system, leads out of the folder or exists, or a limit is exceeded.
+        Raises ParameterError: the name is not valid on every system, leads out of the folder or exists, or a limit is
+            exceeded.
         """
         self._write(name, iter(lambda: content.read(CHUNK_BYTES), b""))
 
     def take_zip(self, packed: IO[bytes]) -> None:
         """Unpack a zip file; sizes are counted while reading.
 
-        Raises
-        ------
-        ParameterError
-            As in `take`; or the file is not a zip file, is damaged, encrypted or not deflated, or contains links.
+        Raises ParameterError: as in `take`; or the file is not a zip file, is damaged, encrypted or not deflated, or
+            contains links.
         """
         self._require_small_directory(packed)
         with _damage_errors():
@@ -215,12 +211,8 @@ UNDESCRIBED: Final = Message(
 def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Limits) -> str:
     """Store a campaign of uploaded files, which are numbered in a folder; returns its id.
 
-    Raises
-    ------
-    ParameterError
-        A file is rejected, or the files do not contain a campaign.
-    StoreError
-        The store cannot be written.
+    Raises ParameterError: a file is rejected, or the files do not contain a campaign.
+    Raises StoreError: the store cannot be written.
     """
     unpacking = Unpacking(Path(place) / "campaign", limits)
     unpacking.folder.mkdir()

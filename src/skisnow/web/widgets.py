@@ -59,16 +59,10 @@ class ChartLine:
 class LineChart(Element, component="line_chart.js"):
     """A panel of lines over one quantity.
 
-    Parameters
-    ----------
-    x, y
-        Labels of the axes with units.
-    words
-        Description for screen readers; the range of the values is added.
-    height
-        Height in pixels.
-    ends
-        Texts at the left and right ends of the horizontal axis.
+    x, y: labels of the axes with units.
+    words: description for screen readers; the range of the values is added.
+    height: height in pixels.
+    ends: texts at the left and right ends of the horizontal axis.
     """
 
     def __init__(self, x: str, y: str, words: str, *, height: int = 240, ends: tuple[str, str] = ("", "")) -> None:
@@ -185,14 +179,9 @@ class JobCard:
 class JobList:
     """Cards of all jobs, the newest first, updated every second.
 
-    Parameters
-    ----------
-    runs
-        The queue.
-    card
-        Factory of the card of a job, from the queue, the job and an `Act`.
-    nothing
-        Sentence without a job.
+    runs: the queue.
+    card: factory of the card of a job, from the queue, the job and an `Act`.
+    nothing: sentence without a job.
     """
 
     def __init__(self, runs: Any, card: Callable[[Any, Any, Act], JobCard], nothing: str) -> None:

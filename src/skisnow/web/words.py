@@ -149,10 +149,7 @@ def estimate_words(value: float | None, pair: list[float] | None, unit: str = ""
 def typed_number(what: str, text: str) -> float:
     """A finite number with a decimal point or comma.
 
-    Raises
-    ------
-    ParameterError
-        The text is not a number; the message begins with `what`.
+    Raises ParameterError: the text is not a number; the message begins with `what`.
     """
     try:
         value = float(text.strip().replace(",", ".").replace("−", "-"))
@@ -172,15 +169,9 @@ _OF_PAGES: Final = WeakKeyDictionary[Client, str]()
 def language_asked(chosen: str | None, accepted: str) -> str:
     """Code of an available language.
 
-    Parameters
-    ----------
-    chosen
-        Language from the cookie.
-    accepted
-        Header Accept-Language of the browser, the preferred language first.
+    chosen: language from the cookie.
+    accepted: header Accept-Language of the browser, the preferred language first.
 
-    Examples
-    --------
     >>> language_asked(None, "fr-CH, de-AT;q=0.9, en;q=0.5"), language_asked("en", "de")
     ('de', 'en')
     """
@@ -220,10 +211,7 @@ def number_said(number: str, client: Client | None = None) -> str:
 def minute_words(at: datetime | str) -> str:
     """Day and time in the time zone of the server, in the format of the page's language.
 
-    Parameters
-    ----------
-    at
-        A time, or an ISO 8601 text; UTC without a time zone.
+    at: a time, or an ISO 8601 text; UTC without a time zone.
     """
     time = datetime.fromisoformat(at) if isinstance(at, str) else at
     return translated((time if time.tzinfo else time.replace(tzinfo=UTC)).astimezone(), language_of())

@@ -27,20 +27,12 @@ _NAME: Final = re.compile(r"[^\W_][\w .()-]{0,59}")
 class Answers:
     """Answers by option.
 
-    Attributes
-    ----------
-    table
-        Table ("penetration", or "-" for none) by heading row, as SHEET:ROW.
-    column, unit
-        Column or "-", and unit, by heading, or by TABLE.HEADING.
-    site
-        Site by sheet, or by heading row as SHEET:ROW.
-    tool, plate
-        Shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
-    cells
-        "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above.
-    ignore
-        Rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
+    table: table ("penetration", or "-" for none) by heading row, as SHEET:ROW.
+    column, unit: column or "-", and unit, by heading, or by TABLE.HEADING.
+    site: site by sheet, or by heading row as SHEET:ROW.
+    tool, plate: shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
+    cells: "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above.
+    ignore: rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
     """
 
     table: Mapping[str, str] = field(default_factory=dict)
@@ -96,17 +88,9 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
 def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
     """Answers of an earlier import.
 
-    Parameters
-    ----------
-    place
-        Name of a saved template, folder of a campaign, or a campaign.toml.
-    named
-        Folder of the saved templates (default: the user's own).
-
-    Raises
-    ------
-    ParameterError
-        No such template or campaign; the file has no ``[import]``, or an answer is not a text.
+    place: name of a saved template, folder of a campaign, or a campaign.toml.
+    named: folder of the saved templates (default: the user's own).
+    Raises ParameterError: no such template or campaign; the file has no ``[import]``, or an answer is not a text.
     """
     saved = saved_templates(named)
     path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else saved.get(str(place), Path(place))
@@ -129,19 +113,10 @@ def saved_templates(folder: Path | None = None) -> dict[str, Path]:
 def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> Path:
     """Save the mapping of an import under a name; returns the file.
 
-    Parameters
-    ----------
-    name
-        Letters, digits, spaces and ``-_.()``; its first character is a letter or digit.
-    campaign
-        Contents of the campaign.toml of the import.
-    folder
-        Folder of the saved templates (default: the user's own).
-
-    Raises
-    ------
-    ParameterError
-        Another name is needed, also because a template with other answers has it.
+    name: letters, digits, spaces and ``-_.()``; its first character is a letter or digit.
+    campaign: contents of the campaign.toml of the import.
+    folder: folder of the saved templates (default: the user's own).
+    Raises ParameterError: another name is needed, also because a template with other answers has it.
     """
     if not _NAME.fullmatch(name):
         raise ParameterError(
@@ -196,16 +171,10 @@ def _template(values: Mapping[str, Any], name: str) -> Answers:
 class Question:
     """A question that no heading, row of units or note answers.
 
-    Attributes
-    ----------
-    option, key
-        Option of the command, and the name before its equals sign.
-    choices
-        Possible answers; () for any text.
-    proposed
-        Answer that skisnow infers, or "".
-    problem
-        Error if it is not answered.
+    option, key: option of the command, and the name before its equals sign.
+    choices: possible answers; () for any text.
+    proposed: answer that skisnow infers, or "".
+    problem: error if it is not answered.
     """
 
     option: str

@@ -37,16 +37,10 @@ FROM_NOTES: Final = ("site", "tool", "plate")
 class ColumnChoice:
     """A column of a table to import.
 
-    Attributes
-    ----------
-    place
-        Column of the sheet, from 0.
-    heading
-        As written.
-    column
-        Column of the campaign's table, or the heading for a column that is kept as text; "" if it is ignored.
-    unit
-        Conversion of its numbers; None for a text, or if the unit is open.
+    place: column of the sheet, from 0.
+    heading: as written.
+    column: column of the campaign's table, or the heading for a column that is kept as text; "" if it is ignored.
+    unit: conversion of its numbers; None for a text, or if the unit is open.
     """
 
     place: int

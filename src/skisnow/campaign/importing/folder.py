@@ -73,10 +73,7 @@ def campaign_files(tables: Mapping[str, str], described: str, name: str, data: b
 def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
     """Write the files of a proposal to a new or empty folder.
 
-    Raises
-    ------
-    OutputError
-        The folder has files already, or cannot be written; nothing is written then.
+    Raises OutputError: the folder has files already, or cannot be written; nothing is written then.
     """
     folder = Path(folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
@@ -93,10 +90,7 @@ def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
 def undo_import(folder: str | Path) -> list[str]:
     """Remove the files that an import wrote; returns their paths.
 
-    Raises
-    ------
-    OutputError
-        The folder has no record of an import, or a file was changed since; nothing is removed then.
+    Raises OutputError: the folder has no record of an import, or a file was changed since; nothing is removed then.
     """
     folder = Path(folder)
     try:

@@ -34,20 +34,12 @@ HARDEST: Final = 1e3
 class Proposal:
     """Proposal of an import.
 
-    Attributes
-    ----------
-    file
-        Name of the file.
-    tables
-        Tables of a known kind.
-    questions
-        Open questions.
-    problems
-        Errors of the file; also those of the open questions, and of the campaign once no question is open.
-    notes
-        Texts around the tables, which campaign.toml keeps.
-    files
-        Contents of the campaign by name; empty with any problem.
+    file: name of the file.
+    tables: tables of a known kind.
+    questions: open questions.
+    problems: errors of the file; also those of the open questions, and of the campaign once no question is open.
+    notes: texts around the tables, which campaign.toml keeps.
+    files: contents of the campaign by name; empty with any problem.
     """
 
     file: str
@@ -61,17 +53,9 @@ class Proposal:
 def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  # noqa: B008
     """Propose how to import a file.
 
-    Parameters
-    ----------
-    name, data
-        Name and content of a workbook (.xlsx) or a CSV file.
-    answers
-        Answers to questions of an earlier proposal, or of a template.
-
-    Raises
-    ------
-    GivenError, ParameterError
-        The file cannot be read.
+    name, data: name and content of a workbook (.xlsx) or a CSV file.
+    answers: answers to questions of an earlier proposal, or of a template.
+    Raises GivenError or ParameterError: the file cannot be read.
     """
     ignored = Ignored(frozenset(answers.ignore))
     sheets = read_sheets(name, data)

@@ -46,14 +46,9 @@ class StoredRow:
 class ImportedTable:
     """A table of the file as it is imported.
 
-    Attributes
-    ----------
-    section, form
-        The table on the sheet, and the table of the campaign.
-    columns
-        Columns with their units.
-    rows
-        Rows as they are stored.
+    section, form: the table on the sheet, and the table of the campaign.
+    columns: columns with their units.
+    rows: rows as they are stored.
     """
 
     section: Section

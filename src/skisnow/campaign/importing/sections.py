@@ -30,22 +30,13 @@ NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
 class Section:
     """A table on a sheet; rows and columns count from 0.
 
-    Attributes
-    ----------
-    sheet
-        The sheet; a series of several has further columns at the right for the texts above it.
-    header, start, end
-        First row of the headings, first row below headings and units, and row behind the last one.
-    columns
-        Columns of the sheet.
-    headings, units
-        Headings, and cells of the row of units, "" without one, for each column.
-    own
-        Columns that no other series has.
-    titles
-        Rows above the headings with a text for each series.
-    is_last
-        True if no series follows in the next column.
+    sheet: the sheet; a series of several has further columns at the right for the texts above it.
+    header, start, end: first row of the headings, first row below headings and units, and row behind the last one.
+    columns: columns of the sheet.
+    headings, units: headings, and cells of the row of units, "" without one, for each column.
+    own: columns that no other series has.
+    titles: rows above the headings with a text for each series.
+    is_last: True if no series follows in the next column.
     """
 
     sheet: Sheet

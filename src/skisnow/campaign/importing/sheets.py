@@ -24,16 +24,10 @@ _LETTERS: Final = 26
 class Sheet:
     """A sheet of a file.
 
-    Attributes
-    ----------
-    name
-        Title of the sheet; name of a CSV file without its ending.
-    rows, filled
-        Cells as written, and with the first cell of each merged range in all rows of the range.
-    fractions
-        Row and column of cells of `filled` that are numbers, not text: they have a decimal point.
-    separator
-        Separator of a CSV file, "" for a workbook.
+    name: title of the sheet; name of a CSV file without its ending.
+    rows, filled: cells as written, and with the first cell of each merged range in all rows of the range.
+    fractions: row and column of cells of `filled` that are numbers, not text: they have a decimal point.
+    separator: separator of a CSV file, "" for a workbook.
     """
 
     name: str
@@ -61,17 +55,10 @@ def column_letters(column: int) -> str:
 def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int] | None = None) -> list[Sheet]:
     """Read all sheets of a file that are not empty.
 
-    Parameters
-    ----------
-    name, data
-        The file.
-    count
-        Number of known headings in a row, by which the separator of a CSV file is found; default: those of campaigns.
-
-    Raises
-    ------
-    GivenError, ParameterError
-        It is not a workbook or a CSV file, or is beyond a limit.
+    name, data: the file.
+    count: number of known headings in a row, by which the separator of a CSV file is found; default: those of
+        campaigns.
+    Raises GivenError or ParameterError: it is not a workbook or a CSV file, or is beyond a limit.
     """
     if not is_workbook(name):
         rows, separator = _csv_rows(name, data, count or _headings)

@@ -37,20 +37,12 @@ def ask_reason(
 ) -> None:
     """Ask for the reason of a change, inside the page.
 
-    Parameters
-    ----------
-    place
-        Element that is replaced by the question.
-    lines
-        Descriptions of the change.
-    act
-        Text of the button, and the function that is called with the reason; it returns False for a rejected change.
-    usual
-        Prefilled reason.
-    leave
-        Function that is called when the change is not made.
-    focus
-        True to put the focus on the reason; False if the user is on the way to another field.
+    place: element that is replaced by the question.
+    lines: descriptions of the change.
+    act: text of the button, and the function that is called with the reason; it returns False for a rejected change.
+    usual: prefilled reason.
+    leave: function that is called when the change is not made.
+    focus: True to put the focus on the reason; False if the user is on the way to another field.
     """
     place.clear()
 
@@ -98,18 +90,11 @@ def changes(
 ) -> None:
     """Add the buttons and the history of a test.
 
-    Parameters
-    ----------
-    view, test
-        Table and test.
-    ask
-        Element for questions about reasons.
-    changed
-        Function that is called after a change is stored.
-    is_unanswered
-        Function that returns True, and asks for the reason again, if a typed correction is not confirmed.
-    cancelled
-        True if the test is cancelled in its file.
+    view, test: table and test.
+    ask: element for questions about reasons.
+    changed: function that is called after a change is stored.
+    is_unanswered: function that returns True, and asks for the reason again, if a typed correction is not confirmed.
+    cancelled: True if the test is cancelled in its file.
     """
 
     def undo() -> bool:

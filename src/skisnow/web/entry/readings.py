@@ -163,12 +163,8 @@ MOST: Final = 10_000
 def receive_offline_readings(session: EditSession, changed: Callable[[set[str]], object]) -> None:
     """Store readings that the browser kept without a connection, each once.
 
-    Parameters
-    ----------
-    session
-        The campaign.
-    changed
-        Function that is called with the names of the changed series.
+    session: the campaign.
+    changed: function that is called with the names of the changed series.
     """
     client = ui.context.client
 

@@ -32,12 +32,8 @@ from .table_view import TableView
 class SeriesCorrections:
     """Corrections of stored readings of a series, with one reason for all.
 
-    Parameters
-    ----------
-    view, readings
-        Table, and fields of the shown series by step.
-    redraw
-        Function that draws the stored series; unstored texts stay in their fields.
+    view, readings: table, and fields of the shown series by step.
+    redraw: function that draws the stored series; unstored texts stay in their fields.
     """
 
     def __init__(self, view: TableView, readings: Mapping[Step, ReadingField], redraw: Callable[[], object]) -> None:

@@ -269,12 +269,8 @@ def table_view(
 ) -> Iterator[tuple[TableView, LiveResults, Places]]:
     """View of a table with its parts of the page; elements of the block are added below the changes.
 
-    Parameters
-    ----------
-    session, file
-        Campaign and table.
-    form, below
-        Names of the sections of the form and of the changes for screen readers.
+    session, file: campaign and table.
+    form, below: names of the sections of the form and of the changes for screen readers.
     """
     who = _writer_field(session)
     view = TableView(session, file, who, StatusLine())
@@ -327,12 +323,8 @@ class LiveResults:
     def follow(self, name: str, site: str, *, in_progress: bool = False) -> None:
         """Show the results of a test; results for an older state are dropped.
 
-        Parameters
-        ----------
-        name, site
-            Name and site of the test.
-        in_progress
-            True if readings are still missing: flags about missing readings are not shown.
+        name, site: name and site of the test.
+        in_progress: True if readings are still missing: flags about missing readings are not shown.
         """
         self._wanted = (name, site, MISSING_YET if in_progress else frozenset())
         if not self._working:
