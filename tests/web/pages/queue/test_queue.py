@@ -18,7 +18,7 @@ from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web import widgets
 from skisnow.web.runs import Job, Runs, duration_words, estimated_s, new_name, simulated_s, slowness
-from skisnow.web.studies import Studies, StudyJob, unit_s
+from skisnow.web.studies import Studies, StudyJob, measured_slowness, unit_s
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from tests.coded import raises
 
@@ -401,6 +401,22 @@ def test_a_run_ends_after_its_time_or_its_way(duration: Any, length: Any, speed:
 )  # fmt: skip
 def test_a_duration_is_reported_as_exact_as_it_is_known(seconds: float, words: str) -> None:
     assert duration_words(seconds) == words
+
+
+def study_done(**what: Any) -> StudyJob:
+    usual: dict[str, Any] = {"state": "done", "took_s": 18.0, "points": 10, "workers": 2, "unit_s": 0.5}
+    return StudyJob("a", CARVE, {}, "2026", **(usual | what))
+
+
+def test_of_studies_the_last_five_of_a_kind_tell_how_long_they_take() -> None:
+    assert measured_slowness([study_done()], "") == 4.0  # 10 s on two cores for 5 s
+    assert measured_slowness([study_done(method="fast")], "fast") == 4.0
+    assert measured_slowness([study_done(method="fast")], "") is None
+    every = [study_done(took_s=8.0), study_done(state="failed"), study_done(workers=0), study_done(unit_s=0.0)]
+    assert measured_slowness(every, "") is None
+    assert measured_slowness([*every, *[study_done()] * 5, study_done(took_s=999.0)], "") == 4.0
+    assert measured_slowness([*[study_done()] * 4, study_done(took_s=28.0)], "") == pytest.approx((4 * 20 + 40) / 25)
+    assert measured_slowness([study_done(points=0)], "") is None
 
 
 def test_the_list_has_a_card_for_each_job_the_newest_first(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
