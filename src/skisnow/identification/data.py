@@ -21,7 +21,7 @@ from .._support.units import DEGREE
 from .._support.user_files import is_file
 from ..parameters import checked_table, made, nearest
 from ..scenario import Plane, ScenarioFile
-from ..scenario.identify_section import SITE, Site
+from ..scenario.identify_section import Site
 from ..scenario.keys import EACH, SCENARIO_KEYS, free_key
 from ..scenario.reading import input_files
 from ..scenario.resolution import ScenarioInput
@@ -230,14 +230,9 @@ def _require_different(paths: Sequence[str | Path]) -> None:
         seen[content] = path
 
 
-def _run_starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float]]:
-    if not isinstance(table, dict):
-        raise ParameterError(
-            'identify.runs is {value!r}; write [identify.runs."NAME"] with keys below it',
-            code="wrong_kind",
-            value=table,
-        )
-    starts = {}
+def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Values of single runs by full key; tables and keys were checked when the scenario was read."""
+    starts: dict[str, dict[str, Any]] = {}
     for run, entries in table.items():
         if run not in runs:
             raise ParameterError(
@@ -246,37 +241,9 @@ def _run_starts(table: object, runs: Sequence[str]) -> dict[str, dict[str, float
                 run=run,
                 allowed=nearest(run, runs),
             )
-        if not isinstance(entries, dict):
-            raise ParameterError(
-                'identify.runs."{run}" is {value!r}; it must be a table of keys',
-                code="wrong_kind",
-                run=run,
-                value=entries,
-            )
-        starts[run] = dict(_run_entry(run, word, value) for word, value in entries.items())
+        keys = {free_key(word): value for word, value in entries.items()}
+        starts[run] = {key: SCENARIO_KEYS[key].in_range(value) for key, value in keys.items()}
     return starts
-
-
-def _run_entry(run: str, word: str, value: object) -> tuple[str, float]:
-    try:
-        key = free_key(word)
-    except ParameterError as error:
-        raise ParameterError(
-            '[identify.runs."{run}"]: {problem}',
-            code="identify_runs",
-            run=run,
-            problem=str(error).removeprefix("--free: "),
-        ) from None
-    number = SCENARIO_KEYS[key].in_range(value)
-    if not isinstance(number, float):
-        raise ParameterError(
-            '[identify.runs."{run}"]: {word} is {value!r}; it must be a number',
-            code="not_a_number",
-            run=run,
-            word=word,
-            value=value,
-        )
-    return key, number
 
 
 def _start_warning(
@@ -306,7 +273,9 @@ FARTHEST: Final = 50_000.0
 """Largest distance (m) of a track from the site; beyond it the track is from another place and the earth not flat."""
 
 
-def move_to_scenario_frame(track: Track, scenario: ScenarioFile, site: object) -> tuple[Track, list[str]]:
+def move_to_scenario_frame(
+    track: Track, scenario: ScenarioFile, site: Mapping[str, Any] | None
+) -> tuple[Track, list[str]]:
     """Move a track to the slope's frame (x down the fall line, y to the left).
 
     track: track in any frame; a track in local metres is assumed to be in the slope's frame already.
@@ -368,11 +337,7 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
     return at
 
 
-def _site(site: object) -> Site:
-    if not isinstance(site, Mapping):
-        raise ParameterError(
-            "identify.site is {value!r}; it must be a table with {keys}", code="wrong_kind", value=site, keys=list(SITE)
-        )
+def _site(site: Mapping[str, Any]) -> Site:
     parsed = made(Site, checked_table(Site, site, "[identify.site]"))
     if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
         raise ParameterError(
