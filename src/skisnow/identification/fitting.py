@@ -141,7 +141,7 @@ def identify(
         forget(checkpoint)
     identity = fingerprint(scenario_input, measurements.tracks) if checkpoint else ""
     rows = KeptRows.opened(checkpoint, identity) if checkpoint else KeptRows()
-    counted = _ProgressCounter(progress or _silent)
+    counted = _ProgressCounter(progress or (lambda *_: None))
     with Simulations(simulate, rows, workers, counted, executor) as simulations:
         observations = _observations(
             scenario_file, measurements, simulations, clock_is_free=_clock(scenario_input, clock_is_free)
@@ -257,10 +257,6 @@ class _ProgressCounter:
         """Report the current step."""
         self.doing = doing
         self.progress(f"{doing}; {self.runs} simulated runs" if self.runs else doing)
-
-
-def _silent(_text: str) -> None:
-    return
 
 
 __all__ = ["Effort", "FitError", "Identification", "identify"]

@@ -114,7 +114,7 @@ def turn(
     """
     _require(unloading_ratio, shear_displacement, runs)
     workers = workers_in_force(workers)
-    say = progress or _silent
+    say = progress or (lambda *_: None)
     analysis = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
     snow = analysis.snow(site, unloading_ratio=unloading_ratio)
     if snow.unloading_ratio is None:
@@ -176,10 +176,6 @@ def _require(unloading_ratio: float | None, shear_displacement: float | None, ru
     if shear_displacement is not None:
         require_range("shear_displacement", shear_displacement, 0.0, above=True)
     require_range("runs", runs, FEWEST)
-
-
-def _silent(_text: str) -> None:
-    return
 
 
 CAMBER_ROUNDING: Final = "ski.camber_rounding_mm"

@@ -179,7 +179,7 @@ def quickest_line(
     require_executor(executor)
     scenario = replace(scenario, course=begun.course)
     racer = Racer(scenario, model, room)
-    tell = progress or _silent
+    tell = progress or (lambda *_: None)
     settings = (evaluations, search, population, spread, settled, window, step, ahead, seed)
     rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
     advice = Message("Finished evaluations are kept. Start again, with fewer workers.")
@@ -253,7 +253,3 @@ def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) ->
     for piece in content_bytes((racer, begun.turns)):
         digest.update(piece)
     return digest.hexdigest()
-
-
-def _silent(_: str) -> None:
-    return

@@ -136,9 +136,7 @@ def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None
         )
     if system is None and (transform.a, transform.c, transform.e, transform.f) == (1.0, 0.0, 1.0, 0.0):
         raise ParameterError(
-            "{path}: The position and the size of the cells are missing. Export it again.",
-            code="missing",
-            path=path,
+            "{path}: The position and the size of the cells are missing. Export it again.", code="missing", path=path
         )
 
 

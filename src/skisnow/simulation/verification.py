@@ -199,11 +199,7 @@ def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str
 
 def _in_force(run: Run, key: str) -> float:
     numbers = run.numbers
-    chosen = replace(
-        run.scenario.solver,
-        elements=round(numbers["elements"]),
-        line_spacing=numbers["line_spacing_m"],
-    )
+    chosen = replace(run.scenario.solver, elements=round(numbers["elements"]), line_spacing=numbers["line_spacing_m"])
     return _chosen(chosen, key)
 
 

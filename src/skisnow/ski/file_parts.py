@@ -162,9 +162,7 @@ class FileParts:
             values.refuse_together(LISTS, "rigid", Message("Remove one of them."))
             if key in self.table:
                 raise ParameterError(
-                    "the column {key} contradicts rigid = true. Remove one of them.",
-                    code="contradiction",
-                    key=key,
+                    "the column {key} contradicts rigid = true. Remove one of them.", code="contradiction", key=key
                 )
             return lambda station: np.full(np.shape(station), RIGID)
         if key in self.table:

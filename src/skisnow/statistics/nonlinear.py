@@ -279,10 +279,7 @@ def _warn(uncertainty: _Known, errors_exist: bool) -> None:
     for few_digits, share, allowed in checks[: 2 if errors_exist else 1]:
         if not share <= allowed:
             digits = max(int(-np.log10(share)), 0) if np.isfinite(share) and share > 0 else 0
-            warnings.warn(
-                FitWarning(Message(few_digits, digits=digits), code="few_digits"),
-                stacklevel=3,
-            )
+            warnings.warn(FitWarning(Message(few_digits, digits=digits), code="few_digits"), stacklevel=3)
 
 
 @dataclass(frozen=True)

@@ -227,10 +227,7 @@ def _form(values: Mapping[str, Any]) -> str:
             if forms
             else Message("a study has either [grid] or [latin_hypercube]; neither is there")
         )
-        raise ParameterError(
-            problem,
-            code="contradiction",
-        )
+        raise ParameterError(problem, code="contradiction")
     return forms[0]
 
 
@@ -302,10 +299,7 @@ def _out(path: Path, values: Mapping[str, Any]) -> Path:
             if out is None
             else Message('out is {out!r}; it is the place of the table, such as out = "table.csv"', out=out)
         )
-        raise ParameterError(
-            problem,
-            code="wrong_kind",
-        )
+        raise ParameterError(problem, code="wrong_kind")
     if Path(out).suffix.lower() not in WRITERS:
         raise ParameterError(
             "out is {out!r}; the name of the table must end in {writers}",

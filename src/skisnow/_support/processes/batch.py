@@ -99,17 +99,13 @@ def compute_missing(
             finished[number] = True
     done = sum(finished[numbers.start : numbers.stop : numbers.step])
     missing = len(numbers) - done
-    tell = progress or _silent
+    tell = progress or (lambda *_: None)
     tell(done, len(numbers))
     advice = Message("Finished points are kept. Start again, with fewer workers.")
     with Pool(function, max(1, min(wanted, missing)), advice=advice, executor=executor) as pool:
         for rows in pool.rows(((number, points[number]) for number in numbers if not finished[number]), missing):
             done += kept.add(rows)
             tell(done, len(numbers))
-
-
-def _silent(_done: int, _total: int) -> None:
-    return
 
 
 LOOKED_AFTER_S: Final = 2.0

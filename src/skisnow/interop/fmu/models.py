@@ -78,8 +78,7 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
         )
     if scenario.skier is not None:
         raise ParameterError(
-            "skier: an FMU contains a sledge with fixed boots; use a scenario without a skier",
-            code="not_supported",
+            "skier: an FMU contains a sledge with fixed boots; use a scenario without a skier", code="not_supported"
         )
     setup = laid_out(scenario)
     _require_own_laws(setup.snow)
