@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import Final
 
-from .errors import OutputError
+from .errors import OutputError, ParameterError
 
 _PREFIX: Final = ".skisnow-"
 _HIDDEN: Final = re.compile(r"\.(skisnow|report|run)-[a-z0-9_]{8}")
@@ -181,6 +181,17 @@ def _locked(hidden: Path) -> int | None:
         os.close(handle)
         return None
     return handle
+
+
+def require_ending(path: str | Path, *endings: str) -> None:
+    """Reject a file name that ends otherwise, whatever the case of its letters."""
+    if Path(path).suffix.lower() not in endings:
+        raise ParameterError(
+            "{path} does not end in {ending}. Rename it.",
+            code="wrong_ending",
+            path=path,
+            ending=endings[0] if len(endings) == 1 else list(endings),
+        )
 
 
 def write_file(path: str | Path, content: str | bytes) -> None:

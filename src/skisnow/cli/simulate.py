@@ -81,9 +81,10 @@ def _list(name: str | None) -> int:
 def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
     """Reject wrong options before the work."""
     if options.boots_out is not None:
-        from ..simulation.run_tables import require_ending
+        from .._support.staging import require_ending
+        from ..simulation.run_tables import ENDINGS
 
-        require_ending(options.boots_out)
+        require_ending(options.boots_out, *ENDINGS)
     if options.out is not None:
         prepare_output(options.out)
     print_warnings(scenario_input.warnings)

@@ -12,7 +12,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, require_range
-from .._support.staging import write_file
+from .._support.staging import require_ending, write_file
 from ..contact import SnowContact
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH
@@ -79,8 +79,7 @@ def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> P
     Raises ParameterError: the name does not end in .xml, or the number is out of its range.
     Raises OutputError: the place cannot be written.
     """
-    if Path(path).suffix.lower() != ".xml":
-        raise ParameterError("{path} does not end in .xml, as MJCF does; name it so", code="wrong_ending", path=path)
+    require_ending(path, ".xml")
     write_file(path, ski_mjcf(ski, segments=segments))
     return Path(path)
 

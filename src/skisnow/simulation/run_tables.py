@@ -12,7 +12,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.spreadsheet_text import csv_text
-from .._support.staging import write_file
+from .._support.staging import require_ending, write_file
 from .._support.units import DEGREE, MM
 from ..scenario.boots import ANGLES, OF_SLOPE, SIDES
 from .moving_boots import BootHistory
@@ -109,17 +109,6 @@ def opensim_columns(run: Run) -> dict[str, FloatArray]:
     return columns
 
 
-def require_ending(path: Path) -> None:
-    """ParameterError where a file's name ends in none of `ENDINGS`."""
-    if path.suffix.lower() not in ENDINGS:
-        raise ParameterError(
-            "{path} ends in none of {endings}, as which boots are written; name it so",
-            code="wrong_ending",
-            path=path,
-            endings=list(ENDINGS),
-        )
-
-
 def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
     """The table as a file's text: numbers with all their digits.
 
@@ -137,7 +126,7 @@ def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
 def write_boots(run: Run, path: str | Path) -> None:
     """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again."""
     path = Path(path)
-    require_ending(path)
+    require_ending(path, *ENDINGS)
     write_file(path, boots_text(run, path.suffix.lower(), name=path.stem))
 
 

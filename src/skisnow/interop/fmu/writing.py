@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final, Literal, TypeAlias
 
 from ..._support.errors import ParameterError
-from ..._support.staging import write_file
+from ..._support.staging import require_ending, write_file
 from ...contact import c_library
 from ...scenario import Scenario
 from .models import UNITS, Model, Variable, contact_model, sledge_model
@@ -98,13 +98,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
 
 def _require(path: str | Path, fmi: int) -> None:
     """Raise errors of the inputs before the work."""
-    if Path(path).suffix.lower() != ENDING:
-        raise ParameterError(
-            "{path} does not end in {ending}, as other programs expect of an FMU; rename it",
-            code="wrong_ending",
-            path=path,
-            ending=ENDING,
-        )
+    require_ending(path, ENDING)
     if fmi not in FOLDERS:
         raise ParameterError(
             "fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard", code="unknown_name", fmi=fmi

@@ -18,7 +18,7 @@ from ..._support.arrays import FloatArray
 from ..._support.environment import needed
 from ..._support.errors import OutputError, ParameterError
 from ..._support.messages import Message
-from ..._support.staging import write_file
+from ..._support.staging import require_ending, write_file
 from ..._support.user_files import GivenError, plain_bytes
 from .markers import METRES, Markers
 from .table import MOST_BYTES, MotionTable
@@ -137,10 +137,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     Raises OutputError: the place cannot be written.
     """
     path = Path(path)
-    if path.suffix.lower() != ENDING:
-        raise ParameterError(
-            "{path} does not end in {ending}; name it so", code="wrong_ending", path=path, ending=ENDING
-        )
+    require_ending(path, ENDING)
     ezc3d = needed("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
     rate, n = markers.rate, len(markers.time)
     first = round(float(markers.time[0]) * rate)

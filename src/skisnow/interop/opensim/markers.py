@@ -13,7 +13,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError, require_choice, require_range
 from ..._support.spreadsheet_text import csv_text
-from ..._support.staging import write_file
+from ..._support.staging import require_ending, write_file
 from ..._support.units import DEGREE, Facts, Shown, amount
 from ..._support.user_files import plain_text
 from ...geometry.boot_axes import angles_of
@@ -135,8 +135,7 @@ def write_trc(markers: Markers, path: str | Path) -> None:
     Raises OutputError: the place cannot be written.
     """
     path = Path(path)
-    if path.suffix.lower() != ".trc":
-        raise ParameterError("{path} does not end in .trc; name it so", code="wrong_ending", path=path)
+    require_ending(path, ".trc")
     n, k = len(markers.time), len(markers.names)
     rate = repr(float(markers.rate))
     lines = [

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..._support.staging import write_file
+from ..._support.staging import require_ending, write_file
 from ..._support.units import Facts, Shown, amount
 from ..._support.user_files import plain_text
 from ..._support.user_files.motion_head import HEAD_END, head_of_motion, is_in_degrees, require_whole
@@ -144,10 +144,7 @@ def write_motion(table: MotionTable, path: str | Path) -> None:
     Raises ParameterError: the name ends otherwise.
     Raises OutputError: the place cannot be written.
     """
-    if Path(path).suffix.lower() not in ENDINGS:
-        raise ParameterError(
-            "{path} ends in none of {endings}; name it so", code="wrong_ending", path=path, endings=list(ENDINGS)
-        )
+    require_ending(path, *ENDINGS)
     names = [_CLOCK, *table.columns]
     rows = np.column_stack([table.time, *table.columns.values()]).tolist()
     keys = {"version": "1", "nRows": str(len(rows)), "nColumns": str(len(names)), **table.head}
