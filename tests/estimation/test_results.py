@@ -3,6 +3,7 @@
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -14,7 +15,7 @@ from skisnow.campaign import Campaign, read_campaign, write_reference
 from skisnow.cli.shell import json_schema
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.result_rows import experiment_results
-from skisnow.estimation.results import results_json
+from skisnow.estimation.results import _strengths_by_density, results_json
 from tests.coded import raises
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
@@ -227,3 +228,10 @@ def test_each_entry_of_a_list_has_a_line_of_its_own() -> None:
     rows = [b'   {"d":1,"e":[1,2]},', b'   {"d":2}']
     wanted = [b"{", b' "a": 1,', b' "b": {', b'  "c": [', *rows, b"  ],", b'  "f": {}', b" },", b' "g": [{"h":"},{"}]']
     assert text.split(b"\n") == [*wanted, b"}", b""]
+
+
+def test_a_recording_without_a_density_does_not_count() -> None:
+    recordings = SimpleNamespace(site=["A", "A"], settings=SimpleNamespace(relation="relation"))
+    pen = SimpleNamespace(recordings=recordings, snow_density=np.array([300.0, math.nan]))
+    (row,) = _strengths_by_density(SimpleNamespace(campaign=SimpleNamespace(density=None), snow_micro_pen=pen))  # type: ignore[arg-type]
+    assert (row["n"], row["snow_density_kg_per_m3"]) == (1, 300.0)
