@@ -75,14 +75,7 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
 def prepare_folder(folder: Path) -> list[str]:
     """Create a folder if needed, check that it can be written, and complete or remove what killed processes left.
 
-    Returns
-    -------
-    Sentences about the actions.
-
-    Raises
-    ------
-    OutputError
-        The folder cannot be made or written.
+    Returns: sentences about the actions.
     """
     require_writable(folder)
     try:

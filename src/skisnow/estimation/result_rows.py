@@ -38,18 +38,9 @@ def experiment_results(
 ) -> Json:
     """The experiments of a campaign as results.json has them, without its model table and regressions.
 
-    Parameters
-    ----------
-    campaign
-        As it is now; it may be unfinished.
-    geometry
-        As in `skisnow.estimation.analyse`.
-    screened
-        Result of `screened_both`, if already computed.
-
-    Returns
-    -------
-    ``{"penetration": {"experiments": [...]}, "shear": {"experiments": [...]}}``, number for number as in results.json.
+    campaign: as it is now; it may be unfinished.
+    screened: result of `screened_both`, if already computed.
+    Returns: ``{"penetration": {"experiments": [...]}, "shear": {"experiments": [...]}}``.
     """
     penetration, shear = [], []
     pressed, cut = screened or screened_both(campaign, geometry=geometry)

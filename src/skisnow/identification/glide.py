@@ -64,10 +64,7 @@ class SlopeLine:
 def slope_line(slope: Slope, start: float) -> SlopeLine:
     """The slope along the fall line from x = `start` (m).
 
-    Raises
-    ------
-    ParameterError
-        The slope is a grid: its fall line is not straight.
+    Raises ParameterError: the slope is a grid: its fall line is not straight.
 
     >>> line = slope_line(Plane(math.radians(30.0)), 0.0)
     >>> sine, _, curvature = line.at(np.zeros(1, int), np.zeros(1))

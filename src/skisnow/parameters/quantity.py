@@ -83,35 +83,22 @@ class Condition:
 class Quantity:
     """One key of users, declared in the annotation of its field; see `declared`.
 
-    Attributes
-    ----------
-    name
-        With its unit, as users write it; a scenario's begins with its section.
-    meaning
-        In words.
-    lowest, highest
-        Ends of the range in the unit of the name; `above` leaves the lowest value itself out, `below` the highest.
-    infinite, blank
-        Whether an infinite number has a meaning; whether a text may be blank.
-    origin
-        Where the default or the range comes from.
-    example
-        Form on the command line, with the meaning of its values.
-    label, symbol
-        Short name, such as on the axis of a figure, and its symbol there.
-    usual
-        Ends of the usual range, in the unit of the name; None: all of the range.
-    search
-        How it is searched for; None: by the value that the search begins with.
-    index
-        Index of the quantity, if the field contains several numbers.
-    needed
-        Whether a value must be given, where the field has no default.
-    condition
-        Without it the quantity has no effect, and any other value than the default is rejected (default: none).
-    kind, choices, default, field
-        Taken from the field: what its type allows, the words of a ``Literal``, the default in the unit of the name
-        (None without one), the field's name.
+    name: with its unit, as users write it; a scenario's begins with its section.
+    meaning: in words.
+    lowest, highest: ends of the range in the unit of the name; `above` leaves the lowest value itself out, `below`
+        the highest.
+    infinite, blank: whether an infinite number has a meaning; whether a text may be blank.
+    origin: where the default or the range comes from.
+    example: form on the command line, with the meaning of its values.
+    label, symbol: short name, such as on the axis of a figure, and its symbol there.
+    usual: ends of the usual range, in the unit of the name; None: all of the range.
+    search: how it is searched for; None: by the value that the search begins with.
+    index: index of the quantity, if the field contains several numbers.
+    needed: whether a value must be given, where the field has no default.
+    condition: without it the quantity has no effect, and any other value than the default is rejected (default:
+        none).
+    kind, choices, default, field: taken from the field: what its type allows, the words of a ``Literal``, the
+        default in the unit of the name (None without one), the field's name.
 
     The range of numbers is that of each.
     """

@@ -171,14 +171,8 @@ def side_of_load(lean: FloatArray, depth: FloatArray, width: float) -> FloatArra
     It is at the edge that is down while only this edge is in the snow. While the other edge is in the snow, too, the
     place moves to the middle with the lean: the small rolling of a flat ski would make it jump from edge to edge.
 
-    Parameters
-    ----------
-    lean
-        Sine of the angle by which the left edge is up.
-    depth
-        Depth of the edge that is down (m); a ski in the air or in hardly marked snow counts as 0.001 `width` deep.
-    width
-        Width of the ski (m).
+    lean: sine of the angle by which the left edge is up.
+    depth: depth of the edge that is down (m); a ski in the air or in hardly marked snow counts as 0.001 `width` deep.
 
     >>> side_of_load(np.array([-0.5, 0.0, 0.005]), np.full(3, 1e-3), 0.1).tolist()
     [0.05, -0.0, -0.025]

@@ -51,12 +51,8 @@ class Condensed:
     def solved(self, projection: FloatArray | None = None, offset: FloatArray | None = None) -> Solved:
         """Minimise ‖design (offset + projection β) - response‖ over β ≥ 0.
 
-        Parameters
-        ----------
-        projection
-            Shape (p, q), q from 1 to 6; None: β are the coefficients of the columns themselves.
-        offset
-            Shape (p,), coefficients that are given; None: none.
+        projection: shape (p, q), q from 1 to 6; None: β are the coefficients of the columns themselves.
+        offset: shape (p,), coefficients that are given; None: none.
 
         If columns depend on each other, many β are equally good; one of those with the fewest coefficients above zero
         is returned, and the rank is below their number.

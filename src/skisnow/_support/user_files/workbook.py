@@ -42,27 +42,12 @@ def workbook_sheets(
 ) -> dict[str, Rows | None]:
     """Read the sheets of a workbook.
 
-    Parameters
-    ----------
-    data
-        The .xlsx file.
-    wanted
-        Says by its name whether a sheet is to be read.
-    fractions
-        If given: takes row and column, counted from 0, of each number with a fraction, by sheet; all such numbers then
+    wanted: True for the name of a sheet to read.
+    fractions: takes row and column, counted from 0, of each number with a fraction, by sheet; with it all such numbers
         have a decimal point.
-
-    Returns
-    -------
-    Rows by the names of the sheets, in their order; None for those that are not wanted. Numbers have a decimal point,
-    or a decimal comma where other cells of the sheet are numbers that were typed as text with a comma; days are written
-    as 2026-11-23 and times as 2026-11-23T09:10:00, line breaks in a cell are spaces.
-
-    Raises
-    ------
-    GivenError
-        The file is not a workbook, is protected by a password, exceeds a limit, or contains objects that a table does
-        not need.
+    Returns: rows by the names of the sheets, in their order; None for other sheets. Numbers have a decimal point, or a
+        decimal comma where other cells of the sheet are numbers that were typed as text with a comma; days are written
+        as 2026-11-23 and times as 2026-11-23T09:10:00, line breaks in a cell are spaces.
     """
     _require_sound(data)
     from openpyxl import load_workbook
