@@ -18,7 +18,7 @@ from skisnow.forces.friction import (
     FrictionLaw,
     WaterFilmFriction,
 )
-from skisnow.forces.measured_ranges import GLIDE_FRICTION
+from skisnow.forces.parameter_checks import GLIDE_FRICTION
 from skisnow.forces.penetration import (
     ElasticPoint,
     HypoplasticPoint,

@@ -13,7 +13,7 @@ from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.carving.question import CARVE_KEYS
 from skisnow.cli import build_parser
 from skisnow.cli.shell import NAMES, json_schema
-from skisnow.forces import measured_ranges
+from skisnow.forces import parameter_checks
 from skisnow.parameters import own_quantities
 from skisnow.parameters.json_schema import page_table, schema_text
 from skisnow.report.run.file import RUN_VARIABLES, SKIER_VARIABLES, RunVariable
@@ -34,7 +34,7 @@ def variable_table(variables: Iterable[RunVariable]) -> str:
 
 def range_table() -> str:
     """Markdown table of the measured ranges of the force laws."""
-    ranges = (each for each in vars(measured_ranges).values() if isinstance(each, MeasuredRange))
+    ranges = (each for each in vars(parameter_checks).values() if isinstance(each, MeasuredRange))
     ends = ((each, each.lowest / each.unit_factor, each.highest / each.unit_factor) for each in ranges)
     rows = (f"| {each.quantity} | {low:.4g} to {high:.4g} {each.unit} | {each.source} |" for each, low, high in ends)
     return "\n".join(("| quantity | range | measured by |", "| --- | --- | --- |", *rows, ""))

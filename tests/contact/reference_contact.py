@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from skisnow.contact import Runner, SnowField
 from skisnow.forces.shear import MachiningShear
-from skisnow.forces.shear.slip import strength_left
+from skisnow.forces.shear.law import strength_left
 
 FloatArray = npt.NDArray[np.float64]
 _POINT, _WEIGHT = np.polynomial.legendre.leggauss(3)

@@ -11,7 +11,7 @@ import pytest
 from skisnow.contact import SnowContact, SnowField
 from skisnow.forces.friction.law import ActsOn
 from skisnow.forces.shear import MachiningShear
-from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT
+from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 
 from .conftest import edged, straight
 

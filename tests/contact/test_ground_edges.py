@@ -13,7 +13,7 @@ from skisnow import carve
 from skisnow.contact import SnowContact, SnowField
 from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.forces.shear import MachiningShear
-from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT
+from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 from skisnow.ski.checks import EdgeShape
 
 from ..carving.synthetic import rigid_ski, snow

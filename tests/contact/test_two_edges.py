@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow.contact import Runner, SnowContact, SnowField
-from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT
+from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 
 from .conftest import edged, straight
 

@@ -21,7 +21,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.campaign.reference import reference_campaign
 from skisnow.cli import main
 from skisnow.cli.shell import json_schema
-from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT
+from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 from skisnow.parameters import values_of
 from skisnow.pipeline import MEASURED, PRIORS, inputs_with
 from skisnow.report.turn.chain import turn_dict

@@ -15,13 +15,13 @@ from skisnow import load_scenario, read_ski
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate_search
+from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate
 from skisnow.racing.line import first_gates, ways
 from skisnow.racing.point import Racer, run_score, ski_line
 from skisnow.racing.quickest import _begun, _require, _search, _window
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
-from skisnow.racing.surrogate_search import BATCH, Daring, SurrogateSearch, _best_within
+from skisnow.racing.surrogate import BATCH, Daring, SurrogateSearch, _best_within
 from skisnow.racing.worth import wider
 from skisnow.track.course import MovingPoint, passages
 from tests.coded import raises
@@ -71,7 +71,7 @@ def test_a_batch_is_asked_about_its_centre(monkeypatch: pytest.MonkeyPatch) -> N
         asked.append(told)
         return optimiser_within(*told)
 
-    monkeypatch.setattr(surrogate_search, "optimiser_within", kept)
+    monkeypatch.setattr(surrogate, "optimiser_within", kept)
     least_of_bowl(Bowl((0.5, 0.5), (0.0, 0.0)), (0.95, 0.5), 0.1, 0.0)
     ((limits, mean, spread, seed),) = asked
     assert limits == pytest.approx(np.array([[0.85, 1.0], [0.4, 0.6]]))

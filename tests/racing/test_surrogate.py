@@ -17,8 +17,7 @@ from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing.score import Score, with_room
 from skisnow.racing.search import Evaluated, Evaluations
-from skisnow.racing.surrogate import MOST_MARGIN, Prospects, Surrogate, margins_of, times_of
-from skisnow.racing.surrogate_search import SurrogateSearch
+from skisnow.racing.surrogate import MOST_MARGIN, Prospects, Surrogate, SurrogateSearch, margins_of, times_of
 
 from .test_search import EASY, SLALOM, Polyline, batches, cycloid, raced
 

@@ -35,7 +35,7 @@ from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_summary import run_gates
 from skisnow.skier import body_of
-from skisnow.skier.segments import FOOT, FOREARM, SHANK, THIGH, TRUNK, UPPER_ARM
+from skisnow.skier.anthropometry import FOOT, FOREARM, SHANK, THIGH, TRUNK, UPPER_ARM
 from skisnow.track.course import Course, Gate
 
 from ..report.runs import circle_run

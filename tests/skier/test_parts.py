@@ -18,7 +18,7 @@ from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import FIGURES, FURTHER, run_page
 from skisnow.scenario import Skier, scenario_values
 from skisnow.simulation.run_summary import summary_dict
-from skisnow.skier import body_of, segments
+from skisnow.skier import anthropometry, body_of
 from skisnow.skier.carve import CarvesOverTime, Pursuit, Underway
 from skisnow.skier.edges import Edges
 from skisnow.skier.plan import HalfWaves, TurnsOverTime
@@ -117,23 +117,23 @@ def test_a_body_is_the_mean_of_three_men() -> None:
 
 def test_segments_make_a_whole_body() -> None:
     """Winter's figure: hips at 0.530, shoulders at 0.818 of the height; a leg 0.161, an arm 0.050 of the mass."""
-    legs = (segments.FOOT, segments.SHANK, segments.THIGH)
-    arms = (segments.UPPER_ARM, segments.FOREARM)
+    legs = (anthropometry.FOOT, anthropometry.SHANK, anthropometry.THIGH)
+    arms = (anthropometry.UPPER_ARM, anthropometry.FOREARM)
     assert sum(each.length for each in legs) == pytest.approx(0.530)
-    assert sum(each.length for each in (*legs, segments.TRUNK)) == pytest.approx(0.818)
+    assert sum(each.length for each in (*legs, anthropometry.TRUNK)) == pytest.approx(0.818)
     assert [each.length for each in arms] == [0.186, 0.146]
     assert sum(each.mass for each in legs) == pytest.approx(0.161)
     assert sum(each.mass for each in arms) == pytest.approx(0.050)
-    assert 2.0 * (0.161 + 0.050) + segments.TRUNK.mass == pytest.approx(1.0)
+    assert 2.0 * (0.161 + 0.050) + anthropometry.TRUNK.mass == pytest.approx(1.0)
     assert [each.centre for each in (*legs, *arms)] == [0.5, 0.433, 0.433, 0.436, 0.682]
-    assert segments.TRUNK.centre == 0.66
-    assert (segments.SHOULDER_WIDTH, segments.HIP_WIDTH) == (0.259, 0.191)
+    assert anthropometry.TRUNK.centre == 0.66
+    assert (anthropometry.SHOULDER_WIDTH, anthropometry.HIP_WIDTH) == (0.259, 0.191)
 
 
 def test_heights_by_roll_inertia_are_kept_within_people() -> None:
     roll = body_of(75.0, 1.8).inertia[0]
-    assert segments.height_of(150.0, 2.0 * roll) == pytest.approx(1.8)
-    assert (segments.height_of(75.0, 1e-3), segments.height_of(75.0, 1e3)) == (1.0, 2.3)
+    assert anthropometry.height_of(150.0, 2.0 * roll) == pytest.approx(1.8)
+    assert (anthropometry.height_of(75.0, 1e-3), anthropometry.height_of(75.0, 1e3)) == (1.0, 2.3)
 
 
 def test_keys_of_a_skier() -> None:

@@ -13,7 +13,7 @@ import pytest
 from skisnow import Profile, load_scenario
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier, Command, Posture, Seen
-from skisnow.skier.force_map import ForceMap
+from skisnow.skier.edges import ForceMap
 from skisnow.skier.plan import AHEAD, STEP, Gravity, HalfWaves, Planned, RecedingLine, with_run_out
 from skisnow.skier.posture import AHEAD as FORE
 from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, RIGHT_TOE, RISE, STANCE

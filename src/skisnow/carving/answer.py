@@ -14,7 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from .._support.user_files.json_text import json_number
-from ..forces.measured_ranges import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
+from ..forces.parameter_checks import FAILURE_SHEAR_STRESS, PENETRATION_EDGE_ANGLE, SNOW_HARDNESS
 from ..ski import Ski
 from ..ski.ski_file import Sources
 from ..snow import SnowProperties

@@ -17,7 +17,7 @@ from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import PointLaw
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
-from ..forces.shear.slip import RESIDUAL_RATIO, SHEAR_DISPLACEMENT, SLIP_WEAKENING, Bearing
+from ..forces.shear.law import RESIDUAL_RATIO, SHEAR_DISPLACEMENT, SLIP_WEAKENING, Bearing
 from ..geometry.surfaces import Grid, Plane
 
 STICK_DISPLACEMENT: Final = 0.02e-3

@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .measured_ranges import DRAG_AREA
-from .parameter_checks import require_above_zero, require_not_below_zero
+from .parameter_checks import DRAG_AREA, require_above_zero, require_not_below_zero
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from .line import RacingLine, first_gates, with_numbers
 from .point import LinePoint, turns_in
 from .score import NOT_PASSED
 from .search import Batches, Evaluated, Evaluations, least_of
-from .surrogate_search import SurrogateSearch
+from .surrogate import SurrogateSearch
 
 Progress: TypeAlias = Callable[[str], None]
 Search: TypeAlias = Literal["surrogate", "cma"]

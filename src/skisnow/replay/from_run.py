@@ -19,7 +19,7 @@ from ..scenario.terrain import Slope
 from ..simulation.run import Run
 from ..simulation.run_summary import feet_and_tips
 from ..ski import Ski
-from ..skier.segments import height_of
+from ..skier.anthropometry import height_of
 from ..track.course import Course, MovingPoint, passages
 from .replay import (
     Replay,

@@ -20,7 +20,7 @@ from ..scenario.keys import SCENARIO_KEYS
 from ..scenario.scenario import course_on_slope
 from ..scenario.terrain import Slope
 from ..ski import Ski, read_ski, ski_named
-from ..skier.segments import height_of
+from ..skier.anthropometry import height_of
 from ..track.course import Course, read_course
 from .from_run import Setting, assemble_replay, facts_of, moving_boots, skis_words
 from .replay import Replay, ReplayBoots, ReplayTrack

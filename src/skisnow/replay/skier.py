@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.units import DEGREE
-from ..skier.segments import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM, Segment
+from ..skier.anthropometry import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM, Segment
 from .meshes import Mesh, linear
 from .replay import Replay, ReplaySkier, quaternions
 

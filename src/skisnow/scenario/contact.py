@@ -11,7 +11,7 @@ from ..forces.friction import FrictionFile, FrictionLaw, LinearFriction
 from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw, ProfilePoint
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
-from ..forces.shear.slip import SHEAR_DISPLACEMENT
+from ..forces.shear.law import SHEAR_DISPLACEMENT
 from ..parameters import APART, Condition, Quantity, Search, Section, Word, declared_text, require_declared
 from ..snow import SnowProperties
 from ..snow.measured_range import without_range_warnings

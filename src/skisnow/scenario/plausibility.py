@@ -9,7 +9,7 @@ from typing import Final
 from .._support.errors import RangeWarning
 from .._support.messages import Message
 from .._support.units import DEGREE, MM, N_PER_MM3, in_degrees_if_radians
-from ..forces.measured_ranges import (
+from ..forces.parameter_checks import (
     DRAG_AREA,
     FAILURE_SHEAR_STRESS,
     GLIDE_FRICTION,

@@ -11,7 +11,7 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
-from ..forces.shear.slip import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
+from ..forces.shear.law import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
 from ..parameters import Condition, Quantity, Search, declared_text, require_declared
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 

@@ -18,8 +18,7 @@ from ..scenario.terrain import down_and_left, normals_of
 from ..track.course import Course
 from .carve import CarveControl, CarvesOverTime, Pursuit, Steering
 from .control import Balance, Controller, SkidControl
-from .edges import Edges
-from .force_map import ForceMap
+from .edges import Edges, ForceMap
 from .plan import Gravity, HalfWaves, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of
 from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture
 from .seen import Moment, Seen, seen_at

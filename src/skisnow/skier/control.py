@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from ..scenario.skier import Skier
-from .force_map import ForceMap
+from .edges import ForceMap
 from .plan import AHEAD, Gravity, Plan, Planned
 from .posture import AHEAD as AHEAD_OF_FEET
 from .posture import LEFT_TOE, RIGHT_TOE, STANCE, Command, Posture

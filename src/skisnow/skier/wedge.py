@@ -12,7 +12,7 @@ from scipy.linalg import solve_continuous_are
 from .._support.arrays import FloatArray
 from ..scenario.skier import Skier
 from .control import AIR, FIRST_GRIP, FORCE_TIME, ROLLING, STOPPED, Balance, Smoothed, standing
-from .force_map import ForceMap
+from .edges import ForceMap
 from .plan import Gravity
 from .posture import AHEAD, ASIDE, LEFT_EDGE, RIGHT_EDGE, RIGHT_TOE, STANCE, Command, Posture
 from .seen import Seen

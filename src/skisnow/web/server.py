@@ -31,7 +31,7 @@ from .layout import KEEPING, LANGUAGE, LOG, SCRIPT, STYLES, add_error_pages, log
 from .pages import INNER, PAGES
 from .replay_addresses import FIRST_SCRIPT
 from .settings import PING_EVERY_S, PING_WAIT_S, RECONNECT_S
-from .ski_uploads import add_ski_uploads
+from .ski_editor import add_ski_uploads
 from .transfer import add_transfer
 from .words import COOKIE
 

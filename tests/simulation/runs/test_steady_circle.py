@@ -8,7 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import Run, Scenario, SnowMap, carve
-from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT
+from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.simulated_run import simulate

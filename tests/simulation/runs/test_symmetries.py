@@ -9,7 +9,7 @@ import pytest
 from skisnow import Run
 from skisnow._support.errors import ModelLimitWarning
 from skisnow.contact import SnowContact, SnowField
-from skisnow.forces.shear.slip import SHEAR_DISPLACEMENT as HOLDING
+from skisnow.forces.shear.law import SHEAR_DISPLACEMENT as HOLDING
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.run_record import Record
 from skisnow.simulation.run_setup import Setup, set_up

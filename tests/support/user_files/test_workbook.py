@@ -10,7 +10,7 @@ import pytest
 from openpyxl import Workbook
 
 from skisnow._support.user_files import GivenError, workbook, workbook_sheets, xml_tree
-from skisnow._support.user_files.xml_tree import DEEPEST
+from skisnow._support.user_files.json_text import DEEPEST
 from tests.coded import Coded, coded, raises
 
 
@@ -152,7 +152,7 @@ def test_what_is_beyond_a_limit_is_rejected(monkeypatch: pytest.MonkeyPatch) -> 
     with raises(GivenError, "too_large", depth=60):
         xml_tree(nested(DEEPEST + 1))
     monkeypatch.setattr(
-        sys.modules["skisnow._support.user_files.xml_tree"], "MOST_ELEMENTS", 3
+        sys.modules["skisnow._support.user_files.json_text"], "MOST_ELEMENTS", 3
     )  # the function hides it
     assert len(xml_tree(b"<a><b/><b/></a>").children) == 2
     with raises(GivenError, "too_large", count=3):

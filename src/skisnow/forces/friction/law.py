@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..measured_ranges import GLIDE_FRICTION
+from ..parameter_checks import GLIDE_FRICTION
 
 ActsOn: TypeAlias = Literal["snow-normal", "base-normal"]
 """The load along the snow's normal, or that square on the base, side force included: docs/methods/snow-options.md."""

@@ -5,9 +5,8 @@ from typing import Final
 from .elastic_points import ElasticPoint, MeanPressurePoint, VolumeWithAnglePoint
 from .geometry_laws import AreaLaw, DepthLaw, ElementCountLaw, MeanPressureLaw
 from .hypoplastic_point import HypoplasticPoint
-from .law import PenetrationLaw
+from .law import PenetrationLaw, PointLaw
 from .layered_point import LayeredPoint, ProfilePoint
-from .point_law import PointLaw
 from .volume_laws import BilinearLaw, VolumeLaw, VolumeWithAngleLaw
 
 LAWS: Final[tuple[type[PenetrationLaw], ...]] = (

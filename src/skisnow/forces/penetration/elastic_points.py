@@ -11,10 +11,15 @@ import numpy.typing as npt
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ...snow.published.moessner_2013 import ANGLE_TERM
-from ..measured_ranges import PRESSURE_OFFSET, PRESSURE_SLOPE, SNOW_HARDNESS
-from ..parameter_checks import require_above_zero, require_not_below_zero
+from ..parameter_checks import (
+    PRESSURE_OFFSET,
+    PRESSURE_SLOPE,
+    SNOW_HARDNESS,
+    require_above_zero,
+    require_not_below_zero,
+)
 from .hypoplastic_point import HypoplasticPoint
-from .point_law import PointLaw
+from .law import PointLaw
 
 
 @dataclass(frozen=True, slots=True)

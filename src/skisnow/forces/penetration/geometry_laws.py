@@ -12,8 +12,14 @@ import numpy.typing as npt
 from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ...snow import MeasuredRange
-from ..measured_ranges import PRESSURE_OFFSET, PRESSURE_SLOPE, SNOW_HARDNESS
-from ..parameter_checks import edge_angles, require_above_zero, require_not_below_zero
+from ..parameter_checks import (
+    PRESSURE_OFFSET,
+    PRESSURE_SLOPE,
+    SNOW_HARDNESS,
+    edge_angles,
+    require_above_zero,
+    require_not_below_zero,
+)
 from .law import PenetrationLaw
 
 

@@ -10,9 +10,8 @@ import numpy.typing as npt
 
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
-from ..measured_ranges import SNOW_HARDNESS
-from ..parameter_checks import require_above_zero
-from .point_law import PointLaw
+from ..parameter_checks import SNOW_HARDNESS, require_above_zero
+from .law import PointLaw
 
 
 @dataclass(frozen=True, slots=True)

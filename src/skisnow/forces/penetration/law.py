@@ -1,4 +1,4 @@
-"""The interface of every law for the force of a pressed tool."""
+"""The interfaces of every law for the force of a pressed tool, and for one place on the snow."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ import numpy.typing as npt
 from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ...snow import MeasuredRange
-from ..measured_ranges import PENETRATION_EDGE_ANGLE
-from ..parameter_checks import edge_angles
+from ..parameter_checks import PENETRATION_EDGE_ANGLE, edge_angles
 
 
 class PenetrationLaw(abc.ABC):
@@ -69,3 +68,57 @@ class PenetrationLaw(abc.ABC):
     @abc.abstractmethod
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
         """F_n (N) for depths of at least 0 and angles of the same shape."""
+
+
+class PointLaw(abc.ABC):
+    """Stress along the snow normal at one place on the snow, from its depth now and its maximum depth so far.
+
+    The state of a place is one number, the maximum depth ε_max (m, ≥ 0; 0 for untouched snow). It belongs to the snow
+    and not to the ski: later parts of a ski meet the groove of earlier ones. Along any path the work done on the place
+    is exactly ``stored_energy`` plus ``lost_energy``.
+
+    A rival law is one frozen dataclass in a separate file, entered in ``POINT_LAWS``. It runs in a contact and in a
+    turn as it is: `skisnow.contact.SnowField` takes it.
+    """
+
+    __slots__ = ()
+    along_base_normal: ClassVar[bool] = False
+    """Whether the snow's force is one along the normal of the base. Its part across, tan ϑ times the stress, is then
+    the maximum side force of an edge; it grows with the displacement across, as every strength in a contact."""
+
+    @property
+    def exceptions(self) -> Mapping[str, str]:
+        """Shared checks of physics that this law fails, each with the reason."""
+        return {}
+
+    @property
+    def bends(self) -> tuple[float, ...]:
+        """Depths (m) above 0 at which the stress of first loading bends: integrals over a base are divided there."""
+        return ()
+
+    def deepest_after(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """The deepest depth (m) of a place at ε_max that is brought to depth ε, both in m."""
+        return np.maximum(np.maximum(np.asarray(depth, float), np.asarray(deepest, float)), 0.0)
+
+    @abc.abstractmethod
+    def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """Stress p (N/m², ≥ 0) at depth ε (m) of a place that has been at ε_max (m) before; the shapes broadcast."""
+
+    def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Stress (N/m²) and energy per area (J/m²), (2, n), under a base at an edge angle (rad). For loops.
+
+        The angle has no effect except in laws that state it.
+        """
+        return np.stack([self.stress(depth, deepest), self.stored_energy(depth, deepest)])
+
+    @abc.abstractmethod
+    def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
+        """Depth ε_res (m) of the groove that is left when the place is unloaded."""
+
+    @abc.abstractmethod
+    def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
+        """Energy per area (J/m²) that comes back when the place is unloaded from depth ε."""
+
+    @abc.abstractmethod
+    def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
+        """Energy per area (J/m²) that the groove of depth ε_max has cost for good."""

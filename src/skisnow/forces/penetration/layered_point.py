@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ..parameter_checks import require_above_zero, require_not_below_zero
-from .point_law import PointLaw
+from .law import PointLaw
 
 
 class DeepeningPoint(PointLaw):

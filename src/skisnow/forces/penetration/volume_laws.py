@@ -11,8 +11,7 @@ from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError
 from ...geometry import Tool
 from ...snow.published.moessner_2013 import ANGLE_TERM
-from ..measured_ranges import SNOW_HARDNESS
-from ..parameter_checks import require_above_zero, require_finite
+from ..parameter_checks import SNOW_HARDNESS, require_above_zero, require_finite
 from .law import PenetrationLaw
 
 

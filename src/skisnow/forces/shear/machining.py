@@ -14,8 +14,15 @@ from ..._support.errors import ParameterError
 from ...snow import MeasuredRange
 from ...snow.published.lieu_mote_1985 import SNOW_OVER_ICE
 from ..cutting import cutting_stress, cutting_thrust
-from ..measured_ranges import FAILURE_SHEAR_STRESS, ICE_CUTTING_DEPTH, ICE_CUTTING_EDGE_ANGLE
-from ..parameter_checks import RIGHT_ANGLE, edge_angles, require_above_zero, require_not_below_zero
+from ..parameter_checks import (
+    FAILURE_SHEAR_STRESS,
+    ICE_CUTTING_DEPTH,
+    ICE_CUTTING_EDGE_ANGLE,
+    RIGHT_ANGLE,
+    edge_angles,
+    require_above_zero,
+    require_not_below_zero,
+)
 from .law import ShearLaw
 
 

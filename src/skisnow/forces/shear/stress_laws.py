@@ -12,8 +12,14 @@ from ..._support.units import ICE_DENSITY, N_PER_MM2
 from ...snow.published import domine_2011, moessner_2013
 from ...snow.published.domine_2011 import LEAST_DENSITY
 from ...snow.published.moessner_2013 import STRESS_BY_ANGLE, STRESS_BY_DENSITY
-from ..measured_ranges import FAILURE_SHEAR_STRESS, GROOMED_SNOW_DENSITY, NATURAL_SNOW_DENSITY
-from ..parameter_checks import RIGHT_ANGLE, require_above_zero, require_finite
+from ..parameter_checks import (
+    FAILURE_SHEAR_STRESS,
+    GROOMED_SNOW_DENSITY,
+    NATURAL_SNOW_DENSITY,
+    RIGHT_ANGLE,
+    require_above_zero,
+    require_finite,
+)
 from .law import ShearLaw
 
 

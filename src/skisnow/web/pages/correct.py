@@ -13,8 +13,16 @@ from ...campaign.store import ReplayedTest
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import choice, field, folded, link
-from ..entry.attachments import Attachments
-from ..entry.changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
+from ..entry.changes import (
+    ASKED,
+    LEFT_AS_IT_WAS,
+    UNANSWERED,
+    USUAL_REASON,
+    Attachments,
+    ask_reason,
+    change_message,
+    changes,
+)
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import LiveResults, Places, TableView, table_links, table_view
 from ..layout import framed, heading, sentence

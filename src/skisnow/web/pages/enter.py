@@ -8,7 +8,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ...campaign.store.stored_tables import checked_cell
 from ..edit_session import EditSession
-from ..entry.attachments import Attachments
+from ..entry.changes import Attachments
 from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm

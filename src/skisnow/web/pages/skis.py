@@ -16,8 +16,7 @@ from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, t
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import carving
 from ..settings import BUILD_S, Lab
-from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, edit_ski_texts
-from ..ski_uploads import SkiImportForms
+from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
 from ..subprocesses import SKI_BOUNDS, confined
 from ..widgets import STYLES, ChartLine, LineChart
 from ..words import said
