@@ -179,7 +179,7 @@ def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.Captur
     assert page.get_by_role("heading", level=1).inner_text() == 'The day <b>"of" & tests</b>'
 
     follow(page, "Analysis")
-    page.get_by_text("3 penetration experiments, 2 used; 2 shear experiments, 2 used.").wait_for()
+    page.get_by_text("3 penetration experiments (2 used), 2 shear experiments (2 used)").wait_for()
     by_lab = downloaded_results(page)
 
     summary = simulate(page, served)

@@ -353,7 +353,7 @@ def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
     page.get_by_text("S_f = 0.200 N/mm²").wait_for()  # 30 N m / 0.25 m / (100 mm × 6 mm), by hand
     fits(page)
     press(page, "link", "Analysis")
-    page.get_by_text("1 penetration experiment, 1 used; 1 shear experiment, 1 used.").wait_for()
+    page.get_by_text("1 penetration experiment (1 used), 1 shear experiment (1 used)").wait_for()
     with Store.open(served.store) as store:
         (found,) = Journals(store).list()
         rows = replay_journal(Journals(store).entries(found.id)).test("penetration.csv", "1").rows

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from nicegui import ui
 
-from .._support.messages import Message, template
+from .._support.messages import Message, in_language, template
 from ..report.campaign.data import ReportData
 from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
 from .elements import Words, add_items, choice, folded, html_words, named
@@ -136,9 +136,11 @@ class AnalysisView:
             self._show_choices(result.numbers)
         self._show_results(result.numbers)
         self._show_tables(result.numbers)
-        self._status.set_text(
-            Message("{counts}. Drawing the figures …", counts=ReportData(result.numbers.analysis).counts)
-        )
+        self._status.set_text(Message("{counts}. Drawing the figures …", counts=self._counts(result.numbers)))
+
+    def _counts(self, numbers: Numbers) -> str:
+        with in_language(language_of(self._figures.client)):  # tasks in the background have no page
+            return ReportData(numbers.analysis).counts
 
     async def _draw(self, result: CachedAnalysis, number: int) -> None:
         """Show each figure when it is drawn; those of another choice stay until the first one."""
@@ -154,7 +156,7 @@ class AnalysisView:
             with self._figures:
                 _figure(shown)
         if not self._is_old(number):
-            self._status.set_text(f"{ReportData(result.numbers.analysis).counts}.")
+            self._status.set_text(f"{self._counts(result.numbers)}.")
 
     def _show_results(self, numbers: Numbers) -> None:
         """Show the key results of the report, then the table of the sites."""

@@ -17,7 +17,7 @@ PENETRATION = pressed(
 SHEAR = sheared({"a": ("A", 20), "1": ("A", 21), "c": ("B", 30)})
 FILES = {"campaign.toml": TOML, "penetration.csv": PENETRATION, "shear.csv": SHEAR}
 FLAGS = choosable_flags()
-COUNTED = "5 penetration experiments, 3 used; 3 shear experiments, 3 used."
+COUNTED = "5 penetration experiments (3 used), 3 shear experiments (3 used), 2 sites."
 
 
 @dataclass

@@ -125,6 +125,7 @@ def test_cached_results_are_on_the_page_at_once(desk: Desk, tmp_path: Path, draw
     desk.do(drawing.gate.set)
     german.until(lambda: figures(german))
     german.until(lambda: len(figures(german)) == 2)
+    finally_says(german, "5 Eindringversuche (3 verwendet), 3 Scherversuche (3 verwendet), 2 Messorte.")
     assert drawing.asked[-3:] == [("drawn", number, "de") for number in range(3)]
     assert report_key(page) != report_key(again)
 
@@ -137,12 +138,12 @@ def test_an_experiment_that_is_left_out_stays_in_the_tables(desk: Desk, tmp_path
     assert page.outline()[at + 1 : at + 9] == EXPERIMENTS
     assert [each.enabled for each in page.of(ui.checkbox)] == [True] * 4 + [False] + [True] * 3
     page.fill("Penetration 1, A, 30°", False)
-    finally_says(page, "5 penetration experiments, 2 used; 3 shear experiments, 3 used.")
+    finally_says(page, "5 penetration experiments (2 used), 3 shear experiments (3 used), 2 sites.")
     assert figures(page) == [("data:0", "2 points"), ("data:2", "2 points")]
     page.fill("Shear 1, A, 90°", False)
-    finally_says(page, "5 penetration experiments, 2 used; 3 shear experiments, 2 used.")
+    finally_says(page, "5 penetration experiments (2 used), 3 shear experiments (2 used), 2 sites.")
     page.fill("Penetration 1, A, 30°", True)
-    finally_says(page, "5 penetration experiments, 3 used; 3 shear experiments, 2 used.")
+    finally_says(page, "5 penetration experiments (3 used), 3 shear experiments (2 used), 2 sites.")
     asked = len(drawing.asked)
     page.fill("Shear 1, A, 90°", True)
     finally_says(page, COUNTED)
@@ -159,7 +160,7 @@ def test_a_choice_made_during_the_computation_is_shown(desk: Desk, tmp_path: Pat
     finally_says(page, f"{COUNTED} Drawing the figures …")
     opened(page, INCLUDED)
     page.fill("Penetration 1, A, 30°", False)
-    fewer = COUNTED.replace("3 used; 3", "2 used; 3")
+    fewer = COUNTED.replace("3 used", "2 used", 1)
     finally_says(page, fewer)
     shown = page.outline()
     desk.do(drawing.gate.set)
@@ -203,7 +204,7 @@ def test_report_and_zip_are_of_what_is_chosen(desk: Desk, tmp_path: Path, drawin
     assert {name[-3:] for name in names} == {"-de", "-en"} and {name[:7] for name in names} == {"report-"}
     opened(page, INCLUDED)
     page.fill("Penetration 1, A, 30°", False)
-    finally_says(page, COUNTED.replace("3 used; 3", "2 used; 3"))
+    finally_says(page, COUNTED.replace("3 used", "2 used", 1))
     assert used(desk.get(f"/report/{key}/report.html").text) == "FTTFF"
     assert len({name for name, _ in drawing.reports}) == 3
 
