@@ -148,7 +148,10 @@ class Facts(NamedTuple):
 
 
 class Shown:
-    """Something that shows itself by its `_facts`; a dataclass has no generated repr (``repr=False``)."""
+    """Something that shows itself by its `_facts`: title and rows of its repr and of a notebook's table.
+
+    A dataclass of this kind has no generated repr (``repr=False``).
+    """
 
     __slots__ = ()
 

@@ -72,7 +72,7 @@ def print_completion(options: argparse.Namespace) -> int:
 
 
 def candidates(parser: argparse.ArgumentParser, words: Sequence[str], begun: str) -> list[str]:
-    """Completions of a word that follows others; empty where a file or a number belongs."""
+    """Words that may stand after others, whatever is begun beyond a leading -; none for a file or a number."""
     waiting: argparse.Action | None = None
     places = _positionals(parser)
     for word in words:

@@ -199,7 +199,7 @@ class Quantity:
             one = replace(self, kind="number")
             return tuple(float(one.of_kind(number)) for number in value)  # type: ignore[arg-type]
         if self.kind == "numbers" and isinstance(value, list | tuple) and (value or self.default is not None):
-            return tuple(float(one.of_kind(number)) for one, number in self.each_of(value))  # type: ignore[arg-type]
+            return tuple(float(one.of_kind(number)) for one, number in self.numbered(value))  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
@@ -228,8 +228,8 @@ class Quantity:
             )
         return int(value)
 
-    def each_of(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
-        """The numbers of a list, each with the quantity that it is by its place."""
+    def numbered(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
+        """Values of a list, each with this quantity for one number, named ``name[1]`` and so on."""
         for place, value in enumerate(values, start=1):
             yield replace(self, kind="number", name=f"{self.name}[{place}]"), value
 
@@ -237,7 +237,7 @@ class Quantity:
         """Give the value in its kind."""
         checked = self.of_kind(value)
         if self.kind == "numbers" and isinstance(value, list | tuple):
-            for one, element in self.each_of(value):
+            for one, element in self.numbered(value):
                 one.in_range(element)
         if not self._allows(checked):
             raise ParameterError(

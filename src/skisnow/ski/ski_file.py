@@ -143,10 +143,10 @@ MADE_OF_KEYS: Final = weakref.WeakKeyDictionary[Ski, SkiFile]()
 
 
 def ski_of_keys(keys: Mapping[str, Any], *, path: Path = Path("ski.toml"), like: Ski | None = None) -> Ski:
-    """Ski of the keys of a ski file without a table.
+    """Ski of the keys of a ski file, without a CSV table next to it.
 
     keys: as in the file, in its units.
-    like: see `SkiParts.assembled`.
+    like: ski of nearly the same lengths, whose stations are used, so that its tables differ smoothly; None: own ones.
     """
     values = values_of_keys(dict(keys), path)
     try:

@@ -108,8 +108,8 @@ class CarveControl:
     steering: Steering
     edges: Edges
     body: Body
-    roll: float
-    stance: float
+    roll_inertia: float
+    stance_width: float
     gravity: Gravity
     balance: Balance = field(default_factory=lambda: Balance(0.0, 0.0, 0.0, 0.0, 1.0))
     _turn: list[float] = field(default_factory=lambda: [0.0, 0.0])  # over that of a carve in balance, with its rate
@@ -132,7 +132,7 @@ class CarveControl:
         """Command to the body until the next call."""
         now, height = seen.time + dt, self.body.height
         aside, rate = float(posture.numbers[1]), posture.aside_rate
-        roll = self.roll * height**2 / (height**2 + aside**2)
+        roll = self.roll_inertia * height**2 / (height**2 + aside**2)
         omega = math.sqrt(self.gravity.normal * height * self.body.mass / (roll + self.body.mass * height**2))
         wanted, planned = self._foreseen(now, seen, omega)
         self._learn(seen, planned, posture.edge, omega, dt)
@@ -141,7 +141,7 @@ class CarveControl:
         if seen.lifted or not seen.bears:
             aside, rate = seen.aside, seen.aside_rate
         error = aside + rate / omega - wanted
-        reach = REACH * self.stance / 2.0
+        reach = REACH * self.stance_width / 2.0
         pressure = max(-reach, min(reach, (1.0 + self.skier.leg_gain) * error))
         self.balance = Balance(balanced, wanted, error, pressure, omega)
         edge = self._edge(now, seen, error, dt)

@@ -100,8 +100,8 @@ class SkidControl:
     plan: Plan
     snow: ForceMap
     body: Body
-    roll: float
-    stance: float
+    roll_inertia: float
+    stance_width: float
     gravity: Gravity
     grip: float = FIRST_GRIP
     balance: Balance = field(default_factory=lambda: Balance(0.0, 0.0, 0.0, 0.0, 1.0))
@@ -157,18 +157,20 @@ class SkidControl:
         blade = self._blade.step(1.0 - (1.0 if abs(posture.edge) < BLADE else slides), dt)
         aside = float(posture.numbers[1])
         leant = height**2 / (height**2 + aside**2)
-        rate = 1.0 / math.sqrt(self.roll * leant / (self.body.mass * gravity * height) + blade * height / gravity)
+        rate = 1.0 / math.sqrt(
+            self.roll_inertia * leant / (self.body.mass * gravity * height) + blade * height / gravity
+        )
         if seen.bears:
             now = seen.height * (seen.across / seen.load - blade * posture.acceleration / gravity)
             self._balanced.step(now, dt)
         weights = np.exp(-rate * AHEAD)
         foreseen = float(weights @ planned.force / weights.sum()) / math.cos(self.slip)
         share = math.tanh(float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / (0.15 * gravity))
-        outer = share * (BY_EDGE - (self.skier.outer_share - 0.5) * self.stance)
+        outer = share * (BY_EDGE - (self.skier.outer_share - 0.5) * self.stance_width)
         wanted = seen.height * foreseen / gravity + outer
         moving = seen.aside_rate if seen.lifted or not seen.bears else posture.aside_rate
         error = seen_aside(seen, posture) + moving / rate - wanted
-        reach = REACH * self.stance / 2.0
+        reach = REACH * self.stance_width / 2.0
         pressure = max(-reach, min(reach, outer + (1.0 + self.skier.leg_gain) * error))
         return Balance(self._balanced.value, wanted, error, pressure, rate)
 

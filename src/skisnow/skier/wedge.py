@@ -50,7 +50,7 @@ SOLVED_EVERY: Final = 8
 
 @dataclass(slots=True)
 class WedgeControl:
-    """A wedge that brakes to a stop down the fall line.
+    """A wedge that brakes to a stop down the fall line; `grip` is measured over computed force of the snow.
 
     Source: The page docs/methods/skier.md.
     """
@@ -58,8 +58,8 @@ class WedgeControl:
     skier: Skier
     snow: ForceMap
     body: Body
-    roll: float
-    stance: float
+    roll_inertia: float
+    stance_width: float
     gravity: Gravity
     grip: float = FIRST_GRIP
     balance: Balance = field(default_factory=lambda: Balance(0.0, 0.0, 0.0, 0.0, 1.0))
@@ -69,16 +69,16 @@ class WedgeControl:
     _load: list[float] = field(default_factory=lambda: [0.0, 0.0])  # place to the left (m) and its rate
     _gain: FloatArray = field(default_factory=lambda: np.zeros((3, 8)))
     _calls: int = 0
-    _line: float | None = None
-    _held: tuple[float, float] | None = None
+    _start_aside: float | None = None
+    _held_edges: tuple[float, float] | None = None
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
         """Command to the body until the next call."""
-        if self._line is None:
-            self._line = seen.place[1]
-        if seen.speed < STOPPED or (self._held is not None and seen.speed < 3.0 * STOPPED):
+        if self._start_aside is None:
+            self._start_aside = seen.place[1]
+        if seen.speed < STOPPED or (self._held_edges is not None and seen.speed < 3.0 * STOPPED):
             return self._stand(seen, posture)
-        self._held = None
+        self._held_edges = None
         toe, force, wanted = self._opened(seen, posture)
         self._learn(seen, toe, dt)
         difference, torque = self._regulate(seen, posture, toe, force, dt)
@@ -94,15 +94,15 @@ class WedgeControl:
             * (float(posture.numbers[ASIDE]) - self.balance.balanced - self.balance.pressure),
             pressure=self.balance.pressure,
             toe=(-wanted, wanted),
-            stance=max(self.stance, 2.0 * TIP * math.sin(max(toe, wanted)) + BETWEEN_TIPS),
+            stance=max(self.stance_width, 2.0 * TIP * math.sin(max(toe, wanted)) + BETWEEN_TIPS),
         )
 
     def _stand(self, seen: Seen, posture: Posture) -> Command:
         """All joints held, edges a little steeper."""
-        if self._held is None:
-            self._held = float(posture.numbers[LEFT_EDGE]), float(posture.numbers[RIGHT_EDGE])
-        more = 0.5 * MORE_EDGE * (self._held[1] - self._held[0])
-        return standing(seen, posture, (self._held[0] - more, self._held[1] + more))
+        if self._held_edges is None:
+            self._held_edges = float(posture.numbers[LEFT_EDGE]), float(posture.numbers[RIGHT_EDGE])
+        more = 0.5 * MORE_EDGE * (self._held_edges[1] - self._held_edges[0])
+        return standing(seen, posture, (self._held_edges[0] - more, self._held_edges[1] + more))
 
     def _held_by(self, edge: float) -> float:
         """Force (N) of one ski at an edge angle (rad)."""
@@ -137,7 +137,7 @@ class WedgeControl:
             brake = max(20.0, 2.0 * force * math.sin(toe))
             self._gain = regulator(self.body, brake, float(posture.numbers[STANCE]), max(toe, 0.05))
         self._calls += 1
-        off = max(-0.4, min(0.4, seen.place[1] - (self._line or 0.0)))
+        off = max(-0.4, min(0.4, seen.place[1] - (self._start_aside or 0.0)))
         way = seen.speed * math.sin(seen.course)
         state = np.array(
             [off, way, seen.heading, seen.turn_rate, seen.body_heading, seen.body_rate, self._load[0], self._load[1]]
@@ -157,7 +157,7 @@ class WedgeControl:
         """Capture point over a centre of pressure that may be shifted."""
         gravity, height = self.gravity.normal, self.body.height
         blade = max(0.0, min(1.0, 1.5 - seen.speed / 0.5))
-        rate = 1.0 / math.sqrt(self.roll / (self.body.mass * gravity * height) + blade * height / gravity)
+        rate = 1.0 / math.sqrt(self.roll_inertia / (self.body.mass * gravity * height) + blade * height / gravity)
         if seen.bears:
             aside = seen.across / max(seen.load, 100.0) - blade * posture.acceleration / gravity
             self._balanced.step(seen.height * aside, dt)
@@ -174,7 +174,7 @@ class WedgeControl:
         push = BY_EDGES * self.body.mass * self.gravity.normal * self.balance.error / self.body.height
         difference = max(-1.9 * force, min(1.9 * force, difference - full * push / math.cos(toe)))
         load = 0.5 * self.body.mass * self.gravity.normal
-        side = self.balance.pressure / self.stance
+        side = self.balance.pressure / self.stance_width
         loads = load * max(0.3, 1.0 + 2.0 * side), load * max(0.3, 1.0 - 2.0 * side)
         found = [
             min(GREATEST_EDGE, self.snow.edge(max(0.0, each), (n,), self.grip))

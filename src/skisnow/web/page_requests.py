@@ -97,11 +97,12 @@ def _run_action(act: Act, what: PageRequest) -> bool:
         _ASKED.reset(before)
 
 
-def _send_outcome(client: Client, what: PageRequest, *, fine: bool) -> None:
-    if what.number is not None:
-        client.run_javascript(f"lab.answered({what.number}, {'true' if fine else 'false'})")
-    elif what.once is not None:
-        client.run_javascript(f"lab.told({json.dumps(what.once)})")
+def _send_outcome(client: Client, request: PageRequest, *, fine: bool) -> None:
+    """Tell the waiting page by the request's number whether it was accepted, or by its key that it arrived."""
+    if request.number is not None:
+        client.run_javascript(f"lab.answered({request.number}, {'true' if fine else 'false'})")
+    elif request.once is not None:
+        client.run_javascript(f"lab.told({json.dumps(request.once)})")
 
 
 def _parse_request(message: Any) -> PageRequest:

@@ -26,7 +26,7 @@ COUNTED_EVERY_S: Final = 1.0
 
 
 def require_scheduler(address: str) -> None:
-    """Raise an error for an invalid scheduler before the work begins."""
+    """Reject an address without ``://``, and a missing Dask, before the work begins; nothing is connected."""
     if "://" not in address:
         raise ParameterError(
             "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, threads or processes.",

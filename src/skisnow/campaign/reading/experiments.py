@@ -195,7 +195,10 @@ def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingR
 
 
 def shear_tests(table: Table) -> ShearTests:
-    """Convert a valid table to shear experiments; one with turning angles has the row of its largest moment."""
+    """Shear experiments of a valid table: the largest moment, and means of density and cone depth, of each.
+
+    `turning` has all moments over turning angles.
+    """
     blocks = shear_blocks(table)
     moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
     largest = blocks.first_given(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])

@@ -88,7 +88,7 @@ class TomlValues:
                 Message("Put the numbers of {key} in brackets.", key=key),
             )
             return ()
-        checked = (self._checked(value, one) for one, value in quantity.each_of(values))
+        checked = (self._checked(value, one) for one, value in quantity.numbered(values))
         return tuple(value for value in checked if value is not None)
 
     def _checked(self, value: object, quantity: Quantity) -> float | None:

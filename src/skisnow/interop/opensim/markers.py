@@ -109,7 +109,7 @@ def read_trc(path: str | Path) -> Markers:
 
 
 def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> list[float]:
-    """Time, then three numbers for each marker; the frame's number is passed over."""
+    """Time, then three numbers for each marker, NaN in an empty cell; the number of the frame is left out."""
     cells = [cell.strip() for cell in line.split("\t")]
     wanted = 2 + 3 * len(names)
     cells += [""] * (wanted - len(cells))

@@ -192,12 +192,13 @@ def _models(penetration: Json, tag: str) -> Iterator[str]:
     for row in penetration["models"]:
         mark = "*" if row["id"] == chosen else " "
         rmse = "".join(f"{plain(row[key], 4):>9}" for key in ("rmse_N", "rmse_dof_N", "rmse_free_N"))
-        yield f"{mark} {row['id']:<32}{rmse}   {_coefficients(row)}".rstrip()
+        yield f"{mark} {row['id']:<32}{rmse}   {_law_coefficients(row)}".rstrip()
     yield f"* {penetration['selected']['reason']}"
     yield from (f"warning: {text}" for text in penetration["warnings"])
 
 
-def _coefficients(row: Json) -> str:
+def _law_coefficients(row: Json) -> str:
+    """Fitted coefficients of a law of the force, then its parameters at a bound."""
     terms = {"a": ("constant", "linear"), "b": ("constant", "linear")}
     fitted = [f"{name}0" for name, fits in terms.items() if row[name] in fits]
     fitted += [f"{name}1" for name in terms if row[name] == "linear" and row[f"{name}1"] is not None]

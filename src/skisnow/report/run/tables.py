@@ -195,7 +195,7 @@ def verification_table(verification: Json) -> Table:
 
 
 def gates_table(result: CourseResult) -> Table:
-    """Table with a row for each gate, times and poles with two decimals."""
+    """Outcome, time, speed and distance from the pole of each gate, a row each; the first fault as a note."""
     rows = [
         tuple(outcome_words(row[name]) if name in ("side", "outcome") else row[name] for name in COLUMNS)
         for row in gate_rows(result)
@@ -216,5 +216,5 @@ def gates_table(result: CourseResult) -> Table:
             Column("y_m", "y", "hundredths", unit="m"),
         ),
         rows,
-        note="" if fault is None else Message("First fault: {fault}.", fault=fault.words),
+        note="" if fault is None else fault.words,
     )
