@@ -82,7 +82,7 @@ def test_the_numbers_are_there_with_the_page_until_something_is_entered(
         Journals(store).append(id_, cancelled, seen=last)
     assert "1 penetration experiment" not in html(served, path)
     page.reload()
-    page.get_by_text("1 penetration experiment, 0 used").first.wait_for()
+    page.get_by_text("1 penetration experiment (0 used)").first.wait_for()
 
 
 PARTS = ("forebody", "afterbody")
