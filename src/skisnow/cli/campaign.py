@@ -139,7 +139,8 @@ OPTIONS: Final = {
     "plate": ("LENGTH", "length of the blade, such as '100 mm', or NAME=LENGTH for a name in the table"),
     "cells": (
         "KEY=VALUE",
-        "decimal=, or thousands=. for numbers typed as text; fill-down=yes for blank names and angles",
+        "decimal=, or thousands=. for numbers typed as text; fill-down=yes for blank names and angles; "
+        "hidden=no or struck=no to leave out rows that are hidden or struck through",
     ),
     "ignore": ("PLACE", "row, column or cell that is not imported: SHEET!5, SHEET!H, SHEET!H5"),
 }

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from openpyxl import Workbook
+from openpyxl.styles import Font
 from tests.coded import raises
 
 from skisnow._support.errors import OutputError, ParameterError
@@ -226,6 +227,42 @@ def _hidden_copy(book: Workbook) -> None:
     book["Alle Daten"].sheet_state = "hidden"
 
 
+def _empty_column(place: int) -> Callable[[Workbook], None]:
+    """A blank column within both tables."""
+
+    def insert(book: Workbook) -> None:
+        sheet = book["Hang oben"]
+        _unmerge(book)
+        for row in range(7, 13):
+            first = 7 if row < 10 else 10
+            sheet[f"A{row}"], sheet[f"B{row}"] = sheet[f"A{first}"].value, sheet[f"B{first}"].value
+        sheet.insert_cols(place)
+
+    return insert
+
+
+def _excluded_row(*, is_struck: bool) -> Callable[[Workbook], None]:
+    """A third reading of a test, which its author struck through or hid."""
+
+    def exclude(book: Workbook) -> None:
+        sheet = book["Hang oben"]
+        for column, value in zip("ABCD", ("3", 45, "50,0", "0,50"), strict=True):
+            sheet[f"{column}13"] = value
+            sheet[f"{column}13"].font = Font(strike=is_struck)
+        sheet.row_dimensions[13].hidden = not is_struck
+
+    return exclude
+
+
+def _hidden_measurements(book: Workbook) -> None:
+    """A hidden sheet with other depths."""
+    _second_sheet(book)
+    for row in range(7, 13):
+        book["Alle Daten"][f"D{row}"] = "0,50"
+    book["Alle Daten"]["E17"] = "11,5"
+    book["Alle Daten"].sheet_state = "hidden"
+
+
 TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
 
 
@@ -247,6 +284,9 @@ TOOLS = "Werkzeug: Skistück 20 x 6,2 cm; Scherblatt 10 cm"
         _exchanged(5, 12),
         _dates_as_text,
         _merged_to_the_right,
+        _empty_column(2),
+        _empty_column(3),
+        _empty_column(4),
         _set("Hang oben", "A3", "Ort: Hang oben"),
         _set("Hang oben", "C5", "Gewicht"),
         _set("Hang oben", "C5", "Masse"),
@@ -295,6 +335,9 @@ OPEN = [
     (_set("Hang oben", "D7", "0.63"), {}),
     (_set("Hang oben", "D7", "ca. 0,63"), {}),
     (_set("Hang oben", "F9", "1,59"), {"ignore": {"Hang oben!F": "yes"}}),
+    (_excluded_row(is_struck=True), {"cells": {"struck": "no"}}),
+    (_excluded_row(is_struck=False), {"cells": {"hidden": "no"}}),
+    (_hidden_measurements, {"cells": {"hidden": "no"}}),
     (_second_sheet, {"table": {"Alle Daten:5": "-", "Alle Daten:15": "-"}}),
 ]  # fmt: skip
 

@@ -12,6 +12,7 @@ import re
 import warnings
 import zipfile
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from datetime import date, datetime, time
 from functools import partial
 from typing import Any, Final, TypeAlias
@@ -71,26 +72,50 @@ def workbook_sheets(
         }
 
 
-def merged_ranges(data: bytes) -> dict[str, list[tuple[int, int, int, int]]]:
-    """Merged ranges of each sheet as top, left, bottom and right, counted from 0; errors as `workbook_sheets`."""
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Layout of a sheet; rows and columns count from 0.
+
+    merged: merged ranges as top, left, bottom and right.
+    is_hidden, hidden: True for a hidden sheet, and the hidden rows of any sheet.
+    struck: row and column of each cell that is struck through.
+    """
+
+    merged: tuple[tuple[int, int, int, int], ...]
+    is_hidden: bool
+    hidden: frozenset[int]
+    struck: frozenset[tuple[int, int]]
+
+
+def sheet_layouts(data: bytes) -> dict[str, Layout]:
+    """Layout of each sheet; errors as `workbook_sheets`."""
     _require_sound(data)
     from openpyxl import load_workbook
 
     with warnings.catch_warnings(), zipfile.ZipFile(io.BytesIO(data)) as archive:
         warnings.simplefilter("ignore")
         book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, keep_links=False))
-        merged = {}
-        for sheet in book.worksheets:
-            merged[sheet.title] = _undamaged(partial(_merged_in, archive, sheet._worksheet_path))
-        return merged
+        return {sheet.title: _undamaged(partial(_layout, archive, sheet)) for sheet in book.worksheets}
 
 
-def _merged_in(archive: zipfile.ZipFile, part: str) -> list[tuple[int, int, int, int]]:
+def _layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
     from openpyxl.utils.cell import range_boundaries
 
-    names = re.findall(rb"<(?:\w+:)?mergeCell\s[^>]*?ref=\"([A-Z]+[0-9]+:[A-Z]+[0-9]+)\"", archive.read(part))
+    text = archive.read(sheet._worksheet_path)
+    names = re.findall(rb"<(?:\w+:)?mergeCell\s[^>]*?ref=\"([A-Z]+[0-9]+:[A-Z]+[0-9]+)\"", text)
     bounds = (range_boundaries(name.decode()) for name in names)
-    return [(top - 1, left - 1, bottom - 1, right - 1) for left, top, right, bottom in bounds]
+    rows = re.findall(rb"<(?:\w+:)?row\s(?=[^>]*?\bhidden=\"(?:1|true)\")[^>]*?\br=\"([0-9]+)\"", text)
+    struck: Iterable[tuple[int, int]] = ()
+    if any(font.strike for font in sheet.parent._fonts):
+        sheet.reset_dimensions()
+        cells = (cell for row in sheet.iter_rows() for cell in row if cell.value is not None)
+        struck = ((cell.row - 1, cell.column - 1) for cell in cells if cell.font.strike)
+    return Layout(
+        tuple((top - 1, left - 1, bottom - 1, right - 1) for left, top, right, bottom in bounds),
+        sheet.sheet_state != "visible",
+        frozenset(int(row) - 1 for row in rows),
+        frozenset(struck),
+    )
 
 
 def _undamaged(doing: Callable[[], Any]) -> Any:

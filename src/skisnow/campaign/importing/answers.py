@@ -31,7 +31,8 @@ class Answers:
     column, unit: column or "-", and unit, by heading, or by TABLE.HEADING.
     site: site by sheet, or by heading row as SHEET:ROW.
     tool, plate: shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
-    cells: "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above.
+    cells: "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above;
+        "hidden", "struck": "yes" to import rows that are hidden or struck through, "no" to leave them out.
     ignore: rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
     """
 

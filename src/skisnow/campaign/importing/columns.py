@@ -27,10 +27,7 @@ from ..reading.headings import (
 from ..reading.table_forms import TableForm
 from .answers import NONE, Answers, Question, ask
 from .sections import NO_UNIT, Section
-from .sheets import column_letters
-
-FROM_NOTES: Final = ("site", "tool", "plate")
-"""Columns that a note can replace."""
+from .sheets import FROM_NOTES, column_letters
 
 
 @dataclass(frozen=True, slots=True)

@@ -248,7 +248,8 @@ def _merged(tables: Sequence[ImportedTable]) -> dict[str, str]:
     """Text of each CSV file."""
     by_form: dict[str, list[dict[str, str]]] = {}
     for table in tables:
-        by_form.setdefault(table.form.file, []).extend(row.cells for row in table.rows)
+        if table.rows:
+            by_form.setdefault(table.form.file, []).extend(row.cells for row in table.rows)
     return {file: table_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
 
 
@@ -330,4 +331,6 @@ def _at_source(name: str, problem: Problem, tables: Sequence[ImportedTable]) -> 
     if problem.row is None or not 2 <= problem.row < len(places) + 2:
         return problem
     sheet, row = places[problem.row - 2]
-    return replace(problem, file=f"{name}, sheet {sheet}", row=row)
+    place = f"{sheet}!{row}"
+    action = Message("{action} Or exclude the row with --ignore {place}.", action=problem.action, place=place)
+    return replace(problem, file=f"{name}, sheet {sheet}", row=row, action=action)

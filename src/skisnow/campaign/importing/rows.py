@@ -16,7 +16,7 @@ from ..reading.table_forms import TableForm
 from .answers import Answers, Question, ask, is_asked
 from .columns import ColumnChoice, number_columns
 from .sections import Section
-from .sheets import Ignored, column_letters
+from .sheets import HIDDEN, STRUCK, Ignored, column_letters
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",
@@ -32,6 +32,10 @@ _GROUPED: Final = {
 DECIMAL: Final = "decimal"
 THOUSANDS: Final = "thousands"
 FILL_DOWN: Final = "fill-down"
+EXCLUDED: Final = {
+    HIDDEN: Message("a hidden row or sheet; yes imports it, no leaves it out"),
+    STRUCK: Message("a cell that is struck through; yes imports its row, no leaves it out"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +95,8 @@ def stored_rows(
             open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=cells.get(form.key)))
         _fill_down(section, row, cells, above, form, answers, open_)
         above = dict(cells)
+        if _is_excluded(section, row, [choice.place for choice in used.values()], answers, open_):
+            continue
         for name in numbers:
             if name in used and cells[name]:
                 choice = used[name]
@@ -199,6 +205,20 @@ def _fill_down(
             open_.append(
                 ask("cells", FILL_DOWN, section.key, row=row + 1, value=value, choices=("yes",), proposed="yes")
             )
+
+
+def _is_excluded(
+    section: Section, row: int, places: Sequence[int], answers: Answers, open_: list[Question | Problem]
+) -> bool:
+    """True if the user leaves out rows that are hidden or have cells that are struck through; a question without it."""
+    reasons = [
+        reason for reason, cells in section.sheet.excluded.items() if any((row, place) in cells for place in places)
+    ]
+    for reason in reasons:
+        if reason not in answers.cells and not is_asked(open_, "cells", reason):
+            value = EXCLUDED[reason]
+            open_.append(ask("cells", reason, section.key, row=row + 1, value=value, choices=("yes", "no")))
+    return any(answers.cells.get(reason) == "no" for reason in reasons)
 
 
 def _is_summary(cells: dict[str, str], form: TableForm) -> bool:

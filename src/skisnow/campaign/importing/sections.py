@@ -19,7 +19,7 @@ from ..reading.headings import (
 )
 from ..reading.table_forms import TableForm
 from .answers import NONE, Answers
-from .sheets import KINDS, Ignored, Sheet, is_plain_number
+from .sheets import FROM_NOTES, KINDS, Ignored, Sheet, is_plain_number
 
 _FEWEST_HEADINGS: Final = 2
 NO_UNIT: Final = frozenset({"", "-", "–", "#", "nr", "nr.", "no", "no."})
@@ -85,7 +85,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
         if answer == NONE or ignored.row(sheet.name, row):
             continue
         taken, below = below, set()
-        groups = [group for group in _groups(sheet, (row,), ignored) if not taken & set(group)]
+        groups = [group for group in _table_groups(sheet, row, ignored) if not taken & set(group)]
         single = [group for group in groups if answer or _is_header(_texts(sheet, row, group))]
         pairs = [] if answer else [pair for pair in _pairs(sheet, row, groups, ignored) if not taken & set(pair)]
         heads += [(row, group, 1) for group in single if not any(set(group) & set(pair) for pair in pairs)]
@@ -167,6 +167,34 @@ def _groups(sheet: Sheet, rows: Sequence[int], ignored: Ignored) -> Iterator[ran
             start = column + 1
 
 
+def _table_groups(sheet: Sheet, row: int, ignored: Ignored) -> list[range]:
+    """Groups of a row; one range across empty columns if only all its groups have the columns of a table."""
+    groups = list(_groups(sheet, (row,), ignored))
+    end = next((at for at in range(row, len(sheet.filled)) if not any(sheet.filled[at])), len(sheet.filled))
+    headed = [column for column in range(len(sheet.filled[row])) if sheet.cell(row, column, filled=True)]
+    if not headed:
+        return groups
+    whole = range(headed[0], headed[-1] + 1)
+    words = {heading_words(text) for text in _texts(sheet, row, whole) if text}
+    is_one = (
+        len(headed) < len(whole)
+        and len(words) == len(headed)
+        and all(column in headed or _is_empty(sheet, column, range(row, end)) for column in whole)
+        and not any(ignored.column(sheet.name, column) for column in whole)
+        and _is_complete(sheet, row, whole)
+        and not any(_is_complete(sheet, row, group) for group in groups)
+    )
+    return [whole] if is_one else groups
+
+
+def _is_complete(sheet: Sheet, row: int, columns: range) -> bool:
+    """True if headings state or are likely to state all required columns of a table that no note can replace."""
+    texts = [text for text in _texts(sheet, row, columns) if text]
+    return any(
+        set(form.required) - set(FROM_NOTES) <= set(likely_columns(form, texts).values()) for form in KINDS.values()
+    )
+
+
 def _texts(sheet: Sheet, row: int, columns: range) -> list[str]:
     return [sheet.cell(row, column, filled=True) for column in columns]
 
@@ -210,7 +238,13 @@ def _section(
     end = min(later, default=len(sheet.rows))
     while end > start and _is_title(sheet, end - 1, columns):
         end -= 1
-    return Section(sheet, row, start, end, tuple(columns), headings, units, columns)
+    used = [place for place, column in enumerate(columns) if not _is_empty(sheet, column, range(row, end))]
+    headings, units = tuple(headings[place] for place in used), tuple(units[place] for place in used if units)
+    return Section(sheet, row, start, end, tuple(columns[place] for place in used), headings, units, columns)
+
+
+def _is_empty(sheet: Sheet, column: int, rows: range) -> bool:
+    return not any(sheet.cell(row, column, filled=True) for row in rows)
 
 
 def _is_title(sheet: Sheet, row: int, columns: range) -> bool:
@@ -232,7 +266,10 @@ def _split_series(sections: Sequence[Section], ignored: Ignored) -> list[Section
     headings with one text for each series becomes a column with this text in all rows of the series.
     """
     series = [part for section in sections for part in _repeated_parts(section)]
-    own = [[heading_words(part.headings[part.columns.index(place)]) for place in part.own] for part in series]
+    own = [
+        [heading_words(text) for place, text in zip(part.columns, part.headings, strict=True) if place in part.own]
+        for part in series
+    ]
     if len(series) > 1 and all(words == own[0] for words in own) and not _names_tests(series[0].headings):
         return _with_titles(series, ignored)
     return series

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Final
 
 from ..._support.errors import ParameterError
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
 from ..._support.user_files import workbook_sheets
-from ..._support.user_files.workbook import Rows, merged_ranges
+from ..._support.user_files.workbook import Layout, Rows, sheet_layouts
 from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
 from ..reading.text import CsvText, UnreadableTextError, decode
 from ..reading.workbook_files import is_workbook
 
 _LETTERS: Final = 26
+HIDDEN: Final = "hidden"
+STRUCK: Final = "struck"
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +30,7 @@ class Sheet:
     rows, filled: cells as written, and with the first cell of each merged range in all rows of the range.
     fractions: row and column of cells of `filled` that are numbers, not text: they have a decimal point.
     separator: separator of a CSV file, "" for a workbook.
+    excluded: row and column of cells that the author may have excluded, by reason: HIDDEN or STRUCK.
     """
 
     name: str
@@ -35,6 +38,7 @@ class Sheet:
     filled: Rows
     fractions: frozenset[tuple[int, int]] = frozenset()
     separator: str = ""
+    excluded: Mapping[str, frozenset[tuple[int, int]]] = field(default_factory=dict)
 
     def cell(self, row: int, column: int, *, filled: bool = False) -> str:
         """Text of a cell, "" outside of the sheet; rows and columns count from 0."""
@@ -63,25 +67,29 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
     if not is_workbook(name):
         rows, separator = _csv_rows(name, data, count or _headings)
         return [Sheet(PurePath(name).stem, rows, rows, separator=separator)]
-    merged = merged_ranges(data)
+    layouts = sheet_layouts(data)
     fractions: dict[str, list[tuple[int, int]]] = {}
     sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
-    return [_sheet(title, rows, merged[title], set(fractions[title])) for title, rows in sheets.items() if rows]
+    return [_sheet(title, rows, layouts[title], set(fractions[title])) for title, rows in sheets.items() if rows]
 
 
-def _sheet(
-    title: str, rows: Rows, ranges: Sequence[tuple[int, int, int, int]], fractions: set[tuple[int, int]]
-) -> Sheet:
+def _sheet(title: str, rows: Rows, layout: Layout, fractions: set[tuple[int, int]]) -> Sheet:
     """Sheet with the first cell of each merged range in all its rows."""
     filled = [list(cells) for cells in rows]
-    for top, left, bottom, _ in ranges:
+    for top, left, bottom, _ in layout.merged:
         if top >= len(rows) or left >= len(rows[top]):
             continue
         for row in range(top + 1, min(bottom + 1, len(rows))):
             filled[row].extend([""] * (left + 1 - len(filled[row])))
             filled[row][left] = rows[top][left]
             fractions |= {(row, left)} if (top, left) in fractions else set()
-    return Sheet(title, rows, filled, frozenset(fractions))
+    hidden = {
+        (row, column)
+        for row in (range(len(rows)) if layout.is_hidden else layout.hidden & set(range(len(rows))))
+        for column in range(len(rows[row]))
+    }
+    excluded = {HIDDEN: frozenset(hidden), STRUCK: layout.struck}
+    return Sheet(title, rows, filled, frozenset(fractions), excluded=excluded)
 
 
 def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> tuple[Rows, str]:
@@ -122,6 +130,8 @@ _HEADING_ROWS: Final = 1000
 """First rows of a CSV file, whose headings tell its separator."""
 KINDS: Final = {name: form for name, form in FORMS.items() if form in TABLES and form is not SNOW_MICRO_PEN}
 """Tables that can be imported."""
+FROM_NOTES: Final = ("site", "tool", "plate")
+"""Columns that a note can replace."""
 
 
 def is_plain_number(text: str) -> bool:

@@ -12,7 +12,8 @@ from nicegui import run, ui
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, template
 from ...campaign.importing import Answers, ColumnChoice, ImportedTable, Proposal, Question
-from ...campaign.importing.columns import FROM_NOTES, number_columns
+from ...campaign.importing.columns import number_columns
+from ...campaign.importing.sheets import FROM_NOTES
 from ...campaign.reading.headings import units_for
 from ..elements import Outcome, Words, add_head, add_items, button, choice, field
 from ..layout import error_sentence, framed, heading, sentence
