@@ -32,8 +32,8 @@ ODD = 'a "b" \\n <i>&c\\'
 
 def options(page: Sheet, key: str) -> list[tuple[str, str, bool]]:
     """Value, words and whether it is chosen, of each entry of a menu."""
-    (menu,) = (each for each in page.tagged("select") if each.props["name"] == key)
-    assert menu.props["id"] == f"replay-{key}"
+    (menu,) = (each for each in page.tagged("select") if each.props["id"] == f"replay-{key}")
+    assert menu.props["name"] == key
     found = [each.props for slot in menu.slots.values() for each in slot.children]
     return [(each["value"], each["label"], "selected" in each) for each in found]
 
