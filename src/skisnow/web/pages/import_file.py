@@ -27,6 +27,8 @@ HERE: Final = "/"
 NONE: Final = "-"
 LEFT_OUT: Final = Message("excluded")
 TEXT: Final = Message("kept as text")
+YES: Final = Message("yes")
+NO: Final = Message("no")
 _SHOWN_ROWS: Final = 4
 _READABLE: Final = 6
 """Characters of a number with five digits and a decimal sign."""
@@ -37,10 +39,14 @@ QUESTIONS: Final = {
     "site": template("Which site is the sheet {key}?"),
     "tool": template("Tool with lengths and unit, such as ski 200 x 62 mm {key}"),
     "plate": template("Length of the blade with unit, such as 100 mm {key}"),
-    "cells": template("How are the cells written ({key})?"),
     "ignore": template("Leave out {key}?"),
+    "decimal": template("Which decimal mark do the numbers have?"),
+    "thousands": template("Which mark separates the thousands?"),
+    "fill-down": template("Fill blank names and angles from the row above?"),
+    "hidden": template("Import hidden rows and sheets?"),
+    "struck": template("Import rows that are struck through?"),
 }
-"""Question of each option of the command."""
+"""Question of each option of the command, or of each key of --cells."""
 
 
 def add_page(lab: Lab) -> None:
@@ -102,7 +108,8 @@ class _Import:
             _list_problems(proposal)
             for table in proposal.tables:
                 self._table(table, proposal.tables)
-                _show_rows(table)
+                if table.rows:
+                    _show_rows(table)
         self._store.set_enabled(not proposal.problems)
         if proposal.problems:
             count = len(proposal.problems)
@@ -114,14 +121,16 @@ class _Import:
             self._status.say(Message("Ready."))
 
     def _question(self, question: Question) -> None:
-        words = Message(QUESTIONS[question.option], key=question.key)
+        words = Message(QUESTIONS[question.key if question.option == "cells" else question.option], key=question.key)
         with ui.element("div").classes("card ask"):
+            if question.choices:
+                sentence(words)
             sentence(question.problem.value or "", "quiet")
             if question.option == "ignore":
                 button(words, lambda: self._answer(question.option, question.key, "yes"))
             elif question.choices:
                 options = {text: _choice_words(text) for text in question.choices}
-                made = choice(words, options, None)
+                made = choice(Message("Answer"), options, None)
                 made.on_value_change(lambda event: self._answer(question.option, question.key, event.value))
                 if question.proposed:
                     self._proposal(question)
@@ -195,6 +204,8 @@ def _with_unit(column: ColumnChoice) -> str:
 
 
 def _choice_words(text: str) -> str:
+    if text in {"yes", "no"}:
+        return said(YES if text == "yes" else NO)
     return said(LEFT_OUT) if text == NONE else said(TABLES.get(f"{text}.csv", label(text)))
 
 
