@@ -92,10 +92,9 @@ class TrackFolders:
         _require_allowed(placing)
         if len(self.names()) >= MOST_TRACKS:
             raise ParameterError(
-                "{most} tracks are stored already; remove some from the folder {folder} of the lab",
+                "{most} tracks are stored already; remove some on the page Replay",
                 code="too_many_files",
                 most=MOST_TRACKS,
-                folder=TRACKS_FOLDER,
             )
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -141,6 +140,18 @@ class TrackFolders:
                 name=name,
             )
         return places[0], placing
+
+    def remove(self, name: str) -> None:
+        """Remove a track.
+
+        Raises ParameterError: the lab has no such track.
+        Raises OutputError: the folder cannot be written.
+        """
+        place = self.file(name)[0].parent
+        try:
+            shutil.rmtree(place)
+        except OSError as error:
+            raise cannot_write(place, error) from error
 
     def beside(self, name: str, replay: Replay, *, read: Read | None = None) -> ReplayTrack:
         """A track in the axes of a run.

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Final
 from urllib.parse import quote
 
 from nicegui import app, ui
 
+from ..._support.errors import SkisnowError
 from ..._support.messages import Message
 from ..._support.user_files import GivenError, read_record
 from ...report.formatting import counted
 from ...report.track.summary import GPX_FILE, TURNS_FILE
-from ..elements import Words, folded, link, named
+from ..elements import Outcome, Words, button, folded, link, named
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
-from ..layout import framed, heading, sentence
+from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import file_input, submit_button, text_input, upload_form
 from ..replay_addresses import (
     GATES,
@@ -73,8 +75,27 @@ def add_page(lab: Lab) -> None:
                     link(Message("Turns of {name}", name=name), f"{TURNS}{asked}")
                     for file, words in files.items():
                         named(link(words, f"{TURNS}/{file}{asked}"), Message("{words}: {name}", words=words, name=name))
+                    _removal(tracks, name)
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))
+
+
+def _removal(tracks: TrackFolders, name: str) -> None:
+    """Button that removes a track after a question of the browser."""
+
+    def remove() -> None:
+        try:
+            tracks.remove(name)
+        except SkisnowError as error:
+            failed.say(error_sentence(error), bad=True)
+        else:
+            ui.navigate.to(PATH)
+
+    question = json.dumps(said(Message("Remove the track {name}? This cannot be undone.", name=name)))
+    removing = button(Message("Remove"), None, "small")
+    named(removing, Message("Remove {name}", name=name))
+    removing.on("click", remove, js_handler=f"() => {{ if (confirm({question})) emit(); }}")
+    failed = Outcome()
 
 
 def _add_run(place: Path, name: str, title: str) -> None:

@@ -92,6 +92,8 @@ def test_a_track_that_was_imported_is_chosen_for_a_run_alone(desk: Desk, run_fil
     assert options(page, "ghost")[0] == ("", "none", True)
     assert options(page, "track") == [("", "none", False), (name, name, True)]
     assert "[good]" not in "".join(desk.open("/replay?track=nothing").outline())
+    page.press(f"Remove {name}")
+    assert TrackFolders(desk.lab.runs).names() == []
 
 
 def test_a_track_of_a_receiver_without_a_direction_has_turns_but_is_not_put_next_to_a_run(
