@@ -23,7 +23,7 @@ Json: TypeAlias = Mapping[str, Any]
 
 _PANELS: Final = (
     ("edge_depth_mm", Message("edge depth $e$ (mm)")),
-    ("force_per_length_N_per_m", Message("normal force per length (N/m)")),
+    ("force_per_length_N_per_m", Message("normal force\nper length (N/m)")),
     ("bending_mm", Message("deflection (mm)")),
     ("twist_deg", Message("twist (°)")),
 )
