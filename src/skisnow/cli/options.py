@@ -67,7 +67,7 @@ def add_language(parser: argparse.ArgumentParser, what: str = "the page and the 
         "--language",
         choices=languages(),
         default=ENGLISH,
-        help=f"of {what}; files that programs read stay as they are (default: en)",
+        help=f"of {what}; other printed text and files that programs read are English (default: en)",
     )
 
 
