@@ -62,7 +62,7 @@ def test_the_ski_follows_its_sliders(desk: Desk, name: str, stop: int, shown: st
     assert headlines(page) == [radius("slalom, designed", first), radius("slalom", first)]
     move(page, name, stop)
     found = carved(changes)
-    assert f"{name}: {shown.replace("-", "−")}" in page.outline()
+    assert f"{name}: {shown.replace('-', '−')}" in page.outline()
     page.until(lambda: peak(found) in page.outline())
     assert headlines(page) == [radius("slalom, designed", found), radius("slalom", first)]
     page.press("Download the file")
