@@ -196,6 +196,7 @@ def test_a_notebook_shows_values_and_a_small_figure_of_snow_ski_run_and_answer(o
 def test_the_small_figure_has_its_points_in_proportion() -> None:
     nan = float("nan")
     svg = SmallFigure("x", "y", [((0.0, 5.0, nan, 10.0), (0.0, 4.0, 1.0, 2.0))]).svg()
+    assert 'fill="currentColor"' in svg  # texts are seen on a dark page, too
     (points,) = re.findall(r'points="([^"]*)"', svg)
     places = [tuple(map(float, pair.split(","))) for pair in points.split()]
     assert len(places) == 3

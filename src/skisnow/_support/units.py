@@ -332,8 +332,9 @@ class SmallFigure(NamedTuple):
         turned = f'<text transform="translate(12 {(HEIGHT - BELOW + 10) / 2}) rotate(-90)" text-anchor="middle">'
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" role="img" '
-            f'font-family="sans-serif" font-size="10"><path d="M{LEFT} 10V{HEIGHT - BELOW}H{right}" fill="none" '
-            f'stroke="#888"/>{drawn}{words}{turned}{escape(self.y_label)}</text></svg>'
+            'font-family="sans-serif" font-size="10" fill="currentColor">'
+            f'<path d="M{LEFT} 10V{HEIGHT - BELOW}H{right}" fill="none" stroke="#888"/>'
+            f"{drawn}{words}{turned}{escape(self.y_label)}</text></svg>"
         )
 
     def _drawn(self, line: FloatArray, colour: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -215,8 +216,9 @@ class Analysis(Shown):
 
 
 def _own(mean: OwnValue, unit: str) -> str:
-    """A mean over the campaign with its interval, in the unit that it is held in."""
-    return f"{amount(mean.value, unit)} ({span(mean.low, mean.high)})"
+    """A mean over the campaign with its interval, if it has one, in the unit that it is held in."""
+    interval = "no interval" if math.isnan(mean.low) else span(mean.low, mean.high)
+    return f"{amount(mean.value, unit)} ({interval})"
 
 
 def analyse(
