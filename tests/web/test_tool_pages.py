@@ -184,10 +184,10 @@ def test_a_ski_is_designed_on_a_telephone(page: Page, served: Served, tmp_path: 
     headline.get_by_text("slalom, designed: carved radius 12.0 m").wait_for()
     assert fits(page)
     for slider, shown in (
-        ("Sidecut, tip and tail (mm)", re.compile(r"tip and tail \(mm\): -6\.?5?$")),
-        ("Waist (mm)", re.compile(r"Waist \(mm\): -0\.5$")),
-        ("Tip (mm)", re.compile(r"^Tip \(mm\): -0\.5$")),
-        ("Tail (mm)", re.compile(r"^Tail \(mm\): -0\.5$")),
+        ("Sidecut, tip and tail (mm)", re.compile(r"tip and tail \(mm\): −6\.?5?$")),
+        ("Waist (mm)", re.compile(r"Waist \(mm\): −0\.5$")),
+        ("Tip (mm)", re.compile(r"^Tip \(mm\): −0\.5$")),
+        ("Tail (mm)", re.compile(r"^Tail \(mm\): −0\.5$")),
         ("EI before the middle ×", re.compile(r"before the middle ×: 0\.95$")),
         ("Edge angle (°)", re.compile(r"angle \(°\): 44$")),
     ):
