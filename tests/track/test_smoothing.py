@@ -161,6 +161,15 @@ def test_input_that_cannot_be_smoothed_is_rejected(points: int, options: dict[st
         smooth_track(made, **options)
 
 
+def test_points_that_are_closer_than_those_of_a_receiver(tmp_path: Path) -> None:
+    path = tmp_path / "dense.csv"
+    path.write_text(
+        "\n".join(["time_s,x_m,y_m,z_m", *(f"{time}e-300,{time},0,0" for time in range(20)), "1e-9,20,0,0"])
+    )
+    with raises(ParameterError, "too_many_points", name="dense.csv", least=1e-6):
+        track_summary(read_track(path))
+
+
 def test_more_points_at_one_time_than_a_window_holds(tmp_path: Path) -> None:
     path = tmp_path / "crowded.csv"
     rows = [f"{time},{10 * time},0,0" for time in (0, 1, 2, *[3] * (MOST_IN_WINDOW + 5), 4, 5, 6)]

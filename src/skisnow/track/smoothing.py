@@ -15,6 +15,8 @@ from .._support.units import ShownFields
 from .local_cubic import FEWEST_POINTS, TERMS, LocalCubic, WeightedValues, local_cubic
 from .track import GAP_FACTOR, Track
 
+SHORTEST_INTERVAL: Final = 1e-6
+"""Time (s) between points, as the median, below which it is not one of a receiver (modelling assumption)."""
 SHORTEST_WINDOW: Final = 0.8
 """Default length (s) of the window where points are dense. Modelling assumption: a slalom turn takes 0.8 to 1 s."""
 MOST_IN_WINDOW: Final = 10_000
@@ -80,6 +82,15 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
             fewest=FEWEST_POINTS,
         )
     step = _interval(track.time[usable])
+    if step < SHORTEST_INTERVAL:
+        raise ParameterError(
+            "{name}: the points are {interval:.3g} s apart. Allowed: at least {least:g} s. Check the column of times "
+            "and its unit",
+            code="too_many_points",
+            name=track.name,
+            interval=step,
+            least=SHORTEST_INTERVAL,
+        )
     length = max(SHORTEST_WINDOW, POINTS_IN_WINDOW * step) if window is None else window
     part = parts(track, usable)
     windows = window_bounds(track.time, part, length)
