@@ -1,4 +1,4 @@
-"""Many cases of one reader in a process of their own, which may hang, crash or take memory."""
+"""Many cases of one reader in a child process, since a case may hang, crash or take memory."""
 
 import json
 import os

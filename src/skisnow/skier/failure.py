@@ -75,7 +75,7 @@ def cause_of(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> C
     Parameters
     ----------
     records
-        Of the run, up to then.
+        The run until the fall or the gate.
     skier
         Its limits.
     weight

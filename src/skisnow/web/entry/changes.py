@@ -195,7 +195,7 @@ REFUSED: Final = {
     "insecure": Message("The browser gives a position only to an encrypted page: start the lab with --certificate."),
     "unavailable": Message("The device found no position. Try again under the open sky."),
 }
-"""What the browser answers instead of a photo or a position."""
+"""Messages for the answers of a browser that has no photo or position."""
 
 
 class Attachments:
