@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 from openpyxl import Workbook
+from openpyxl.cell.rich_text import CellRichText, TextBlock
+from openpyxl.cell.text import InlineFont
 from openpyxl.styles import Font
 from tests.coded import raises
 
@@ -254,6 +256,22 @@ def _excluded_row(*, is_struck: bool) -> Callable[[Workbook], None]:
     return exclude
 
 
+def _partly_struck(book: Workbook) -> None:
+    """A further test with a depth that its author replaced within the cell."""
+    _excluded_row(is_struck=False)(book)
+    sheet = book["Hang oben"]
+    sheet.row_dimensions[13].hidden = False
+    sheet["D13"] = CellRichText(TextBlock(InlineFont(strike=True), "0,5"), "1")
+
+
+def _hidden_column(book: Workbook) -> None:
+    """A hidden column with other loads."""
+    sheet = book["Hang oben"]
+    for row, value in enumerate(("Last", "kg", *["99"] * 6), start=5):
+        sheet[f"F{row}"] = value
+    sheet.column_dimensions["F"].hidden = True
+
+
 def _hidden_measurements(book: Workbook) -> None:
     """A hidden sheet with other depths."""
     _second_sheet(book)
@@ -338,6 +356,8 @@ OPEN = [
     (_excluded_row(is_struck=True), {"cells": {"struck": "no"}}),
     (_excluded_row(is_struck=False), {"cells": {"hidden": "no"}}),
     (_hidden_measurements, {"cells": {"hidden": "no"}}),
+    (_hidden_column, {"cells": {"hidden": "no"}}),
+    (_partly_struck, {"ignore": {"Hang oben!13": "yes"}}),
     (_second_sheet, {"table": {"Alle Daten:5": "-", "Alle Daten:15": "-"}}),
 ]  # fmt: skip
 
@@ -356,6 +376,24 @@ def test_what_is_not_stated_is_an_error_until_it_is_answered(
         assert f"--{question.option}" in str(question.problem)
     if answers:
         require_right(propose(FILE, data, Answers(**answers)))
+
+
+def test_tests_of_one_name_and_site_on_two_sheets_are_kept_apart_by_the_sheet() -> None:
+    book = everyday()
+    first = book["Hang oben"]
+    first["A3"] = "Ort: Hang"
+    second = book.copy_worksheet(first)
+    first.title, second.title, second["E17"].value = "Tag 1", "Tag 2", "23,2"
+    for row in range(7, 13):
+        second[f"D{row}"] = f"1,{row:02d}"
+    (question,) = propose(FILE, bytes_of(book)).questions
+    proposal = propose(FILE, bytes_of(book), Answers().with_(question.option, question.key, question.proposed))
+    campaign = campaign_of_files(proposal.files)
+    assert campaign.penetration is not None
+    assert set(campaign.penetration.site) == {"Hang"}
+    assert [name[:5] for name in campaign.penetration.experiment] == ["Tag 1", "Tag 1", "Tag 2", "Tag 2"]
+    last = campaign.penetration.first[1:] - 1
+    assert campaign.penetration.penetration_depth[last].tolist() == pytest.approx([1.41e-3, 1.59e-3, 1.09e-3, 1.12e-3])
 
 
 def test_thousands_separators_are_not_decimal_marks() -> None:

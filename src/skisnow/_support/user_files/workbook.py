@@ -77,14 +77,16 @@ class Layout:
     """Layout of a sheet; rows and columns count from 0.
 
     merged: merged ranges as top, left, bottom and right.
-    is_hidden, hidden: True for a hidden sheet, and the hidden rows of any sheet.
-    struck: row and column of each cell that is struck through.
+    is_hidden, hidden, hidden_columns: True for a hidden sheet, and the hidden rows and columns of any sheet.
+    struck, partly_struck: row and column of each cell that is struck through, as a whole or in a part of its text.
     """
 
     merged: tuple[tuple[int, int, int, int], ...]
     is_hidden: bool
     hidden: frozenset[int]
+    hidden_columns: frozenset[int]
     struck: frozenset[tuple[int, int]]
+    partly_struck: frozenset[tuple[int, int]]
 
 
 def sheet_layouts(data: bytes) -> dict[str, Layout]:
@@ -104,7 +106,9 @@ def _layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
     text = archive.read(sheet._worksheet_path)
     names = re.findall(rb"<(?:\w+:)?mergeCell\s[^>]*?ref=\"([A-Z]+[0-9]+:[A-Z]+[0-9]+)\"", text)
     bounds = (range_boundaries(name.decode()) for name in names)
-    rows = re.findall(rb"<(?:\w+:)?row\s(?=[^>]*?\bhidden=\"(?:1|true)\")[^>]*?\br=\"([0-9]+)\"", text)
+    hidden = rb"\s(?=[^>]*?\bhidden=\"(?:1|true)\")"
+    rows = re.findall(rb"<(?:\w+:)?row" + hidden + rb"[^>]*?\br=\"([0-9]+)\"", text)
+    spans = re.findall(rb"<(?:\w+:)?col" + hidden + rb"(?=[^>]*?\bmin=\"([0-9]+)\")[^>]*?\bmax=\"([0-9]+)\"", text)
     struck: Iterable[tuple[int, int]] = ()
     if any(font.strike for font in sheet.parent._fonts):
         sheet.reset_dimensions()
@@ -114,8 +118,30 @@ def _layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
         tuple((top - 1, left - 1, bottom - 1, right - 1) for left, top, right, bottom in bounds),
         sheet.sheet_state != "visible",
         frozenset(int(row) - 1 for row in rows),
+        frozenset(at for first, last in spans for at in range(int(first) - 1, min(int(last), MOST_COLUMNS))),
         frozenset(struck),
+        frozenset(_partly_struck(archive, text)),
     )
+
+
+_STRIKE: Final = re.compile(rb"<(?:\w+:)?strike(?:\s+val=\"(?:1|true)\")?\s*/>")
+
+
+def _partly_struck(archive: zipfile.ZipFile, sheet: bytes) -> Iterable[tuple[int, int]]:
+    """Row and column of cells with a run of text that is struck through; openpyxl joins the runs of a cell."""
+    from openpyxl.utils.cell import coordinate_to_tuple
+
+    name = next((name for name in archive.namelist() if name.lower().endswith("/sharedstrings.xml")), None)
+    texts = re.findall(rb"<(?:\w+:)?si\s*/>|<(?:\w+:)?si\b.*?</(?:\w+:)?si>", archive.read(name) if name else b"", re.S)
+    struck = {b"%d" % index for index, text in enumerate(texts) if _STRIKE.search(text)}
+    for cell in (
+        re.finditer(rb"<(?:\w+:)?c\s([^>]*)>(.*?)</(?:\w+:)?c>", sheet, re.S) if struck or b"strike" in sheet else ()
+    ):
+        place = re.search(rb"\br=\"([A-Z]+[0-9]+)\"", cell[1])
+        index = re.search(rb"<(?:\w+:)?v>([0-9]+)<", cell[2]) if b't="s"' in cell[1] else None
+        if place and ((index and index[1] in struck) or _STRIKE.search(cell[2])):
+            row, column = coordinate_to_tuple(place[1].decode())
+            yield row - 1, column - 1
 
 
 def _undamaged(doing: Callable[[], Any]) -> Any:

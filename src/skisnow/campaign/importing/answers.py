@@ -32,7 +32,8 @@ class Answers:
     site: site by sheet, or by heading row as SHEET:ROW.
     tool, plate: shape with lengths, such as "ski 200 x 62 mm" and "100 mm", by the name in the table; "" for all rows.
     cells: "decimal" and "thousands": "," or "."; "fill-down": "yes" if a blank name or angle is that of the row above;
-        "hidden", "struck": "yes" to import rows that are hidden or struck through, "no" to leave them out.
+        "hidden", "struck": "yes" to import what is hidden or struck through, "no" to leave it out; "by-sheet": "yes" if
+        tests of one name and site are different ones in each table.
     ignore: rows, columns and cells that are not imported, as SHEET!5, SHEET!H or SHEET!H5, each with "yes".
     """
 
@@ -192,10 +193,15 @@ WORDS = {
     "site": Message("a stated site"),
     "tool": Message("a stated tool with its lengths and their unit"),
     "plate": Message("a stated length of the blade with its unit"),
-    "cells": Message("a stated way of writing"),
+    "decimal": Message("numbers with one decimal mark"),
+    "thousands": Message("numbers without thousands separators"),
+    "fill-down": Message("a name and an angle in each row"),
+    "hidden": Message("visible rows, columns and sheets"),
+    "struck": Message("rows without cells that are struck through"),
+    "by-sheet": Message("a name that only one test of a site has"),
     "ignore": Message("rows and notes without a doubt"),
 }
-"""Required statement of each option."""
+"""Required statement of each option, or of each key of --cells."""
 
 
 def ask(
@@ -216,7 +222,8 @@ def ask(
         if choices
         else Message("State it in the file or by {option}.", option=text)
     )
-    problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=WORDS[option], action=action)
+    allowed = WORDS[key if option == "cells" else option]
+    problem = error("not_stated", place, row=row, column=key or None, value=value, allowed=allowed, action=action)
     return Question(option, key, choices, proposed, problem)
 
 

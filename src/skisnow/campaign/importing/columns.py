@@ -27,7 +27,7 @@ from ..reading.headings import (
 from ..reading.table_forms import TableForm
 from .answers import NONE, Answers, Question, ask
 from .sections import NO_UNIT, Section
-from .sheets import FROM_NOTES, column_letters
+from .sheets import EXCLUDED, FROM_NOTES, HIDDEN, column_letters
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +56,9 @@ def choose_columns(
 ) -> list[ColumnChoice]:
     """Columns of a section; open questions and errors are added to `open_`."""
     table = form.file.removesuffix(".csv")
+    if section.sheet.hidden_columns & set(section.columns) and HIDDEN not in answers.cells:
+        open_.append(ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no")))
+        return []
     stated = [_stated(form, answers.of_heading("column", table, heading), heading) for heading in section.headings]
     open_.extend(_bad_answers(section, form, answers))
     open_.extend(_column_questions(section, form, stated))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Final
@@ -21,10 +21,11 @@ from ..records import Campaign
 from .answers import NONE, Answers, Question, ask, is_asked
 from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
 from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
-from .rows import ImportedTable, stored_rows
+from .rows import ImportedTable, StoredRow, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
-from .sheets import KINDS, Ignored, Sheet, read_sheets
+from .sheets import HIDDEN, KINDS, Ignored, Sheet, read_sheets
 
+BY_SHEET: Final = "by-sheet"
 SOFTEST: Final = 1e-4
 HARDEST: Final = 1e3
 """Median H_V (N/mm³) far beyond the range of 0.022 to 90 that was measured (assumption)."""
@@ -57,7 +58,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     answers: answers to questions of an earlier proposal, or of a template.
     Raises GivenError or ParameterError: the file cannot be read.
     """
-    ignored = Ignored(frozenset(answers.ignore))
+    ignored = Ignored(frozenset(answers.ignore), answers.cells.get(HIDDEN) == "no")
     sheets = read_sheets(name, data)
     sections = {sheet.name: find_sections(sheet, answers.table, ignored) for sheet in sheets}
     open_: list[Question | Problem] = []
@@ -113,7 +114,9 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
             texts = [
                 cell.strip()
                 for column, cell in enumerate(cells)
-                if cell.strip() and not any(section.has(row, column) for section in inside)
+                if cell.strip()
+                and not ignored.hides(sheet, column)
+                and not any(section.has(row, column) for section in inside)
             ]
             if texts and not ignored.row(sheet.name, row):
                 notes.append(Note(sheet.name, row + 1, ": ".join(texts)))
@@ -195,7 +198,7 @@ def _with_names(
                     cells[name] = text.name if text is not None else ""
             rows.append(replace(row, cells=cells))
         named.append(replace(table, rows=tuple(rows)))
-    return _unique(named)
+    return _unique(named, answers, open_)
 
 
 def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: Sequence[Note]) -> list[Note]:
@@ -223,22 +226,51 @@ def _site(
     return ""
 
 
-def _unique(tables: Sequence[ImportedTable]) -> list[ImportedTable]:
-    """Tables whose tests have the site in their names where a name occurs in several tables of a kind."""
+def _unique(tables: Sequence[ImportedTable], answers: Answers, open_: list[Question | Problem]) -> list[ImportedTable]:
+    """Tables whose tests have the site in their names where a name occurs in several tables of a kind.
+
+    If a site has the name in several tables, the sheet is put before it, too, after a question.
+    """
+    by_site = _renamed(tables, _repeated_names(tables), lambda _, row: row.cells["site"])
+    again = _repeated_names(by_site)
+    if answers.cells.get(BY_SHEET) == "yes":
+        kinds = Counter((table.form.file, table.section.sheet.name) for table in tables)
+        alone = {sheet for (_, sheet), count in kinds.items() if count == 1}
+        return _renamed(
+            by_site, again, lambda table, _: name if (name := table.section.sheet.name) in alone else table.section.key
+        )
+    for table in by_site:
+        names = {row.cells.get(table.form.key, "") for row in table.rows} & again.get(table.form.file, set())
+        if names and not is_asked(open_, "cells", BY_SHEET):
+            value = Message("{name} in several tables", name=min(names))
+            open_.append(ask("cells", BY_SHEET, table.section.key, value=value, choices=("yes",), proposed="yes"))
+    return by_site
+
+
+def _repeated_names(tables: Sequence[ImportedTable]) -> dict[str, set[str]]:
+    """Names of tests that occur in several tables of a kind, by the file of the kind."""
     names: dict[str, Counter[str]] = {}
     for table in tables:
-        names.setdefault(table.form.file, Counter()).update({row.cells.get(table.form.key, "") for row in table.rows})
-    repeated = {file for file, count in names.items() if any(times > 1 for times in count.values())}
+        own = {row.cells[table.form.key] for row in table.rows if row.cells.get(table.form.key)}
+        names.setdefault(table.form.file, Counter()).update(own)
+    repeated = {file: {name for name, times in count.items() if times > 1} for file, count in names.items()}
+    return {file: found for file, found in repeated.items() if found}
+
+
+def _renamed(
+    tables: Sequence[ImportedTable], files: Collection[str], before: Callable[[ImportedTable, StoredRow], str]
+) -> list[ImportedTable]:
+    """Tables of these files with a word before each name of a test."""
     return [
         replace(
             table,
             rows=tuple(
-                replace(row, cells=row.cells | {table.form.key: f"{row.cells['site']} {row.cells[table.form.key]}"})
+                replace(row, cells=row.cells | {table.form.key: f"{before(table, row)} {row.cells[table.form.key]}"})
                 for row in table.rows
                 if table.form.key in row.cells
             ),
         )
-        if table.form.file in repeated
+        if table.form.file in files
         else table
         for table in tables
     ]

@@ -16,7 +16,7 @@ from ..reading.table_forms import TableForm
 from .answers import Answers, Question, ask, is_asked
 from .columns import ColumnChoice, number_columns
 from .sections import Section
-from .sheets import HIDDEN, STRUCK, Ignored, column_letters
+from .sheets import EXCLUDED, Ignored, column_letters
 
 _SUMMARY: Final = {
     "mittel", "mittelwert", "mean", "average", "durchschnitt", "summe", "sum", "total", "gesamt", "stabw", "std",
@@ -32,10 +32,6 @@ _GROUPED: Final = {
 DECIMAL: Final = "decimal"
 THOUSANDS: Final = "thousands"
 FILL_DOWN: Final = "fill-down"
-EXCLUDED: Final = {
-    HIDDEN: Message("a hidden row or sheet; yes imports it, no leaves it out"),
-    STRUCK: Message("a cell that is struck through; yes imports its row, no leaves it out"),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +92,11 @@ def stored_rows(
         _fill_down(section, row, cells, above, form, answers, open_)
         above = dict(cells)
         if _is_excluded(section, row, [choice.place for choice in used.values()], answers, open_):
+            continue
+        partly = next((choice.place for choice in used.values() if (row, choice.place) in sheet.partly_struck), None)
+        if partly is not None:
+            value = Message("a cell that is struck through in part: {text}", text=sheet.cell(row, partly))
+            open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=value))
             continue
         for name in numbers:
             if name in used and cells[name]:

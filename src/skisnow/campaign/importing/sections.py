@@ -93,7 +93,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
         below.update(column for group in pairs for column in group)
     sections: list[Section] = []
     for row in dict.fromkeys(row for row, _, _ in heads):
-        on_row = [_section(sheet, row, group, count, heads) for at, group, count in heads if at == row]
+        on_row = [_section(sheet, row, group, count, heads, ignored) for at, group, count in heads if at == row]
         filled = [section for section in on_row if any(_is_filled(section, at) for at in _body(section))]
         sections += _split_series(filled, ignored)
     return sections
@@ -217,7 +217,12 @@ def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
 
 
 def _section(
-    sheet: Sheet, row: int, columns: range, rows_of_headings: int, heads: Sequence[tuple[int, range, int]]
+    sheet: Sheet,
+    row: int,
+    columns: range,
+    rows_of_headings: int,
+    heads: Sequence[tuple[int, range, int]],
+    ignored: Ignored,
 ) -> Section:
     later = [other for other, group, _ in heads if other > row and set(group) & set(columns)]
     top = _texts(sheet, row, columns)
@@ -238,7 +243,11 @@ def _section(
     end = min(later, default=len(sheet.rows))
     while end > start and _is_title(sheet, end - 1, columns):
         end -= 1
-    used = [place for place, column in enumerate(columns) if not _is_empty(sheet, column, range(row, end))]
+    used = [
+        place
+        for place, column in enumerate(columns)
+        if not _is_empty(sheet, column, range(row, end)) and not ignored.hides(sheet, column)
+    ]
     headings, units = tuple(headings[place] for place in used), tuple(units[place] for place in used if units)
     return Section(sheet, row, start, end, tuple(columns[place] for place in used), headings, units, columns)
 

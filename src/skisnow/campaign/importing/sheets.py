@@ -9,6 +9,7 @@ from pathlib import PurePath
 from typing import Final
 
 from ..._support.errors import ParameterError
+from ..._support.messages import Message
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
 from ..._support.user_files import workbook_sheets
 from ..._support.user_files.workbook import Layout, Rows, sheet_layouts
@@ -20,6 +21,10 @@ from ..reading.workbook_files import is_workbook
 _LETTERS: Final = 26
 HIDDEN: Final = "hidden"
 STRUCK: Final = "struck"
+EXCLUDED: Final = {
+    HIDDEN: Message("a hidden row, column or sheet; yes imports it, no leaves it out"),
+    STRUCK: Message("a cell that is struck through; yes imports its row, no leaves it out"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +36,7 @@ class Sheet:
     fractions: row and column of cells of `filled` that are numbers, not text: they have a decimal point.
     separator: separator of a CSV file, "" for a workbook.
     excluded: row and column of cells that the author may have excluded, by reason: HIDDEN or STRUCK.
+    partly_struck, hidden_columns: cells with a part that is struck through, and hidden columns.
     """
 
     name: str
@@ -39,6 +45,8 @@ class Sheet:
     fractions: frozenset[tuple[int, int]] = frozenset()
     separator: str = ""
     excluded: Mapping[str, frozenset[tuple[int, int]]] = field(default_factory=dict)
+    partly_struck: frozenset[tuple[int, int]] = frozenset()
+    hidden_columns: frozenset[int] = frozenset()
 
     def cell(self, row: int, column: int, *, filled: bool = False) -> str:
         """Text of a cell, "" outside of the sheet; rows and columns count from 0."""
@@ -89,7 +97,15 @@ def _sheet(title: str, rows: Rows, layout: Layout, fractions: set[tuple[int, int
         for column in range(len(rows[row]))
     }
     excluded = {HIDDEN: frozenset(hidden), STRUCK: layout.struck}
-    return Sheet(title, rows, filled, frozenset(fractions), excluded=excluded)
+    return Sheet(
+        title,
+        rows,
+        filled,
+        frozenset(fractions),
+        excluded=excluded,
+        partly_struck=layout.partly_struck,
+        hidden_columns=layout.hidden_columns,
+    )
 
 
 def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> tuple[Rows, str]:
@@ -142,13 +158,18 @@ def is_plain_number(text: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Ignored:
-    """Rows, columns and cells that the user excluded."""
+    """Rows, columns and cells that the user excluded; `hidden`: also all hidden columns."""
 
     places: frozenset[str]
+    hidden: bool = False
 
     def row(self, sheet: str, row: int) -> bool:
         """True if a row is excluded."""
         return f"{sheet}!{row + 1}" in self.places
+
+    def hides(self, sheet: Sheet, column: int) -> bool:
+        """True for a hidden column that is excluded."""
+        return self.hidden and column in sheet.hidden_columns
 
     def column(self, sheet: str, column: int) -> bool:
         """True if a column is excluded."""

@@ -33,18 +33,20 @@ _SHOWN_ROWS: Final = 4
 _READABLE: Final = 6
 """Characters of a number with five digits and a decimal sign."""
 QUESTIONS: Final = {
-    "table": template("Which table begins at {key}?"),
-    "column": template("Which column is {key}?"),
-    "unit": template("Which unit have the numbers below {key}?"),
+    "table": template("Which table begins in row {row} of the sheet {sheet}?"),
+    "column": template("Which column is {heading} ({table})?"),
+    "unit": template("Which unit have the numbers below {heading} ({table})?"),
     "site": template("Which site is the sheet {key}?"),
     "tool": template("Tool with lengths and unit, such as ski 200 x 62 mm {key}"),
     "plate": template("Length of the blade with unit, such as 100 mm {key}"),
-    "ignore": template("Leave out {key}?"),
+    "row": template("Leave out row {row} of the sheet {sheet}?"),
+    "ignore": template("Leave out {place} of the sheet {sheet}?"),
     "decimal": template("Which decimal mark do the numbers have?"),
     "thousands": template("Which mark separates the thousands?"),
     "fill-down": template("Fill blank names and angles from the row above?"),
-    "hidden": template("Import hidden rows and sheets?"),
+    "hidden": template("Import hidden rows, columns and sheets?"),
     "struck": template("Import rows that are struck through?"),
+    "by-sheet": template("Are these different tests? The name of the sheet is then put before theirs."),
 }
 """Question of each option of the command, or of each key of --cells."""
 
@@ -121,7 +123,7 @@ class _Import:
             self._status.say(Message("Ready."))
 
     def _question(self, question: Question) -> None:
-        words = Message(QUESTIONS[question.key if question.option == "cells" else question.option], key=question.key)
+        words = _question_words(question)
         with ui.element("div").classes("card ask"):
             if question.choices:
                 sentence(words)
@@ -201,6 +203,17 @@ def _with_unit(column: ColumnChoice) -> str:
     if unit == stored:
         return Message("{heading}, in {unit}", **fields)
     return Message("{heading}, {unit} to {stored}", **fields, stored=stored)
+
+
+def _question_words(question: Question) -> Message:
+    """A question in words; its key is that of the command's option."""
+    key, option = question.key, question.option
+    if option in {"column", "unit"}:
+        kind, _, heading = key.partition(".")
+        return Message(QUESTIONS[option], heading=heading, table=TABLES[f"{kind}.csv"])
+    sheet, _, place = key.rpartition(":" if option == "table" else "!")
+    kind = "row" if option == "ignore" and place.isdecimal() else key if option == "cells" else option
+    return Message(QUESTIONS[kind], key=key, sheet=sheet, row=place, place=place)
 
 
 def _choice_words(text: str) -> str:
