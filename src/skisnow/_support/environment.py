@@ -30,7 +30,7 @@ def needed(module: str, *, extra: str, what: Message, instead: Message | None = 
             error=error,
             extra=extra,
         )
-        raise ParameterError(joined([problem, instead]) if instead else problem, code="package_missing") from error
+        raise ParameterError(joined([problem, instead]) if instead else problem).tag("package_missing") from error
 
 
 @contextmanager

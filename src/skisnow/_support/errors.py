@@ -21,15 +21,21 @@ def templated(message: str, fields: Mapping[str, Any]) -> str:
 
 
 class _Coded(Exception):  # noqa: N818 -- of errors and warnings
-    """A message, or a template with its fields, and a code that does not change with the wording.
+    """A message, or a template of one, and a code that does not change with the wording.
 
-    >>> print(ParameterError("{name} is {value:g}; it must be above 0", code="out_of_range", name="load", value=-1.0))
+    >>> print(ParameterError("{name} is {value:g}; it must be above 0").tag("out_of_range", name="load", value=-1.0))
     load is -1; it must be above 0
     """
 
-    def __init__(self, message: str = "", /, *, code: str = "", **fields: Any) -> None:
-        super().__init__(templated(message, fields))
+    def __init__(self, message: str = "", /, *, code: str = "") -> None:
+        super().__init__(message)
         self.code = code
+
+    def tag(self, code: str, /, **fields: Any) -> Self:
+        """The same error with its code, and with fields in its template."""
+        self.args = (templated(self.message, fields),)
+        self.code = code
+        return self
 
     @property
     def message(self) -> str:
@@ -172,19 +178,15 @@ def require_range(
     if (low < value if above else low <= value) and (value < high if below else value <= high):
         return
     problem = _HALF_RANGES[above] if high == math.inf else _RANGES[above, below]
-    raise ParameterError(problem, code="out_of_range", name=name, value=value, low=low, high=high)
+    raise ParameterError(problem).tag("out_of_range", name=name, value=value, low=low, high=high)
 
 
 def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
     """Reject a value that is not one of a parameter's choices."""
     words = list(choices)
     if value not in words:
-        raise ParameterError(
-            "{name} is {value!r}. {allowed}",
-            code="unknown_choice",
-            name=name,
-            value=value,
-            allowed=nearest(str(value), words),
+        raise ParameterError("{name} is {value!r}. {allowed}").tag(
+            "unknown_choice", name=name, value=value, allowed=nearest(str(value), words)
         )
 
 
@@ -194,4 +196,4 @@ def require_language(code: str) -> None:
         message = Message(
             "The language {language!r} is unknown. Allowed: {codes}.", language=code, codes=[*languages()]
         )
-        raise ParameterError(message, code="unknown_language")
+        raise ParameterError(message).tag("unknown_language")

@@ -231,9 +231,8 @@ class CsvRow:
 
     def refused(self, column: str, problem: Message, *, code: str, action: Message | None = None) -> ParameterError:
         """Error of a cell: whole sentences for the problem and for the action."""
-        return ParameterError(
-            "{path}, row {row}, column {column}: {value!r}: {problem} {action}",
-            code=code,
+        return ParameterError("{path}, row {row}, column {column}: {value!r}: {problem} {action}").tag(
+            code,
             path=self.path,
             row=self.row,
             column=column,
@@ -264,8 +263,8 @@ def csv_rows(
             mark, lines = decimal_mark([chain.from_iterable(every[1:])], separator=separator), iter(every)
         yield from _rows(path, lines, columns, further, action, mark)
     except csv.Error as error:
-        raise ParameterError(
-            "{path} is not CSV text ({error}). {action}", code="not_csv", path=path, error=error, action=action
+        raise ParameterError("{path} is not CSV text ({error}). {action}").tag(
+            "not_csv", path=path, error=error, action=action
         ) from error
 
 
@@ -275,35 +274,21 @@ def _rows(
     head = column_names(next(lines, []), (*columns, *further))
     missing = [name for name in columns if name not in head]
     if missing:
-        raise ParameterError(
-            "{path}, row 1: column {column} is missing among {columns}. {action}",
-            code="missing_column",
-            path=path,
-            column=missing[0],
-            columns=head,
-            action=action,
+        raise ParameterError("{path}, row 1: column {column} is missing among {columns}. {action}").tag(
+            "missing_column", path=path, column=missing[0], columns=head, action=action
         )
     twice = [name for name in (*columns, *further) if head.count(name) > 1]
     if twice:
-        raise ParameterError(
-            "{path}, row 1: the column {column} is there twice. Keep one of them.",
-            code="repeated_column",
-            path=path,
-            column=twice[0],
+        raise ParameterError("{path}, row 1: the column {column} is there twice. Keep one of them.").tag(
+            "repeated_column", path=path, column=twice[0]
         )
     places = {name: head.index(name) for name in (*columns, *further) if name in head}
     for row, cells in enumerate(lines, start=2):
         if any(cell.strip() for cell in cells[len(head) :]):
             raise ParameterError(
                 "{path}, row {row}: there are {count} cells under {columns} names of columns, perhaps because of "
-                "decimal commas. {action}",
-                code="too_many_cells",
-                path=path,
-                row=row,
-                count=len(cells),
-                columns=len(head),
-                action=action,
-            )
+                "decimal commas. {action}"
+            ).tag("too_many_cells", path=path, row=row, count=len(cells), columns=len(head), action=action)
         if any(cell.strip() for cell in cells):
             values = {name: cells[at].strip() if at < len(cells) else "" for name, at in places.items()}
             yield CsvRow(path, row, values, action, mark)

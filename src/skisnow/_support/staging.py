@@ -179,11 +179,8 @@ def _locked(hidden: Path) -> int | None:
 def require_ending(path: str | Path, *endings: str) -> None:
     """Reject a file name that ends otherwise, whatever the case of its letters."""
     if Path(path).suffix.lower() not in endings:
-        raise ParameterError(
-            "{path} does not end in {ending}. Rename it.",
-            code="wrong_ending",
-            path=path,
-            ending=endings[0] if len(endings) == 1 else list(endings),
+        raise ParameterError("{path} does not end in {ending}. Rename it.").tag(
+            "wrong_ending", path=path, ending=endings[0] if len(endings) == 1 else list(endings)
         )
 
 
@@ -230,9 +227,6 @@ def require_writable(folder: str | Path) -> None:
 def cannot_write(path: str | Path, error: OSError) -> OutputError:
     """The sentence for a place that cannot be written."""
     reason = error.strerror or error
-    return OutputError(
-        "{path} cannot be written: {reason}. Choose another place or free some space.",
-        code="cannot_write",
-        path=path,
-        reason=reason,
+    return OutputError("{path} cannot be written: {reason}. Choose another place or free some space.").tag(
+        "cannot_write", path=path, reason=reason
     )

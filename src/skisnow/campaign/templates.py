@@ -230,11 +230,8 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     there = _there(folder)
     if CAMPAIGN_FILE in there or (there and xlsx):
         raise OutputError(
-            "{folder} already contains a campaign ({there}); nothing was written. Choose another folder.",
-            code="holds_campaign_already",
-            folder=folder,
-            there=list(there),
-        )
+            "{folder} already contains a campaign ({there}); nothing was written. Choose another folder."
+        ).tag("holds_campaign_already", folder=folder, there=list(there))
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
     contents = _workbook(name) if xlsx else _files(name, tables=not there)
     prepare_folder(folder)

@@ -266,10 +266,8 @@ def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: ob
         return unloading_ratio_of(snow, stated)
     if stated is not None:
         raise ParameterError(
-            "unloading_ratio is {given}, but a penetration law defines the unloading itself: remove unloading_ratio",
-            code="contradiction",
-            given=stated,
-        )
+            "unloading_ratio is {given}, but a penetration law defines the unloading itself: remove unloading_ratio"
+        ).tag("contradiction", given=stated)
     return 1.0
 
 

@@ -89,8 +89,8 @@ class SnowLaws:
         """Raise an error for a law that returned a value that is not finite; called if no equilibrium was found."""
         for law in self.asked:
             if law.refused:
-                raise ParameterError(
-                    "{problem}, and no equilibrium was found", code="no_equilibrium", problem=law.refused
+                raise ParameterError("{problem}, and no equilibrium was found").tag(
+                    "no_equilibrium", problem=law.refused
                 )
 
 
@@ -112,20 +112,16 @@ def snow_laws(shear: object, penetration: object, edge_angle: float) -> SnowLaws
     if shear is None and penetration is None:
         return None
     if penetration is not None and not isinstance(penetration, PointLaw):
-        raise ParameterError(_no_point_law(penetration), code="wrong_kind")
+        raise ParameterError(_no_point_law(penetration)).tag("wrong_kind")
     if shear is not None and not isinstance(shear, ShearLaw):
         raise ParameterError(
             "shear is {shear!r}; it must be a shear law, such as ConstantShear(0.2e6) of skisnow.forces.shear, or "
-            "one of yours derived from ShearLaw",
-            code="wrong_kind",
-            shear=shear,
-        )
+            "one of yours derived from ShearLaw"
+        ).tag("wrong_kind", shear=shear)
     if shear is not None and penetration is not None and penetration.along_base_normal:
         raise ParameterError(
-            "{kind} acts along the base's normal and so carries the side force itself; remove the shear law",
-            code="contradiction",
-            kind=type(penetration).__name__,
-        )
+            "{kind} acts along the base's normal and so carries the side force itself; remove the shear law"
+        ).tag("contradiction", kind=type(penetration).__name__)
     pressure = None if penetration is None else PressureLaw(penetration)
     strength = None
     if shear is not None and edge_angle > 0.0:
@@ -159,11 +155,8 @@ def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
     stress, thrust = law.stress_and_thrust(depth, np.full(3, edge_angle))
     degrees = math.degrees(edge_angle)
     if not (np.isfinite(stress).all() and np.all(stress > 0.0)):
-        raise ParameterError(
-            "shear is {law!r}, which returns no finite strength above 0 at {degrees:.3g} degrees",
-            code="invalid_law",
-            law=law,
-            degrees=degrees,
+        raise ParameterError("shear is {law!r}, which returns no finite strength above 0 at {degrees:.3g} degrees").tag(
+            "invalid_law", law=law, degrees=degrees
         )
     share = float(np.max(np.abs(thrust / stress))) * math.tan(edge_angle)
     if share > 0.0:
@@ -171,13 +164,8 @@ def _require_strength_alone(law: ShearLaw, edge_angle: float) -> None:
             "shear is {law!r}, which has a thrust. At its strength it would bear {share:.3g} of the load in a "
             "balanced turn at {degrees:.3g} degrees (from 1 on none is left for the base), and a steady carve does "
             "not balance a thrust. Use the strength only: ConstantShear({stress:.6g}), or your own law without "
-            "thrust_force. A simulated turn accepts this law",
-            code="contradiction",
-            law=law,
-            share=share,
-            degrees=degrees,
-            stress=float(stress[0]),
-        )
+            "thrust_force. A simulated turn accepts this law"
+        ).tag("contradiction", law=law, share=share, degrees=degrees, stress=float(stress[0]))
 
 
 def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> tuple[float, float]:
@@ -209,18 +197,14 @@ def equivalent_snow(law: PointLaw, ski: Ski, edge_angle: float, load: float) -> 
     hardness, deepest = float(force[at] / volume[at]), np.array([_DEPTHS[at]])
     if not (math.isfinite(hardness) and hardness > 0.0):
         raise ParameterError(
-            "penetration is {law!r}, which returns no finite pressure above 0 under this ski and load",
-            code="invalid_law",
-            law=law,
-        )
+            "penetration is {law!r}, which returns no finite pressure above 0 under this ski and load"
+        ).tag("invalid_law", law=law)
     spring = float(deepest[0] - np.asarray(law.residual_depth(deepest), float)[0])
     if not spring > 0.0:
         raise ParameterError(
             "penetration is {law!r}, which lets go at once when the depth shrinks: residual_depth must stay below "
-            "the deepest depth, as with a finite unloading_ratio",
-            code="out_of_range",
-            law=law,
-        )
+            "the deepest depth, as with a finite unloading_ratio"
+        ).tag("out_of_range", law=law)
     stress = float(law.stress_and_energy(deepest, deepest, np.array([edge_angle]))[0, 0])
     ratio = min(max(stress / spring / hardness, 1.0), STEEPEST_RATIO)
     return hardness, ratio if ratio > 1.0 + 1e-9 else 1.0

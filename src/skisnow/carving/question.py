@@ -50,11 +50,8 @@ def require_known(names: Iterable[str]) -> None:
     """Reject an unknown name, and suggest the nearest one."""
     for name in names:
         if name not in CARVE_KEYS:
-            raise ParameterError(
-                "unknown input of a carved turn: {name}. {allowed}",
-                code="unknown_name",
-                name=name,
-                allowed=nearest(name, CARVE_KEYS),
+            raise ParameterError("unknown input of a carved turn: {name}. {allowed}").tag(
+                "unknown_name", name=name, allowed=nearest(name, CARVE_KEYS)
             )
 
 
@@ -78,7 +75,7 @@ def require_complete(values: Mapping[str, object]) -> None:
                 if example
                 else Message("{name} is missing: {meaning}. It has no default", name=name, meaning=meaning)
             )
-            raise ParameterError(problem, code="missing")
+            raise ParameterError(problem).tag("missing")
     _require_one_snow(set(values), rests)
 
 
@@ -86,24 +83,19 @@ def _require_one_snow(names: set[str], rests: bool) -> None:
     ways = [name for name in ("H_V_N_per_mm3", "results", "published") if name in names]
     choices = Message("Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published")
     if not ways:
-        raise ParameterError("no snow is given: H_V has no default. {choices}", code="missing", choices=choices)
+        raise ParameterError("no snow is given: H_V has no default. {choices}").tag("missing", choices=choices)
     if len(ways) > 1:
-        raise ParameterError(
-            "the snow is given in two ways, {first} and {second}. {choices}",
-            code="contradiction",
-            first=ways[0],
-            second=ways[1],
-            choices=choices,
+        raise ParameterError("the snow is given in two ways, {first} and {second}. {choices}").tag(
+            "contradiction", first=ways[0], second=ways[1], choices=choices
         )
     if ways == ["H_V_N_per_mm3"] and "S_f_N_per_mm2" not in names and not rests:
         raise ParameterError(
             "S_f_N_per_mm2 is missing: a carved turn needs the failure shear stress S_f, which has no default. State "
-            "it, or compute the ski at rest",
-            code="missing",
-        )
+            "it, or compute the ski at rest"
+        ).tag("missing")
     if "site" in names and ways != ["results"]:
-        raise ParameterError(
-            "site names one site of an analysed campaign and needs results. Remove it", code="contradiction"
+        raise ParameterError("site names one site of an analysed campaign and needs results. Remove it").tag(
+            "contradiction"
         )
 
 
@@ -315,7 +307,7 @@ def require_clamp(ski: Ski, clamp_length_m: float) -> None:
             "write --clamp-length-m 0",
             **fields,
         )
-    raise ParameterError(problem, code="out_of_range")
+    raise ParameterError(problem).tag("out_of_range")
 
 
 def implausible_values(question: CarveQuestion) -> tuple[str, ...]:

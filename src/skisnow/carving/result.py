@@ -152,9 +152,8 @@ class Equilibrium(Shown):
         if self.request is None:
             raise ParameterError(
                 "the carve has no derivatives. They exist for an equilibrium with the groove along the edge, the "
-                "snow's own H_V and S_f, and a rigid footprint.",
-                code="no_derivatives",
-            )
+                "snow's own H_V and S_f, and a rigid footprint."
+            ).tag("no_derivatives")
         return CarveDerivatives(self.request)
 
     def sensitivity(self, output: str, parameters: Iterable[str]) -> tuple[Sensitivity, ...]:

@@ -187,11 +187,8 @@ class CarveDerivatives:
         if parameter in values:
             return values[parameter]
         if parameter.partition(".")[0] not in ("ski", "edit"):
-            raise ParameterError(
-                "unknown parameter of a carve: {name}. {allowed}",
-                code="unknown_name",
-                name=parameter,
-                allowed=nearest(parameter, self.parameters),
+            raise ParameterError("unknown parameter of a carve: {name}. {allowed}").tag(
+                "unknown_name", name=parameter, allowed=nearest(parameter, self.parameters)
             )
         return shape_value(self.request.model.ski, parameter)
 
@@ -286,11 +283,8 @@ class CarveDerivatives:
 
     def _output(self, output: str) -> OutputGrowth | None:
         if output not in OUTPUTS:
-            raise ParameterError(
-                "unknown output, or one without derivatives: {name}. {allowed}",
-                code="unknown_name",
-                name=output,
-                allowed=nearest(output, OUTPUTS),
+            raise ParameterError("unknown output, or one without derivatives: {name}. {allowed}").tag(
+                "unknown_name", name=output, allowed=nearest(output, OUTPUTS)
             )
         if output not in self._outputs:
             self._outputs[output] = output_growth(output, self.at)
@@ -299,7 +293,7 @@ class CarveDerivatives:
     def _gradient(self, output: str) -> _Gradient:
         growth, model, u = self._output(output), self.request.model, self.at.solution.u
         if growth is None:
-            raise ParameterError("the carve has no {output}, so it has no derivative.", code="no_value", output=output)
+            raise ParameterError("the carve has no {output}, so it has no derivative.").tag("no_value", output=output)
         if output not in self._gradients:
             none = np.zeros(len(self.at.solution.edge_depth))
             depth, force = (none if part is None else part for part in (growth.depth, growth.force))

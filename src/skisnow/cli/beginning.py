@@ -171,10 +171,7 @@ def _pairs(option: str, texts: list[str]) -> dict[str, str]:
     """Pairs of heading and statement from an option."""
     for text in texts:
         if "=" not in text:
-            raise ParameterError(
-                "{option} {text}: an equals sign is missing. Write HEADING=NAME.",
-                code="not_a_pair",
-                option=option,
-                text=text,
+            raise ParameterError("{option} {text}: an equals sign is missing. Write HEADING=NAME.").tag(
+                "not_a_pair", option=option, text=text
             )
     return dict(text.rsplit("=", 1) for text in texts)

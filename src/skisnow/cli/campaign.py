@@ -182,7 +182,7 @@ def import_file(options: argparse.Namespace) -> int:
         print(f"Removed: {', '.join(undo_import(options.undo))}")
         return 0
     if options.file is None or options.out is None:
-        raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.", code="missing_option")
+        raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.").tag("missing_option")
     asks = not options.yes and sys.stdin.isatty()
     proposal = _answered(options, _answers(options), asks=asks)
     if proposal.problems:

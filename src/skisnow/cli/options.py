@@ -195,9 +195,8 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
         from .._support.errors import ParameterError
 
         raise ParameterError(
-            "--workers is the number of processes of this computer; a scheduler has its own number. Remove one of them",
-            code="contradiction",
-        )
+            "--workers is the number of processes of this computer; a scheduler has its own number. Remove one of them"
+        ).tag("contradiction")
     return checked_scheduler(scheduler)
 
 

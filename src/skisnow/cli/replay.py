@@ -95,17 +95,13 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
         if azimuth is None:
             raise ParameterError(
                 "{track} is in latitude and longitude: state with --fall-line-azimuth-deg the compass direction in "
-                "which the slope falls",
-                code="missing",
-                track=options.track,
-            )
+                "which the slope falls"
+            ).tag("missing", track=options.track)
         angle = shown.tilt if shown.profile is None else None
         track = in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=angle, missing_height="on_slope")
     elif azimuth is not None:
-        raise ParameterError(
-            "{track} is already in the axes of the slope: remove the direction",
-            code="contradiction",
-            track=options.track,
+        raise ParameterError("{track} is already in the axes of the slope: remove the direction").tag(
+            "contradiction", track=options.track
         )
     return measured_track(track, starts_at=options.starts_at_s)
 
@@ -180,7 +176,7 @@ def serve_lab(options: argparse.Namespace) -> int:
 
     require_allowed(options.host, options.token)
     if options.certificate is None and options.certificate_key is not None:
-        raise ParameterError("--certificate-key goes with --certificate", code="contradiction")
+        raise ParameterError("--certificate-key goes with --certificate").tag("contradiction")
     certificate = None if options.certificate is None else Certificate(options.certificate, options.certificate_key)
     scheduler = checked_scheduler(options.scheduler)
     place = store_place(options.store) if options.store is not None else default_path()

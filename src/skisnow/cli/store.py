@@ -146,10 +146,8 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
     from ..campaign.store import export_entered
 
     if args.as_added:
-        raise StoreError(
-            "The campaign {id} consists of lab entries and has no stored files. Omit --as-added.",
-            code="no_data",
-            id=head.id,
+        raise StoreError("The campaign {id} consists of lab entries and has no stored files. Omit --as-added.").tag(
+            "no_data", id=head.id
         )
     export_entered(store, head.id, args.out)
     return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
@@ -186,10 +184,8 @@ def _group_place(word: str) -> StorePlace:
 
     place = store_place(word)
     if isinstance(place, Path) and not place.parent.is_dir():
-        raise StoreError(
-            "{parent} is not there; is the disk or stick with the group's store plugged in?",
-            code="wrong_kind",
-            parent=place.parent,
+        raise StoreError("{parent} is not there; is the disk or stick with the group's store plugged in?").tag(
+            "wrong_kind", parent=place.parent
         )
     return place
 

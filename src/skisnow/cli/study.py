@@ -62,9 +62,8 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
     from ..studies import run_study
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
-        raise ParameterError(
-            "--figure draws maps of carved turns; remove it for simulated runs and use the table",
-            code="not_supported",
+        raise ParameterError("--figure draws maps of carved turns; remove it for simulated runs and use the table").tag(
+            "not_supported"
         )
     executor = scheduler_of(options)
     _tell_state(study)
@@ -85,7 +84,7 @@ def _shard(options: argparse.Namespace, study: Study) -> int:
     from ..studies import Shard, run_shard
 
     if options.figure is not None:
-        raise ParameterError("--figure needs the whole table; draw it when the parts are put together", code="missing")
+        raise ParameterError("--figure needs the whole table; draw it when the parts are put together").tag("missing")
     shard = Shard.of(options.shard)
     executor = scheduler_of(options)
     try:

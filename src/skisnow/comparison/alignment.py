@@ -91,11 +91,8 @@ def require_offsets(fit: Collection[str]) -> None:
     """Check that all offsets are among `OFFSETS`."""
     wrong = [word for word in fit if word not in OFFSETS]
     if wrong:
-        raise ParameterError(
-            "{value!r} cannot be fitted as an offset; {allowed} are",
-            code="unknown_offset",
-            value=wrong[0],
-            allowed=list(OFFSETS),
+        raise ParameterError("{value!r} cannot be fitted as an offset; {allowed} are").tag(
+            "unknown_offset", value=wrong[0], allowed=list(OFFSETS)
         )
 
 
@@ -127,10 +124,8 @@ def fit_motion(simulated: Polyline, measured: Polyline, *, start: bool, heading:
     if not answers:
         raise FitError(
             "start and heading cannot be fitted: less than {share:g} % of the measured track then overlaps the "
-            "simulated one, or the steps do not converge. Compare the tracks without a fit",
-            code="no_alignment",
-            share=100 * LEAST_SHARE,
-        )
+            "simulated one, or the steps do not converge. Compare the tracks without a fit"
+        ).tag("no_alignment", share=100 * LEAST_SHARE)
     answers = [motion for motion in answers if _same_direction(path, places, motion)] or answers
     best = answers[0]
     for motion in answers[1:]:

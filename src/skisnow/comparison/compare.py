@@ -146,10 +146,8 @@ def _require_options(
 ) -> None:
     require_offsets(fit)
     if time_from not in (None, *get_args(TimeFrom)):
-        raise ParameterError(
-            "time is counted from first_point or clock, not from {time_from!r}",
-            code="unknown_time_origin",
-            time_from=time_from,
+        raise ParameterError("time is counted from first_point or clock, not from {time_from!r}").tag(
+            "unknown_time_origin", time_from=time_from
         )
     require_range("known_to", known_to or 0.0, 0.0, math.inf, below=True)
     require_range("slope_angle", slope_angle or 0.0, 0.0, STEEPEST)
@@ -230,7 +228,7 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
 def _fit_time(simulated: Polyline, plain: Comparison) -> float:
     reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
     if reason:
-        raise ParameterError("{reason}; remove time from the fit", code="no_times", reason=reason)
+        raise ParameterError("{reason}; remove time from the fit").tag("no_times", reason=reason)
     return fit_time(simulated, plain.measured)
 
 
@@ -240,13 +238,8 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
     if nearest > FARTHEST:
         raise ParameterError(
             "{first} and {second} have nothing in common: they are nowhere nearer than {nearest:.4g} "
-            "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading",
-            code="nothing_common",
-            first=names[0],
-            second=names[1],
-            nearest=nearest / 1000.0,
-            farthest=FARTHEST / 1000.0,
-        )
+            "km ({farthest:g} km is allowed). Bring both into one frame, or fit start and heading"
+        ).tag("nothing_common", first=names[0], second=names[1], nearest=nearest / 1000.0, farthest=FARTHEST / 1000.0)
 
 
 def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:

@@ -242,10 +242,6 @@ def track_polyline(track: Track, *, dimensions: int) -> Polyline:
     if not line.length > 0.0:
         raise ParameterError(
             "{name}: {usable} of its {count} points can be used, all in one place. A comparison needs "
-            "two points in different places; give a longer track",
-            code="one_place",
-            name=track.name,
-            usable=int(points.sum()),
-            count=len(track),
-        )
+            "two points in different places; give a longer track"
+        ).tag("one_place", name=track.name, usable=int(points.sum()), count=len(track))
     return line

@@ -114,8 +114,8 @@ class Path:
     def __init__(self, points: FloatArray) -> None:
         places = points[np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])]
         if len(places) < 2:
-            raise ParameterError(
-                "a path needs two points in different places; all of these are in one", code="one_place"
+            raise ParameterError("a path needs two points in different places; all of these are in one").tag(
+                "one_place"
             )
         self._start = places[:-1]
         self._along = np.diff(places, axis=0)

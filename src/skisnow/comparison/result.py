@@ -299,7 +299,7 @@ def fit_time(simulated: Polyline, measured: Polyline) -> float:
     """
     shorter = min(simulated.time[-1] - simulated.time[0], measured.time[-1] - measured.time[0])
     if not shorter > 0.0:
-        raise FitError("the start time cannot be fitted: one of the tracks has no duration", code="no_duration")
+        raise FitError("the start time cannot be fitted: one of the tracks has no duration").tag("no_duration")
     least = simulated.time[0] - measured.time[-1] + LEAST_SHARE * shorter
     most = simulated.time[-1] - measured.time[0] - LEAST_SHARE * shorter
     arc_length = np.linspace(0.0, measured.length, PLACES + 1)

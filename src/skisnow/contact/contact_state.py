@@ -47,7 +47,7 @@ class ContactState(Shown):
         try:
             core.check_bytes(bytes(data))
         except ValueError as error:
-            raise ParameterError("ContactState: {error}", code="invalid_state", error=error) from error
+            raise ParameterError("ContactState: {error}").tag("invalid_state", error=error) from error
         return cls(None, bytes(data), None)
 
     def to_bytes(self) -> bytes:
@@ -63,7 +63,7 @@ class ContactState(Shown):
             try:
                 return self._to_bytes()
             except ValueError as error:
-                raise ParameterError("ContactState: {error}", code="invalid_state", error=error) from error
+                raise ParameterError("ContactState: {error}").tag("invalid_state", error=error) from error
         return self._kept
 
     def restore_in(self, contact: core.Contact) -> None:

@@ -105,7 +105,7 @@ class AskedPressure:
 
     def refuse(self, reason: Message) -> None:
         """Act on an answer that is not finite."""
-        raise ParameterError(reason, code="invalid_law")
+        raise ParameterError(reason).tag("invalid_law")
 
     def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
         found = np.ascontiguousarray(np.broadcast_to(found, shape), float)

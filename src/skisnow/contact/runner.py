@@ -62,23 +62,18 @@ class Runner(Shown):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
             if array.ndim != 1 or len(array) < 2 or array.shape != self.position.shape:
-                raise ParameterError(
-                    "Runner: {name} has shape {shape}; it needs one number for each position",
-                    code="wrong_shape",
-                    name=name,
-                    shape=str(array.shape),
+                raise ParameterError("Runner: {name} has shape {shape}; it needs one number for each position").tag(
+                    "wrong_shape", name=name, shape=str(array.shape)
                 )
             if not np.all(np.isfinite(array)):
-                raise ParameterError(
-                    "Runner: {name} contains a number that is not finite", code="not_a_number", name=name
+                raise ParameterError("Runner: {name} contains a number that is not finite").tag(
+                    "not_a_number", name=name
                 )
         if np.any(np.diff(self.position) >= 0.0):
-            raise ParameterError("Runner: positions must fall from tip to tail", code="not_falling")
+            raise ParameterError("Runner: positions must fall from tip to tail").tag("not_falling")
         if self.half_width.min() <= 0.0:
-            raise ParameterError(
-                "Runner: the half width is {half_width:g} m somewhere; it must be above 0",
-                code="out_of_range",
-                half_width=self.half_width.min(),
+            raise ParameterError("Runner: the half width is {half_width:g} m somewhere; it must be above 0").tag(
+                "out_of_range", half_width=self.half_width.min()
             )
         self._check_nodes()
 
@@ -89,15 +84,12 @@ class Runner(Shown):
         object.__setattr__(self, "nodes", nodes)
         ends = (self.position[0], self.position[-1])
         if nodes.ndim != 1 or len(nodes) < 2 or np.any(np.diff(nodes) >= 0.0):
-            raise ParameterError(
-                "Runner: nodes must be two positions or more that fall from tip to tail", code="not_falling"
+            raise ParameterError("Runner: nodes must be two positions or more that fall from tip to tail").tag(
+                "not_falling"
             )
         if not np.allclose((nodes[0], nodes[-1]), ends, atol=1e-9):
-            raise ParameterError(
-                "Runner: nodes must begin at the tip and end at the tail, {tip:g} and {tail:g} m",
-                code="out_of_range",
-                tip=ends[0],
-                tail=ends[1],
+            raise ParameterError("Runner: nodes must begin at the tip and end at the tail, {tip:g} and {tail:g} m").tag(
+                "out_of_range", tip=ends[0], tail=ends[1]
             )
 
     @classmethod

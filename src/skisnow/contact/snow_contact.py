@@ -144,18 +144,15 @@ class SnowContact(Shown):
         instruction_set: str | None = None,
     ) -> None:
         if not runners:
-            raise ParameterError("SnowContact: it needs one runner or more", code="missing")
+            raise ParameterError("SnowContact: it needs one runner or more").tag("missing")
         if not (np.isfinite(spacing) and spacing > 0.0):
-            raise ParameterError(
-                "SnowContact: spacing is {spacing!r} m; it must be above 0", code="out_of_range", spacing=spacing
+            raise ParameterError("SnowContact: spacing is {spacing!r} m; it must be above 0").tag(
+                "out_of_range", spacing=spacing
             )
         if instruction_set is not None and instruction_set not in core.instruction_sets():
             known = ", ".join(core.instruction_sets())
-            raise ParameterError(
-                "SnowContact: instruction_set is {instruction_set!r}; this machine has {known}",
-                code="unknown_name",
-                instruction_set=instruction_set,
-                known=known,
+            raise ParameterError("SnowContact: instruction_set is {instruction_set!r}; this machine has {known}").tag(
+                "unknown_name", instruction_set=instruction_set, known=known
             )
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
@@ -219,7 +216,7 @@ class SnowContact(Shown):
     def require_finite_laws(self) -> None:
         """ParameterError if a shear law in Python gave no finite strength at the pose evaluated last."""
         if self._shear is not None and self._shear.refused:
-            raise ParameterError(self._shear.refused, code="invalid_law")
+            raise ParameterError(self._shear.refused).tag("invalid_law")
 
     def sections(self, runner: int = 0) -> Sections:
         """Sections along a runner at the last ``force`` or ``update``."""
@@ -271,7 +268,7 @@ class SnowContact(Shown):
         try:
             state.restore_in(self.compiled)
         except ValueError as error:
-            raise ParameterError("SnowContact: {error}", code="invalid", error=error) from error
+            raise ParameterError("SnowContact: {error}").tag("invalid", error=error) from error
 
     def _asked(
         self,
@@ -287,12 +284,10 @@ class SnowContact(Shown):
         off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
         if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
             raise ParameterError(
-                "SnowContact: rotation is not a rotation: its columns are off by {off:.1e} from orthonormal",
-                code="not_a_rotation",
-                off=off,
-            )
+                "SnowContact: rotation is not a rotation: its columns are off by {off:.1e} from orthonormal"
+            ).tag("not_a_rotation", off=off)
         if not (np.isfinite(dt) and dt >= 0.0):
-            raise ParameterError("SnowContact: dt is {dt!r} s; it must be 0 or more", code="out_of_range", dt=dt)
+            raise ParameterError("SnowContact: dt is {dt!r} s; it must be 0 or more").tag("out_of_range", dt=dt)
         moves = np.zeros((k, 6)) if velocity is None else _array("velocity", velocity, (k, 6))
         return where, axes, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
 
@@ -300,12 +295,8 @@ class SnowContact(Shown):
         if beams is None:
             return None
         if len(beams) != len(self.runners):
-            raise ParameterError(
-                "SnowContact: {name} has {n_beams} entries for {n_runners} runners",
-                code="wrong_shape",
-                name=name,
-                n_beams=len(beams),
-                n_runners=len(self.runners),
+            raise ParameterError("SnowContact: {name} has {n_beams} entries for {n_runners} runners").tag(
+                "wrong_shape", name=name, n_beams=len(beams), n_runners=len(self.runners)
             )
         counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
         return [_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
@@ -314,15 +305,11 @@ class SnowContact(Shown):
 def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
     array = np.ascontiguousarray(given, float)
     if array.shape != shape:
-        raise ParameterError(
-            "SnowContact: {name} has shape {shape}; it must be {needed}",
-            code="wrong_shape",
-            name=name,
-            shape=str(array.shape),
-            needed=str(shape),
+        raise ParameterError("SnowContact: {name} has shape {shape}; it must be {needed}").tag(
+            "wrong_shape", name=name, shape=str(array.shape), needed=str(shape)
         )
     if not np.all(np.isfinite(array)):
-        raise ParameterError("SnowContact: {name} contains a number that is not finite", code="not_a_number", name=name)
+        raise ParameterError("SnowContact: {name} contains a number that is not finite").tag("not_a_number", name=name)
     return array
 
 

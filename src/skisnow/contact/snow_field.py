@@ -134,19 +134,13 @@ class SnowField(Shown):
         self._require_one_place()
         _require("residual_ratio", self.residual_ratio, minimum=0.0)
         if self.residual_ratio > 1.0:
-            raise ParameterError(
-                "SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1",
-                code="out_of_range",
-                residual_ratio=self.residual_ratio,
+            raise ParameterError("SnowField: residual_ratio is {residual_ratio!r}; it must be at most 1").tag(
+                "out_of_range", residual_ratio=self.residual_ratio
             )
         for name, choices in (("friction_acts_on", get_args(ActsOn)), ("friction_direction", get_args(Direction))):
             if getattr(self, name) not in choices:
-                raise ParameterError(
-                    "SnowField: {name} is {value!r}; it must be one of {choices}",
-                    code="unknown_name",
-                    name=name,
-                    value=getattr(self, name),
-                    choices=list(choices),
+                raise ParameterError("SnowField: {name} is {value!r}; it must be one of {choices}").tag(
+                    "unknown_name", name=name, value=getattr(self, name), choices=list(choices)
                 )
         for name in (
             "slip_weakening",
@@ -170,10 +164,8 @@ class SnowField(Shown):
         if self.shear is not None or _maximum(self.failure_shear_stress) > 0.0:
             raise ParameterError(
                 "SnowField: {kind} acts along the base's normal and so carries the side force itself; set "
-                "failure_shear_stress to 0 and remove the shear law",
-                code="contradiction",
-                kind=type(law).__name__,
-            )
+                "failure_shear_stress to 0 and remove the shear law"
+            ).tag("contradiction", kind=type(law).__name__)
 
     def _require_one_place(self) -> None:
         _require("strength_share", _minimum(self.strength_share), above=0.0)
@@ -181,31 +173,23 @@ class SnowField(Shown):
         shared = isinstance(self.strength_share, Grid) or self.strength_share != 1.0
         if shared and isinstance(self.failure_shear_stress, Grid) and self.shear is None:
             raise ParameterError(
-                "SnowField: failure_shear_stress varies over the place itself; leave strength_share 1",
-                code="contradiction",
-            )
+                "SnowField: failure_shear_stress varies over the place itself; leave strength_share 1"
+            ).tag("contradiction")
         if shared and self.shear_in_python is not None:
             raise ParameterError(
-                "SnowField: strength_share has no effect on {kind}, a law of your own; keep it at 1",
-                code="contradiction",
-                kind=type(self.shear).__name__,
-            )
+                "SnowField: strength_share has no effect on {kind}, a law of your own; keep it at 1"
+            ).tag("contradiction", kind=type(self.shear).__name__)
 
     def _require_own_law_for_rate(self) -> None:
         if self.penetration is not None and self.shear_bearing != "whole-edge":
             raise ParameterError(
-                "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; remove it, or the penetration "
-                "law",
-                code="contradiction",
-                kind=type(self.penetration).__name__,
-            )
+                "SnowField: shear_bearing compares with H_V and k_u, not with {kind}; remove it, or the penetration law"
+            ).tag("contradiction", kind=type(self.penetration).__name__)
         if self.penetration is not None and (self.damping > 0.0 or self.delayed_share > 0.0):
             raise ParameterError(
                 "SnowField: damping and delayed_share act with H_V and k_u, not with {kind}; keep them at 0, or "
-                "remove the penetration law",
-                code="contradiction",
-                kind=type(self.penetration).__name__,
-            )
+                "remove the penetration law"
+            ).tag("contradiction", kind=type(self.penetration).__name__)
 
     def _compiled(self) -> core.Snow:
         snow = core.Snow()
@@ -315,7 +299,7 @@ def _require(name: str, value: float, *, minimum: float | None = None, above: fl
                 limit=minimum,
             )
         )
-        raise ParameterError(problem, code="out_of_range")
+        raise ParameterError(problem).tag("out_of_range")
 
 
 def _grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:

@@ -71,7 +71,7 @@ class Evaluator:
             try:
                 ski = ski_of_keys(self.keys(z))
             except ParameterError as error:
-                raise SolverError("this ski is impossible: {reason}", code="no_ski", reason=error) from error
+                raise SolverError("this ski is impossible: {reason}").tag("no_ski", reason=error) from error
             near = min(self._points, key=lambda known: float(np.sum((np.frombuffer(known) - z) ** 2)), default=None)
             begins = [None] * len(self.snows) if near is None else [each.at.solution for each in self._points[near]]
             self._points[place] = tuple(map(self._point, range(len(self.snows)), repeat(ski), begins))
@@ -82,9 +82,7 @@ class Evaluator:
         self.equilibria += 1
         derivatives = carve_at(ski, self.task.conditions[number], self.snows[number], near=near)
         if derivatives is None:
-            raise SolverError(
-                "there is no equilibrium at condition {number}.", code="no_equilibrium", number=number + 1
-            )
+            raise SolverError("there is no equilibrium at condition {number}.").tag("no_equilibrium", number=number + 1)
         return derivatives
 
     def goal_values(self, goal: Goal, z: FloatArray) -> FloatArray:
@@ -130,7 +128,7 @@ class Evaluator:
 def _output(point: CarveDerivatives, name: str) -> float:
     value = point.output(name)
     if value is None or not math.isfinite(value):
-        raise SolverError("the carve has no {output}.", code="no_value", output=name)
+        raise SolverError("the carve has no {output}.").tag("no_value", output=name)
     return value
 
 

@@ -50,11 +50,8 @@ def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: i
     targets = [goal for goal in task.goals if goal.target is not None]
     if len(targets) != 2 or points < 2:
         raise ParameterError(
-            "a front needs two goals with a target and two points or more; there are {targets} and {points}.",
-            code="out_of_range",
-            targets=len(targets),
-            points=points,
-        )
+            "a front needs two goals with a target and two points or more; there are {targets} and {points}."
+        ).tag("out_of_range", targets=len(targets), points=points)
     first, second = targets
     limits = [goal for goal in task.goals if goal.target is None]
     evaluator = Evaluator(task)
@@ -88,7 +85,7 @@ def _best(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArr
         except SolverError:  # no ski or no equilibrium there: the start is lost
             continue
     if not found:
-        raise SolverError("no start led to a ski with an equilibrium. Narrow the bounds.", code="no_equilibrium")
+        raise SolverError("no start led to a ski with an equilibrium. Narrow the bounds.").tag("no_equilibrium")
     return min(found, key=search.result)
 
 

@@ -257,8 +257,8 @@ class _Maker:
         """Column of a stiffness from the table or from tests; None without both."""
         column, tests = self._column(name), self._column(*test)
         if column is not None and tests is not None:
-            raise ParameterError(
-                "{name} is stated together with tests of it. Remove one of them.", code="contradiction", name=name
+            raise ParameterError("{name} is stated together with tests of it. Remove one of them.").tag(
+                "contradiction", name=name
             )
         if column is not None:
             table = self._table(column, 1.0, layout)
@@ -269,10 +269,8 @@ class _Maker:
         station = self._from_tail(tests[0])[order] + layout.tail
         span, load, reading = (values[order] for values in tests[1:])
         if not all((values > 0).all() for values in (span, load, reading)):
-            raise ParameterError(
-                "a test of {name} has a length, load or reading of 0 or below. Correct it.",
-                code="out_of_range",
-                name=name,
+            raise ParameterError("a test of {name} has a length, load or reading of 0 or below. Correct it.").tag(
+                "out_of_range", name=name
             )
         if test == BEND_TEST:
             reading, step = reading * MM, self._measured.dial_step
@@ -325,8 +323,8 @@ def stiffness_of_tests(
     """
     rising = station[::-1]
     if np.any(np.diff(rising) <= 0):
-        raise ParameterError(
-            "two tests have the same station. Give one of them, or their mean.", code="repeated", station=station
+        raise ParameterError("two tests have the same station. Give one of them, or their mean.").tag(
+            "repeated", station=station
         )
     matrix = np.empty((len(station), len(station)))
     for row, (place, length) in enumerate(zip(station, span, strict=True)):
@@ -339,12 +337,10 @@ def stiffness_of_tests(
     if not (c > 0).all():
         raise ParameterError(
             "the tests contradict each other near {place:.0f} mm from the boot: the stiffness there would be below 0. "
-            "Check span, load and reading, or leave one of the neighbouring tests out.",
-            code="contradiction",
-            place=float(station[np.argmin(c)]) / MM,
-        )
+            "Check span, load and reading, or leave one of the neighbouring tests out."
+        ).tag("contradiction", place=float(station[np.argmin(c)]) / MM)
     return Stiffness(station, 1.0 / c, np.sqrt((inverse**2) @ error**2) / c**2)
 
 
 def _missing(problem: str) -> ParameterError:
-    return ParameterError(problem, code="missing")
+    return ParameterError(problem).tag("missing")

@@ -73,10 +73,8 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     best = min(starts, key=lambda start: start.result)
     if best.end is None:
         raise SolverError(
-            "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds.",
-            code="no_equilibrium",
-            count=task.starts,
-        )
+            "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds."
+        ).tag("no_equilibrium", count=task.starts)
     return design_of(search, best.end, tuple(starts))
 
 

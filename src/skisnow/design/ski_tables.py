@@ -64,11 +64,8 @@ class Mapped:
     def __post_init__(self) -> None:
         for name in self.columns.values():
             if name not in SYNONYMS:
-                raise ParameterError(
-                    "the column {name!r} is not known. {allowed}",
-                    code="unknown_name",
-                    name=name,
-                    allowed=nearest(name, SYNONYMS),
+                raise ParameterError("the column {name!r} is not known. {allowed}").tag(
+                    "unknown_name", name=name, allowed=nearest(name, SYNONYMS)
                 )
 
     def column(self, heading: str) -> str:
@@ -109,11 +106,8 @@ def read_ski_table(path: Path, mapped: Mapped) -> dict[str, FloatArray]:
                 return _columns(path, sheet, row, places, mapped)
     raise ParameterError(
         "{path} has no row with a heading for the station and one for another column. Allowed: {names}. State a "
-        "heading by --column HEADING=NAME.",
-        code="missing",
-        path=path,
-        names=list(SYNONYMS),
-    )
+        "heading by --column HEADING=NAME."
+    ).tag("missing", path=path, names=list(SYNONYMS))
 
 
 def _columns(path: Path, sheet: Sheet, header: int, places: Mapping[str, int], mapped: Mapped) -> dict[str, FloatArray]:
@@ -149,13 +143,8 @@ def _factor(path: Path, heading: str, unit: str, name: str) -> float:
     if factor is None:
         raise ParameterError(
             "{path}: the heading {heading!r} names no unit that {name} can have. Allowed: {allowed}. Write the unit in "
-            "brackets, or state it by --unit HEADING=UNIT.",
-            code="no_unit",
-            path=path,
-            heading=heading,
-            name=name,
-            allowed=allowed,
-        )
+            "brackets, or state it by --unit HEADING=UNIT."
+        ).tag("no_unit", path=path, heading=heading, name=name, allowed=allowed)
     return factor
 
 
@@ -165,8 +154,9 @@ def _number(path: Path, sheet: Sheet, row: int, place: int, mark: str, factor: f
     if cell and not abs(value) <= _LARGEST:
         raise ParameterError(
             "{path}, {sheet}, cell {letters}{row}: {cell!r} is not a number within ±{largest:g}. Correct it or leave "
-            "it blank.",
-            code="not_a_number",
+            "it blank."
+        ).tag(
+            "not_a_number",
             path=path,
             sheet=sheet.name,
             letters=column_letters(place),

@@ -158,17 +158,13 @@ def _require_tables(values: Mapping[str, Any]) -> None:
 
 
 def _refuse(problem: Message, code: str) -> None:
-    raise ParameterError(problem, code=code)
+    raise ParameterError(problem).tag(code)
 
 
 def _whole(name: str, value: object, lowest: int) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < lowest:
-        raise ParameterError(
-            "{name} is {value}. Allowed: a whole number from {lowest}.",
-            code="out_of_range",
-            name=name,
-            value=value,
-            lowest=lowest,
+        raise ParameterError("{name} is {value}. Allowed: a whole number from {lowest}.").tag(
+            "out_of_range", name=name, value=value, lowest=lowest
         )
     return value
 
@@ -190,11 +186,8 @@ def _variable(ski: Ski, name: str, bounds: object) -> Variable:
         or bounds[0] >= bounds[1]
     ):
         raise ParameterError(
-            "variables: {name} is {value}. Allowed: a lower and a higher bound, such as [64, 72].",
-            code="out_of_range",
-            name=name,
-            value=bounds,
-        )
+            "variables: {name} is {value}. Allowed: a lower and a higher bound, such as [64, 72]."
+        ).tag("out_of_range", name=name, value=bounds)
     return Variable(name, float(bounds[0]), float(bounds[1]))
 
 
@@ -255,26 +248,18 @@ def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     place = f"goals, {number}"
     goal: Goal = made(Goal, checked_table(Goal, table, place))
     if goal.output not in OUTPUTS:
-        raise ParameterError(
-            "{place}: unknown output {name}. {allowed}",
-            code="unknown_name",
-            place=place,
-            name=goal.output,
-            allowed=nearest(goal.output, OUTPUTS),
+        raise ParameterError("{place}: unknown output {name}. {allowed}").tag(
+            "unknown_name", place=place, name=goal.output, allowed=nearest(goal.output, OUTPUTS)
         )
     if sum(limit is not None for limit in (goal.target, goal.at_most, goal.at_least)) != 1:
-        raise ParameterError("{place}: give one of target, at_most and at_least.", code="contradiction", place=place)
+        raise ParameterError("{place}: give one of target, at_most and at_least.").tag("contradiction", place=place)
     chosen = goal.conditions or tuple(range(1, conditions + 1))
     if any(not 1 <= number <= conditions or number != int(number) for number in chosen) or (
         goal.ratio and len(chosen) != 2
     ):
         raise ParameterError(
-            "{place}: conditions is {chosen}. Allowed: numbers from 1 to {count}, two of them for a ratio.",
-            code="out_of_range",
-            place=place,
-            chosen=list(chosen),
-            count=conditions,
-        )
+            "{place}: conditions is {chosen}. Allowed: numbers from 1 to {count}, two of them for a ratio."
+        ).tag("out_of_range", place=place, chosen=list(chosen), count=conditions)
     return goal
 
 
@@ -291,10 +276,8 @@ def _constraint(table: Mapping[str, Any]) -> Constraint:
     if not sound or set(table) - {"terms", "at_least", "at_most"} or not all(map(_is_number, limits.values())):
         raise ParameterError(
             "constraints: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and "
-            "at_least or at_most.",
-            code="out_of_range",
-            table=dict(table),
-        )
+            "at_least or at_most."
+        ).tag("out_of_range", table=dict(table))
     return Constraint(terms=dict(terms or {}), **limits)
 
 
@@ -302,7 +285,7 @@ def _monotone(ski: Ski, key: str) -> list[Constraint]:
     """A stiffness that rises from the tip to the largest row of the start, and falls behind it."""
     values = (ski.keys or {}).get(key)
     if key not in LISTS or not isinstance(values, list):
-        raise ParameterError("monotone: {key} is not a list of stiffness of this ski.", code="unknown_name", key=key)
+        raise ParameterError("monotone: {key} is not a list of stiffness of this ski.").tag("unknown_name", key=key)
     top = values.index(max(values))
     pairs = ((row, row + 1) if row < top else (row + 1, row) for row in range(len(values) - 1))
     return [

@@ -17,15 +17,11 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
     """An array of finite numbers as compiled code takes it; it checks no shape itself."""
     array = np.asarray(given, float, order="C")
     if array.shape != shape:
-        raise ParameterError(
-            "{name} has shape {shape}; it must be {needed}",
-            code="wrong_shape",
-            name=name,
-            shape=str(array.shape),
-            needed=str(shape),
+        raise ParameterError("{name} has shape {shape}; it must be {needed}").tag(
+            "wrong_shape", name=name, shape=str(array.shape), needed=str(shape)
         )
     if not np.isfinite(array).all():
-        raise ParameterError("{name} contains a number that is not finite", code="not_a_number", name=name)
+        raise ParameterError("{name} contains a number that is not finite").tag("not_a_number", name=name)
     return array
 
 
@@ -79,11 +75,8 @@ class FlexibleSki(ShownFields):
         if not np.array_equal(np.sort(free), np.arange(0, n, 3)) or n % 3:
             raise ParameterError(
                 "FlexibleSki: unknown gives {n_free} free nodes their first unknowns, the matrices have {n} rows; "
-                "each node needs three separate ones",
-                code="wrong_shape",
-                n_free=len(free),
-                n=n,
-            )
+                "each node needs three separate ones"
+            ).tag("wrong_shape", n_free=len(free), n=n)
 
     def compiled(self) -> core.FlexibleSki:
         """The same as an object of the core."""
@@ -130,7 +123,7 @@ class Body(ShownFields):
         for name, shape in shapes.items():
             shaped(f"Body: {name}", getattr(self, name), shape)
         if not self.skis:
-            raise ParameterError("Body: it needs one ski or more", code="missing")
+            raise ParameterError("Body: it needs one ski or more").tag("missing")
 
     def compiled(self) -> core.Body:
         """The same as an object of the core."""

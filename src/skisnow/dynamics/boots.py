@@ -48,8 +48,8 @@ class BootPose(Shown):
             object.__setattr__(self, name, shaped(f"BootPose: {name}", getattr(self, name), shape))
         off = _off_rotation(self.axes.tolist())
         if off > 1e-9:
-            raise ParameterError(
-                "BootPose: axes are off by {off:.1e} from right-handed orthonormal ones", code="not_a_rotation", off=off
+            raise ParameterError("BootPose: axes are off by {off:.1e} from right-handed orthonormal ones").tag(
+                "not_a_rotation", off=off
             )
 
     def _facts(self) -> Facts:
@@ -94,19 +94,17 @@ class BootMotion(ShownFields):
 
     def __post_init__(self) -> None:
         if not self.start < self.end:
-            raise ParameterError(
-                "BootMotion: it starts at {start!r} s and ends at {end!r} s, not later",
-                code="out_of_range",
-                start=self.start,
-                end=self.end,
+            raise ParameterError("BootMotion: it starts at {start!r} s and ends at {end!r} s, not later").tag(
+                "out_of_range", start=self.start, end=self.end
             )
         object.__setattr__(self, "_turn", rotation_vector(self.first.axes @ self.last.axes.T))
         turn = math.hypot(*self._turn.tolist())
         if turn > FARTHEST_TURN:
             raise ParameterError(
                 "BootMotion: the boot turns by {degrees:.3g} degrees between {start:g} s and {end:g} s; at most "
-                "{limit:.3g} are allowed. Give poses in between",
-                code="out_of_range",
+                "{limit:.3g} are allowed. Give poses in between"
+            ).tag(
+                "out_of_range",
                 degrees=math.degrees(turn),
                 start=self.start,
                 end=self.end,

@@ -70,19 +70,13 @@ class StepControl:
     def __post_init__(self) -> None:
         for name in ("first", "tolerance", "longest", "shortest", "closeness"):
             if not 0.0 < getattr(self, name) < np.inf:
-                raise ParameterError(
-                    "StepControl: {name} is {value!r}; it must be finite and above 0",
-                    code="not_a_number",
-                    name=name,
-                    value=getattr(self, name),
+                raise ParameterError("StepControl: {name} is {value!r}; it must be finite and above 0").tag(
+                    "not_a_number", name=name, value=getattr(self, name)
                 )
         if self.shortest > self.longest:
             raise ParameterError(
-                "StepControl: shortest is {shortest!r}, above longest, {longest!r}; it must not be",
-                code="out_of_range",
-                shortest=self.shortest,
-                longest=self.longest,
-            )
+                "StepControl: shortest is {shortest!r}, above longest, {longest!r}; it must not be"
+            ).tag("out_of_range", shortest=self.shortest, longest=self.longest)
 
     def compiled(self) -> core.StepRule:
         """The rule as the core's type."""
@@ -156,21 +150,14 @@ class Dynamics:
         self, body: Body, contact: SnowContact, position: FloatArray, rotation: FloatArray, control: StepControl
     ) -> None:
         if len(contact.runners) != len(body.skis):
-            raise ParameterError(
-                "the body has {n_skis} skis, the contact {n_runners} runners",
-                code="wrong_shape",
-                n_skis=len(body.skis),
-                n_runners=len(contact.runners),
+            raise ParameterError("the body has {n_skis} skis, the contact {n_runners} runners").tag(
+                "wrong_shape", n_skis=len(body.skis), n_runners=len(contact.runners)
             )
         for k, (ski, runner) in enumerate(zip(body.skis, contact.runners, strict=True)):
             nodes = 0 if runner.nodes is None else len(runner.nodes)
             if nodes != len(ski.unknown):
-                raise ParameterError(
-                    "ski {k} of the body has {n_unknown} nodes, its runner {nodes}",
-                    code="wrong_shape",
-                    k=k,
-                    n_unknown=len(ski.unknown),
-                    nodes=nodes,
+                raise ParameterError("ski {k} of the body has {n_unknown} nodes, its runner {nodes}").tag(
+                    "wrong_shape", k=k, n_unknown=len(ski.unknown), nodes=nodes
                 )
         self.body, self.contact = body, contact
         self._core = core.Dynamics(body.compiled(), contact.compiled, control.compiled())
@@ -196,13 +183,10 @@ class Dynamics:
             Skis and motions differ in number, or a ski has no inertia.
         """
         if not self.feels_boots:
-            raise ParameterError("boots can move where each FlexibleSki has its inertia; one lacks it", code="no_data")
+            raise ParameterError("boots can move where each FlexibleSki has its inertia; one lacks it").tag("no_data")
         if len(motions) != len(self.body.skis):
-            raise ParameterError(
-                "there are {n_motions} motions of boots for {n_skis} skis",
-                code="wrong_shape",
-                n_motions=len(motions),
-                n_skis=len(self.body.skis),
+            raise ParameterError("there are {n_motions} motions of boots for {n_skis} skis").tag(
+                "wrong_shape", n_motions=len(motions), n_skis=len(self.body.skis)
             )
         self._core.move_boots(np.array([each.numbers for each in motions]))
 

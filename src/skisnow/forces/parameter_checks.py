@@ -26,12 +26,8 @@ def require_above_zero(owner: object, **parameters: float) -> None:
     """Refuse a parameter that is not a finite number above 0."""
     for name, value in parameters.items():
         if not (math.isfinite(value) and value > 0):
-            raise ParameterError(
-                "{kind}: {name} is {value!r}; it must be a finite number above 0",
-                code="out_of_range",
-                kind=type(owner).__name__,
-                name=name,
-                value=value,
+            raise ParameterError("{kind}: {name} is {value!r}; it must be a finite number above 0").tag(
+                "out_of_range", kind=type(owner).__name__, name=name, value=value
             )
 
 
@@ -39,12 +35,8 @@ def require_not_below_zero(owner: object, **parameters: float) -> None:
     """Refuse a parameter that is not a finite number of at least 0."""
     for name, value in parameters.items():
         if not (math.isfinite(value) and value >= 0):
-            raise ParameterError(
-                "{kind}: {name} is {value!r}; it must be a finite number, 0 or above",
-                code="out_of_range",
-                kind=type(owner).__name__,
-                name=name,
-                value=value,
+            raise ParameterError("{kind}: {name} is {value!r}; it must be a finite number, 0 or above").tag(
+                "out_of_range", kind=type(owner).__name__, name=name, value=value
             )
 
 
@@ -52,12 +44,8 @@ def require_finite(owner: object, **parameters: float) -> None:
     """Reject a parameter that is not a finite number."""
     for name, value in parameters.items():
         if not math.isfinite(value):
-            raise ParameterError(
-                "{kind}: {name} is {value!r}; it must be a finite number",
-                code="not_a_number",
-                kind=type(owner).__name__,
-                name=name,
-                value=value,
+            raise ParameterError("{kind}: {name} is {value!r}; it must be a finite number").tag(
+                "not_a_number", kind=type(owner).__name__, name=name, value=value
             )
 
 
@@ -70,10 +58,8 @@ def edge_angles(edge_angle: npt.ArrayLike) -> FloatArray:
         first = float(angle[wrong].flat[0])
         raise ParameterError(
             "edge angle is {edge_angle!r} rad; it must be between 0 and π/2 rad (0° and 90°): an angle in degrees "
-            "must be converted with math.radians",
-            code="out_of_range",
-            edge_angle=first,
-        )
+            "must be converted with math.radians"
+        ).tag("out_of_range", edge_angle=first)
     return angle
 
 

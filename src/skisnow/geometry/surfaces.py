@@ -44,15 +44,14 @@ class Grid(ShownFields):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
             if not np.all(np.isfinite(array)):
-                raise ParameterError(
-                    "Grid: {name} contains a number that is not finite", code="not_a_number", name=name
-                )
+                raise ParameterError("Grid: {name} contains a number that is not finite").tag("not_a_number", name=name)
         for name, places in (("x", self.x), ("y", self.y)):
             _require_even(name, places)
         if self.values.shape != (len(self.x), len(self.y)):
             raise ParameterError(
-                "Grid: values have shape {shape}; for {n_x} places in x and {n_y} in y it must be {needed}",
-                code="wrong_shape",
+                "Grid: values have shape {shape}; for {n_x} places in x and {n_y} in y it must be {needed}"
+            ).tag(
+                "wrong_shape",
                 shape=str(self.values.shape),
                 n_x=len(self.x),
                 n_y=len(self.y),
@@ -103,20 +102,13 @@ class Grid(ShownFields):
 
 def _require_even(name: str, places: FloatArray) -> None:
     if places.ndim != 1 or not len(places):
-        raise ParameterError(
-            "Grid: {name} must be a row of one place or more, its shape is {shape}",
-            code="wrong_shape",
-            name=name,
-            shape=str(places.shape),
+        raise ParameterError("Grid: {name} must be a row of one place or more, its shape is {shape}").tag(
+            "wrong_shape", name=name, shape=str(places.shape)
         )
     step = np.diff(places)
     if len(step) and (step.min() <= 0.0 or np.ptp(step) > EVEN * len(step) * np.abs(places).max()):
-        raise ParameterError(
-            "Grid: places in {name} must rise evenly; their steps go from {min:g} to {max:g} m",
-            code="not_rising",
-            name=name,
-            min=step.min(),
-            max=step.max(),
+        raise ParameterError("Grid: places in {name} must rise evenly; their steps go from {min:g} to {max:g} m").tag(
+            "not_rising", name=name, min=step.min(), max=step.max()
         )
 
 

@@ -56,9 +56,7 @@ def read_data(path: str | Path) -> Data:
     """
     path = Path(path)
     if not is_file(path):
-        raise ParameterError(
-            "{path} cannot be read: the file does not exist. Check the path", code="no_file", path=path
-        )
+        raise ParameterError("{path} cannot be read: the file does not exist. Check the path").tag("no_file", path=path)
     if path.suffix.lower() in (".csv", ".txt", ".tsv"):
         head = _head(path)
         if set(CELL_COLUMNS) <= head or ("station_m" in head and not _is_track(head)):
@@ -67,11 +65,8 @@ def read_data(path: str | Path) -> Data:
             if of_campaign := sorted(head & _OF_CAMPAIGN):
                 raise ParameterError(
                     "{path} has a column {column}: it is a table of a campaign, no measured grooves. Give its folder "
-                    "to `skisnow analyse`, and results.json as snow.results",
-                    code="table_of_campaign",
-                    path=path,
-                    column=of_campaign[0],
-                )
+                    "to `skisnow analyse`, and results.json as snow.results"
+                ).tag("table_of_campaign", path=path, column=of_campaign[0])
             return parse_grooves(read_table(path))
     from ..track.read import read_track
 
@@ -153,7 +148,7 @@ def collect_data(
 ) -> IdentificationData:
     """Read the files, move tracks into the slope's frame, and check the data against the scenario."""
     if not data:
-        raise ParameterError("there are no data: name one or several files", code="no_data")
+        raise ParameterError("there are no data: name one or several files").tag("no_data")
     _require_different([datum for datum in data if isinstance(datum, str | Path)])
     measurements = [read_data(datum) if isinstance(datum, str | Path) else datum for datum in data]
     names: set[str] = set()
@@ -221,11 +216,8 @@ def _require_different(paths: Sequence[str | Path]) -> None:
             continue  # its reader reports it
         content = hashlib.sha256(Path(path).read_bytes()).digest()
         if content in seen:
-            raise ParameterError(
-                "{path} has the same content as {other}. Name each file once",
-                code="same_file",
-                path=path,
-                other=seen[content],
+            raise ParameterError("{path} has the same content as {other}. Name each file once").tag(
+                "same_file", path=path, other=seen[content]
             )
         seen[content] = path
 
@@ -235,11 +227,8 @@ def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) 
     starts: dict[str, dict[str, Any]] = {}
     for run, entries in table.items():
         if run not in runs:
-            raise ParameterError(
-                '[identify.runs."{run}"]: unknown run. {allowed}',
-                code="unknown_name",
-                run=run,
-                allowed=nearest(run, runs),
+            raise ParameterError('[identify.runs."{run}"]: unknown run. {allowed}').tag(
+                "unknown_name", run=run, allowed=nearest(run, runs)
             )
         keys = {free_key(word): value for word, value in entries.items()}
         starts[run] = {key: SCENARIO_KEYS[key].in_range(value) for key, value in keys.items()}
@@ -261,12 +250,8 @@ def _require_not_free(own: Mapping[str, Mapping[str, float]], keys: Sequence[str
             if key in keys and not key.startswith(START):
                 raise ParameterError(
                     '[identify.runs."{run}"] states {key}, but one value of {key} is free for all runs. Free '
-                    "{key}@{each} instead, or remove it from the table",
-                    code="value_of_free_key",
-                    run=run,
-                    key=key,
-                    each=EACH,
-                )
+                    "{key}@{each} instead, or remove it from the table"
+                ).tag("value_of_free_key", run=run, key=key, each=EACH)
 
 
 FARTHEST: Final = 50_000.0
@@ -288,10 +273,8 @@ def move_to_scenario_frame(
         raise ParameterError(
             "{name} is in east, north and up, but the place of the slope is not given. Write [identify.site] with "
             "fall_line_azimuth_deg (the compass direction in which it falls), and latitude_deg and longitude_deg of "
-            "its x = y = 0; without these two the track's first point is used as the scenario's start",
-            code="site_missing",
-            name=track.name,
-        )
+            "its x = y = 0; without these two the track's first point is used as the scenario's start"
+        ).tag("site_missing", name=track.name)
     parsed = _site(site)
     azimuth = parsed.fall_line_azimuth_deg * DEGREE
     slope = scenario.scenario.slope
@@ -329,18 +312,15 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
     if distance > FARTHEST:
         raise ParameterError(
             "{name} is {distance:.4g} km from the site of [identify.site]. It is from another place, or latitude and "
-            "longitude are swapped",
-            code="far_from_site",
-            name=track.name,
-            distance=distance / 1000.0,
-        )
+            "longitude are swapped"
+        ).tag("far_from_site", name=track.name, distance=distance / 1000.0)
     return at
 
 
 def _site(site: Mapping[str, Any]) -> Site:
     parsed = made(Site, checked_table(Site, site, "[identify.site]"))
     if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
-        raise ParameterError(
-            "[identify.site]: latitude_deg and longitude_deg go together; one is missing", code="half_place"
+        raise ParameterError("[identify.site]: latitude_deg and longitude_deg go together; one is missing").tag(
+            "half_place"
         )
     return parsed

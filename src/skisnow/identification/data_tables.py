@@ -63,8 +63,9 @@ class TableFile:
         if missing:
             raise ParameterError(
                 "{name}, row {header_row}: the column {missing} is missing; the columns are {columns}; required are "
-                "{needed}",
-                code="missing_column",
+                "{needed}"
+            ).tag(
+                "missing_column",
                 name=self.name,
                 header_row=self.header_row,
                 missing=missing[0],
@@ -72,7 +73,7 @@ class TableFile:
                 needed=list(columns),
             )
         if not self.rows:
-            raise ParameterError("{name} has no rows below its header", code="no_rows", name=self.name)
+            raise ParameterError("{name} has no rows below its header").tag("no_rows", name=self.name)
 
     def require_no_slip(self, expected: tuple[str, ...]) -> None:
         """Reject a column whose name is similar to that of a missing one: it would not be read."""
@@ -82,13 +83,8 @@ class TableFile:
             if similar:
                 raise ParameterError(
                     "{name}, row {header_row}: unknown column {column}. Did you mean {similar}? Rename it, or give "
-                    "it a different name if it is not to be read",
-                    code="misspelled_column",
-                    name=self.name,
-                    header_row=self.header_row,
-                    column=name,
-                    similar=similar[0],
-                )
+                    "it a different name if it is not to be read"
+                ).tag("misspelled_column", name=self.name, header_row=self.header_row, column=name, similar=similar[0])
 
     def texts(self, column: str) -> list[str]:
         """The cells of a column, which must not be empty."""
@@ -97,12 +93,8 @@ class TableFile:
         for row, cells in self.rows:
             text = cells[place] if place < len(cells) else ""
             if not text:
-                raise ParameterError(
-                    "{name}, row {row}, column {column}: the cell is empty",
-                    code="empty_cell",
-                    name=self.name,
-                    row=row,
-                    column=column,
+                raise ParameterError("{name}, row {row}, column {column}: the cell is empty").tag(
+                    "empty_cell", name=self.name, row=row, column=column
                 )
             texts.append(text)
         return texts
@@ -120,12 +112,12 @@ class TableFile:
             value = number(text, self.mark)
             if not math.isfinite(value):
                 sentence = _NOT_A_NUMBER[self.mark == ","]
-                raise ParameterError(sentence, code="not_a_number", name=self.name, row=row, column=column, value=text)
+                raise ParameterError(sentence).tag("not_a_number", name=self.name, row=row, column=column, value=text)
             try:
                 quantity.in_range(value)
             except ParameterError as error:
-                raise ParameterError(
-                    "{name}, row {row}: {error}", code=error.code, name=self.name, row=row, error=error
+                raise ParameterError("{name}, row {row}: {error}").tag(
+                    error.code, name=self.name, row=row, error=error
                 ) from None
             values.append(value)
         return np.array(values)
@@ -177,36 +169,23 @@ class PhotoCellRun(ShownFields):
 
     def __post_init__(self) -> None:
         if len(self.station) < 1 or self.station.shape != self.time.shape:
-            raise ParameterError(
-                "run {name}: {n_cells} cells and {n_times} times",
-                code="unequal_lengths",
-                name=self.name,
-                n_cells=len(self.station),
-                n_times=len(self.time),
+            raise ParameterError("run {name}: {n_cells} cells and {n_times} times").tag(
+                "unequal_lengths", name=self.name, n_cells=len(self.station), n_times=len(self.time)
             )
         if self.station[0] < 0.0:
             raise ParameterError(
-                "run {name}: station {station:g} m is before the start. Give distances from the scenario's start down",
-                code="before_start",
-                name=self.name,
-                station=self.station[0],
-            )
+                "run {name}: station {station:g} m is before the start. Give distances from the scenario's start down"
+            ).tag("before_start", name=self.name, station=self.station[0])
         for what, values, unit in (("station", self.station, "m"), ("time", self.time, "s")):
             wrong = np.flatnonzero(np.diff(values) <= 0.0)
             if wrong.size:
                 first, second = values[wrong[0]], values[wrong[0] + 1]
                 raise ParameterError(
                     "run {name}: {what} {second:g} {unit} follows {first:g} {unit}; both must rise from cell to "
-                    "cell. Sort the rows of the run, and check for a clock that was set back",
-                    code=f"{what}_not_rising",
-                    name=self.name,
-                    what=_MEASURED[what],
-                    second=second,
-                    unit=unit,
-                    first=first,
-                )
+                    "cell. Sort the rows of the run, and check for a clock that was set back"
+                ).tag(f"{what}_not_rising", name=self.name, what=_MEASURED[what], second=second, unit=unit, first=first)
         if self.time_sd is not None and not np.all(self.time_sd > 0.0):
-            raise ParameterError("run {name}: time_sd_s must be above 0", code="out_of_range", name=self.name)
+            raise ParameterError("run {name}: time_sd_s must be above 0").tag("out_of_range", name=self.name)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -240,7 +219,7 @@ def parse_photo_cells(table: TableFile) -> PhotoCells:
         try:
             runs.append(PhotoCellRun(name, station[rows], time[rows], _sd_of_run(name, spread, rows)))
         except ParameterError as error:
-            raise ParameterError("{name}: {error}", code=error.code, name=table.name, error=error) from error
+            raise ParameterError("{name}: {error}").tag(error.code, name=table.name, error=error) from error
     return PhotoCells(table.name, tuple(runs))
 
 
@@ -248,10 +227,8 @@ def _sd_of_run(name: str, sd: FloatArray | None, rows: BoolArray) -> FloatArray 
     if sd is None or np.isnan(sd[rows]).all():
         return None
     if np.isnan(sd[rows]).any():
-        raise ParameterError(
-            "run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none",
-            code="partial_accuracy",
-            name=name,
+        raise ParameterError("run {name}: time_sd_s is given in some rows only. Give it in all rows, or in none").tag(
+            "partial_accuracy", name=name
         )
     return sd[rows]
 
@@ -307,22 +284,13 @@ class MeasuredGrooves(ShownFields):
             values, spread = getattr(self, what), getattr(self, f"{what}_sd")
             for place in np.flatnonzero(np.isfinite(values)):
                 if values[place] <= 0.0:
-                    raise ParameterError(
-                        "{name}: {what} of place {place} is {value:g} m; it must be above 0",
-                        code="out_of_range",
-                        name=self.name,
-                        what=_MEASURED[what],
-                        place=place + 1,
-                        value=values[place],
+                    raise ParameterError("{name}: {what} of place {place} is {value:g} m; it must be above 0").tag(
+                        "out_of_range", name=self.name, what=_MEASURED[what], place=place + 1, value=values[place]
                     )
                 if not spread[place] > 0.0:
                     raise ParameterError(
-                        "{name}: the standard deviation of {what} of place {place} must be above 0",
-                        code="out_of_range",
-                        name=self.name,
-                        what=_MEASURED[what],
-                        place=place + 1,
-                    )
+                        "{name}: the standard deviation of {what} of place {place} must be above 0"
+                    ).tag("out_of_range", name=self.name, what=_MEASURED[what], place=place + 1)
 
     def __len__(self) -> int:
         return len(self.depth)
@@ -357,8 +325,8 @@ def parse_grooves(table: TableFile) -> MeasuredGrooves:
         columns[name] = (values, np.full(len(values), _scatter(table.name, name, values[measured])))
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
     if not any(np.isfinite(values).any() for values in (depth, width, radius)):
-        raise ParameterError(
-            "{name} has no column of {columns}", code="no_columns", name=table.name, columns=list(GROOVE_COLUMNS)
+        raise ParameterError("{name} has no column of {columns}").tag(
+            "no_columns", name=table.name, columns=list(GROOVE_COLUMNS)
         )
     return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
@@ -373,8 +341,9 @@ def _scatter(file: str, name: str, values: FloatArray) -> float:
     if len(values) < FEWEST_FOR_SCATTER:
         raise ParameterError(
             "{file}: {name} has no standard deviation ({column}), and {count} places are too few to estimate it; "
-            "state it, or measure {fewest} places",
-            code="no_deviation",
+            "state it, or measure {fewest} places"
+        ).tag(
+            "no_deviation",
             file=file,
             name=name,
             column=name.replace("_mm", "_sd_mm").replace("s_m", "s_sd_m"),

@@ -177,9 +177,8 @@ def _named_keys(free: str | Sequence[str], tables: Iterable[str]) -> tuple[str, 
     keys = free_keys(free) or tuple(dict.fromkeys(key.partition("@")[0] for key in tables))
     if not keys:
         raise ParameterError(
-            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario',
-            code="nothing_free",
-        )
+            'No parameter is free. Name keys with --free, or write [identify."KEY"] in the scenario'
+        ).tag("nothing_free")
     return keys
 
 
@@ -226,11 +225,8 @@ def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> 
         if not any(observation.depends_on(key) for observation in observations):
             kinds = [_KINDS[kind] for kind in dict.fromkeys(observation.kind for observation in observations)]
             raise ParameterError(
-                "--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it",
-                code="unused_key",
-                key=key,
-                kinds=kinds,
-            )
+                "--free: {key} has no effect on {kinds}. Remove it, or add data that depend on it"
+            ).tag("unused_key", key=key, kinds=kinds)
 
 
 def _unused_warnings(keys: Sequence[str], own: Mapping[str, object]) -> tuple[str, ...]:

@@ -76,9 +76,8 @@ def slope_line(slope: Slope, start: float) -> SlopeLine:
     if isinstance(slope, Terrain):
         raise ParameterError(
             'Photo-cell times are computed along one line, and slope.kind = "grid" does not define one. Give the '
-            'heights along the line: slope.kind = "profile"',
-            code="no_line",
-        )
+            'heights along the line: slope.kind = "profile"'
+        ).tag("no_line")
     middle = 0.5 * (slope.x[1:] + slope.x[:-1])
     of_segment = np.diff(slope.height) / np.diff(slope.x)
     ahead = middle > start

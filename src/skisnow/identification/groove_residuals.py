@@ -199,13 +199,12 @@ def require_groove_stays(scenario: ScenarioFile) -> None:
     """Reject scenarios whose ski leaves no groove, or whose edge angle is 0."""
     if scenario.scenario.contact.unloading_ratio <= 1.0:
         raise ParameterError(
-            "snow.unloading_ratio is 1: elastic snow keeps no groove. Give the measured unloading ratio of the snow",
-            code="elastic_snow",
-        )
+            "snow.unloading_ratio is 1: elastic snow keeps no groove. Give the measured unloading ratio of the snow"
+        ).tag("elastic_snow")
     if scenario.scenario.sledge.edge_angle == 0.0:
         raise ParameterError(
-            "sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle", code="flat_ski"
-        )
+            "sledge.edge_angle_deg is 0: a flat ski leaves no groove of an edge. Give the edge angle"
+        ).tag("flat_ski")
 
 
 def _mass(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:

@@ -244,17 +244,14 @@ class _Resample:
 def require_bootstrap(resamples: int, by: str) -> None:
     """Validate the options of the bootstrap."""
     if by not in ("refit", "linear"):
-        raise ParameterError(
-            "Unknown bootstrap method {value!r}. Allowed: refit, linear", code="unknown_bootstrap", value=by
+        raise ParameterError("Unknown bootstrap method {value!r}. Allowed: refit, linear").tag(
+            "unknown_bootstrap", value=by
         )
     if resamples != 0 and resamples < FEWEST:
         raise ParameterError(
             "{resamples} resamples are too few for 95 % intervals: at least {fewest} are needed, some hundred are "
-            "recommended",
-            code="too_few_resamples",
-            resamples=resamples,
-            fewest=FEWEST,
-        )
+            "recommended"
+        ).tag("too_few_resamples", resamples=resamples, fewest=FEWEST)
 
 
 def add_bootstrap_intervals(

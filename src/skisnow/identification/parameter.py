@@ -67,27 +67,19 @@ class Parameter:
     def __post_init__(self) -> None:
         for name in ("start", "lower", "upper", "size"):
             if not math.isfinite(getattr(self, name)):
-                raise ParameterError(
-                    "{key}: {name} is {value}; it must be a finite number",
-                    code="not_a_number",
-                    key=self.key,
-                    name=name,
-                    value=getattr(self, name),
+                raise ParameterError("{key}: {name} is {value}; it must be a finite number").tag(
+                    "not_a_number", key=self.key, name=name, value=getattr(self, name)
                 )
         if not self.lower < self.upper:
-            raise ParameterError(
-                "{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper",
-                code="swapped_bounds",
-                key=self.key,
-                lower=self.lower,
-                upper=self.upper,
-                unit=self._unit,
+            raise ParameterError("{key}: lower is {lower:g} and upper {upper:g}{unit}; lower must be below upper").tag(
+                "swapped_bounds", key=self.key, lower=self.lower, upper=self.upper, unit=self._unit
             )
         if not self.lower <= self.start <= self.upper:
             raise ParameterError(
                 "{key}: the bounds, {lower:g} to {upper:g}{unit}, exclude the start, {start:g}. Widen them, or start "
-                "inside",
-                code="start_outside_bounds",
+                "inside"
+            ).tag(
+                "start_outside_bounds",
                 key=self.key,
                 lower=self.lower,
                 upper=self.upper,
@@ -95,38 +87,24 @@ class Parameter:
                 start=self.start,
             )
         if self.logarithmic and self.lower <= 0.0:
-            raise ParameterError(
-                "{key}: lower is {lower:g}{unit}; it must be above 0",
-                code="out_of_range",
-                key=self.key,
-                lower=self.lower,
-                unit=self._unit,
+            raise ParameterError("{key}: lower is {lower:g}{unit}; it must be above 0").tag(
+                "out_of_range", key=self.key, lower=self.lower, unit=self._unit
             )
         self._require_prior()
 
     def _require_prior(self) -> None:
         if (self.prior_mean is None) != (self.prior_sd is None):
             missing = "prior_sd" if self.prior_sd is None else "prior_mean"
-            raise ParameterError(
-                "{key}: {missing} is missing; a prior has a mean and a standard deviation",
-                code="half_prior",
-                key=self.key,
-                missing=missing,
+            raise ParameterError("{key}: {missing} is missing; a prior has a mean and a standard deviation").tag(
+                "half_prior", key=self.key, missing=missing
             )
         if self.prior_sd is not None and not (math.isfinite(self.prior_sd) and self.prior_sd > 0.0):
-            raise ParameterError(
-                "{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0",
-                code="out_of_range",
-                key=self.key,
-                prior_sd=self.prior_sd,
-                unit=self._unit,
+            raise ParameterError("{key}: prior_sd is {prior_sd:g}{unit}; it must be above 0").tag(
+                "out_of_range", key=self.key, prior_sd=self.prior_sd, unit=self._unit
             )
         if self.prior_mean is not None and not math.isfinite(self.prior_mean):
-            raise ParameterError(
-                "{key}: prior_mean is {prior_mean}; it must be a finite number",
-                code="not_a_number",
-                key=self.key,
-                prior_mean=self.prior_mean,
+            raise ParameterError("{key}: prior_mean is {prior_mean}; it must be a finite number").tag(
+                "not_a_number", key=self.key, prior_mean=self.prior_mean
             )
 
     @property
@@ -202,8 +180,8 @@ def _parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping
     entries = {**tables.get(own, {}), **tables.get(key, {})}
     start = entries.get("start", values.get(key, values.get(own)))
     if start is None:
-        raise ParameterError(
-            '{key} has no value in the scenario; give it one, or [identify."{key}"] start = …', code="no_start", key=own
+        raise ParameterError('{key} has no value in the scenario; give it one, or [identify."{key}"] start = …').tag(
+            "no_start", key=own
         )
     start = float(start)
     defaults = default_search(own, start)

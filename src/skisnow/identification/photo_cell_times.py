@@ -55,16 +55,15 @@ class PhotoCellTimes:
         stated = {run.time_sd is not None for run in self.cells.runs}
         if len(stated) > 1:
             raise ParameterError(
-                "{name}: some runs state time_sd_s and some do not; write it for all of them, or for none",
-                code="partial_accuracy",
-                name=self.cells.name,
-            )
+                "{name}: some runs state time_sd_s and some do not; write it for all of them, or for none"
+            ).tag("partial_accuracy", name=self.cells.name)
         for run in self.cells.runs:
             if run.station[-1] > self._line.length:
                 raise ParameterError(
                     "{name}, run {run}: station {station:g} m is beyond the end of the profile, {length:.4g} m from "
-                    "the start. Is it the right slope?",
-                    code="out_of_range",
+                    "the start. Is it the right slope?"
+                ).tag(
+                    "out_of_range",
                     name=self.cells.name,
                     run=run.name,
                     station=run.station[-1],

@@ -195,12 +195,8 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
     for key in keys:
         own, at, run = key.partition("@")
         if at and run != EACH and run not in runs:
-            raise ParameterError(
-                "--free: {key}: unknown run {run!r}. {allowed}",
-                code="unknown_run",
-                key=key,
-                run=run,
-                allowed=nearest(run, runs),
+            raise ParameterError("--free: {key}: unknown run {run!r}. {allowed}").tag(
+                "unknown_run", key=key, run=run, allowed=nearest(run, runs)
             )
         if len(runs) < 2:
             expanded.append(own)
@@ -210,7 +206,7 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
             expanded.append(key)
     for key in expanded:
         if expanded.count(key) > 1:
-            raise ParameterError("--free: {key} is given twice. Remove one of them", code="repeated_key", key=key)
+            raise ParameterError("--free: {key} is given twice. Remove one of them").tag("repeated_key", key=key)
     return tuple(expanded)
 
 

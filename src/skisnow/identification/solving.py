@@ -148,7 +148,7 @@ class _Solver:
             warnings = [text for observation in self.problem.observations for text in observation.warnings(values)]
             sentence = template("nothing can be computed at the start: {warnings}")
             without = template("nothing can be computed at the start: no residuals")
-            raise FitError(sentence if warnings else without, code="no_residuals", warnings=warnings)
+            raise FitError(sentence if warnings else without).tag("no_residuals", warnings=warnings)
         return best
 
     def _run_starts(self) -> list[FloatArray]:

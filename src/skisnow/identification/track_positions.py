@@ -70,8 +70,8 @@ def track_points(track: Track) -> TrackPoints:
     """Select the usable points of a track in the slope's frame."""
     use = track.usable
     if not use.any():
-        raise ParameterError(
-            _NO_POINT[bool(track.flagged)], code="no_data", name=track.name, flags=str(dict(track.flagged))
+        raise ParameterError(_NO_POINT[bool(track.flagged)]).tag(
+            "no_data", name=track.name, flags=str(dict(track.flagged))
         )
     time, place = track.time[use], track.place[use, :2]
     stated_sd = None if track.place_sd is None else track.place_sd[use, :2]
@@ -292,8 +292,9 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
         raise ParameterError(
             "{name} begins {distance} from the scenario's start (x = {start_x:g} m, y = {start_y:g} m) and is "
             "{length} long: it is of another place, or in another frame. Give x down the fall line and y to the left "
-            "in m, from the slope's own origin, or set start.x_m and start.y_m",
-            code="other_place",
+            "in m, from the slope's own origin, or set start.x_m and start.y_m"
+        ).tag(
+            "other_place",
             name=track.name,
             distance=_distance(away),
             start_x=start[0],

@@ -138,10 +138,8 @@ def _density(sample: LayerDensity) -> str:
 
 def _temperature(observed: DepthTemperature) -> str:
     if observed.temperature_C > 0.0:
-        raise ParameterError(
-            "snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C",
-            code="cannot_write",
-            temperature_c=observed.temperature_C,
+        raise ParameterError("snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C").tag(
+            "cannot_write", temperature_c=observed.temperature_C
         )
     temperature = _text("snowTemp", _number(observed.temperature_C), uom="degC")
     return _nested("Obs", _cm("depth", observed.depth) + temperature)
@@ -211,12 +209,8 @@ def _number(value: float) -> str:
 
 def _require(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
     if value not in allowed:
-        raise ParameterError(
-            "{field}: {value!r} cannot be written: CAAML allows {allowed}",
-            code="cannot_write",
-            field=what,
-            value=value,
-            allowed=sorted(allowed),
+        raise ParameterError("{field}: {value!r} cannot be written: CAAML allows {allowed}").tag(
+            "cannot_write", field=what, value=value, allowed=sorted(allowed)
         )
 
 
@@ -234,5 +228,5 @@ def _moment(time: str) -> str:
                 "give it with --time"
             )
         )
-        raise ParameterError(problem, code="missing")
+        raise ParameterError(problem).tag("missing")
     return f"{time}:00" if re.fullmatch(r"[^T]+T\d\d:\d\d", time) else time

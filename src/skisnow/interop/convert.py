@@ -54,8 +54,8 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     available = {key: made for key, made in QUANTITIES.items() if made[0] in series.fields}
     if not available:
         wanted = ", ".join(name for name, *_ in QUANTITIES.values())
-        raise ParameterError(
-            "{file} has no field of {wanted}; nothing was written", code="no_data", file=series.file, wanted=wanted
+        raise ParameterError("{file} has no field of {wanted}; nothing was written").tag(
+            "no_data", file=series.file, wanted=wanted
         )
     columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in available.values()]
     rows = (
@@ -91,12 +91,8 @@ def _smet(series: StationSeries) -> Iterator[str]:
     for when, *values in zip(_times(series, zone=False), *columns, strict=True):
         if NO_DATA in values:
             raise ParameterError(
-                "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET",
-                code="out_of_range",
-                file=series.file,
-                no_data=NO_DATA,
-                when=when,
-            )
+                "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET"
+            ).tag("out_of_range", file=series.file, no_data=NO_DATA, when=when)
         yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
 
 
@@ -169,28 +165,22 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
     kinds = _kind(source), _kind(target)
     made = CONVERSIONS.get(kinds)
     if made is None:
-        raise ParameterError(
-            "{source} to {target} is not known. Known are {known}",
-            code="unknown_name",
-            source=kinds[0],
-            target=kinds[1],
-            known=known_conversions(),
+        raise ParameterError("{source} to {target} is not known. Known are {known}").tag(
+            "unknown_name", source=kinds[0], target=kinds[1], known=known_conversions()
         )
     if source.resolve() == target.resolve():
-        raise OutputError(
-            "{target} is the file that is read; give the new one another name", code="same_file", target=target
+        raise OutputError("{target} is the file that is read; give the new one another name").tag(
+            "same_file", target=target
         )
     options = options or ConvertOptions()
     if options.forces is not None and kinds[1] != ENDINGS[".c3d"]:
         raise ParameterError(
-            "forces are written to a .c3d file with its markers; {target} is not one. Remove --forces",
-            code="wrong_ending",
-            target=target,
-        )
+            "forces are written to a .c3d file with its markers; {target} is not one. Remove --forces"
+        ).tag("wrong_ending", target=target)
     if options.layers_to is not None and kinds != ("SnowMicroPen", CSV):
         raise ParameterError(
-            "layers of a run come from a .pnt file and go into a .csv file. Remove --layers-to-mm", code="wrong_ending"
-        )
+            "layers of a run come from a .pnt file and go into a .csv file. Remove --layers-to-mm"
+        ).tag("wrong_ending")
     return made(source, target, options)
 
 
@@ -205,7 +195,7 @@ def _kind(path: Path) -> str:
     ending = path.suffix.lower()
     if ending not in ENDINGS:
         problem = Message("the ending of {path} states no format; a folder is a campaign.", path=path)
-        raise ParameterError(joined([problem, nearest(ending, ENDINGS)]), code="wrong_ending")
+        raise ParameterError(joined([problem, nearest(ending, ENDINGS)])).tag("wrong_ending")
     return ENDINGS[ending]
 
 
@@ -215,12 +205,8 @@ def _pit_of_campaign(source: Path, options: ConvertOptions) -> SnowPit:
     campaign = read_campaign(source)
     sites = sites_of(campaign)
     if options.site is None and len(sites) != 1:
-        raise ParameterError(
-            "{source} has {n_sites} sites; name one with --site: {sites}",
-            code="missing",
-            source=source,
-            n_sites=len(sites),
-            sites=list(sites),
+        raise ParameterError("{source} has {n_sites} sites; name one with --site: {sites}").tag(
+            "missing", source=source, n_sites=len(sites), sites=list(sites)
         )
     site = sites[0] if options.site is None else options.site
     return site_pit(analyse(campaign, n_resamples=FEWEST_RESAMPLES), site)  # no bootstrap is in a mean's interval
@@ -248,11 +234,8 @@ def _recording_as_csv(source: Path, target: Path, options: ConvertOptions) -> tu
     surface = snow_surface(profile.force, profile.sample_distance, rise=default.surface_rise, hold=default.surface_hold)
     tops = MM * np.arange(round(options.layers_to / MM) + 2)
     if surface is None or profile.depth[-1] - surface.depth < tops[-1]:
-        raise ParameterError(
-            "{source} has no snow surface with {depth_mm:g} mm of snow below it",
-            code="no_data",
-            source=source,
-            depth_mm=tops[-1] / MM,
+        raise ParameterError("{source} has no snow surface with {depth_mm:g} mm of snow below it").tag(
+            "no_data", source=source, depth_mm=tops[-1] / MM
         )
     borders = np.searchsorted(profile.depth, surface.depth + tops)
     layers = np.split(profile.force, borders)[1:-1]

@@ -169,20 +169,17 @@ class SnowForces:
         try:
             import mujoco
         except ImportError:
-            raise ParameterError("MuJoCo is not installed: pip install mujoco", code="wrong_kind") from None
+            raise ParameterError("MuJoCo is not installed: pip install mujoco").tag("wrong_kind") from None
         self._engine: Any = mujoco
         if len(sites) != len(contact.runners):
-            raise ParameterError(
-                "SnowForces: {n_sites} sites for {n_runners} runners; each needs one",
-                code="wrong_shape",
-                n_sites=len(sites),
-                n_runners=len(contact.runners),
+            raise ParameterError("SnowForces: {n_sites} sites for {n_runners} runners; each needs one").tag(
+                "wrong_shape", n_sites=len(sites), n_runners=len(contact.runners)
             )
         if any(runner.nodes is not None for runner in contact.runners):
-            raise ParameterError("SnowForces: a site has no beam; its runner has to be rigid", code="no_data")
+            raise ParameterError("SnowForces: a site has no beam; its runner has to be rigid").tag("no_data")
         if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
-            raise ParameterError(
-                "SnowForces: RK4 requires forces at times that are not accepted; use Euler", code="not_supported"
+            raise ParameterError("SnowForces: RK4 requires forces at times that are not accepted; use Euler").tag(
+                "not_supported"
             )
         self._sites = [self._site(model, name) for name in sites]
         self.model, self.contact = model, contact
@@ -196,11 +193,8 @@ class SnowForces:
         index = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
         if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))
-            raise ParameterError(
-                "SnowForces: unknown site {name}; the sites are {known}",
-                code="unknown_name",
-                name=name,
-                known=names or "-",
+            raise ParameterError("SnowForces: unknown site {name}; the sites are {known}").tag(
+                "unknown_name", name=name, known=names or "-"
             )
         return index
 

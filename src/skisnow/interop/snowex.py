@@ -58,14 +58,12 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     if height is None:
         raise ParameterError(
             "SnowEx counts heights from the ground, and the snow height of {name!r} is not known: give it with "
-            "--snow-height-cm",
-            code="unknown_name",
-            name=pit.name,
-        )
+            "--snow-height-cm"
+        ).tag("unknown_name", name=pit.name)
     tables = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
     if not tables:
-        raise ParameterError(
-            "{name!r} has no layers, densities or temperatures; nothing was written", code="no_data", name=pit.name
+        raise ParameterError("{name!r} has no layers, densities or temperatures; nothing was written").tag(
+            "no_data", name=pit.name
         )
     written = []
     for name, (columns, rows) in tables.items():
@@ -157,12 +155,8 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     campaign = analysis.campaign
     sites = {name for table in _density_tables(campaign) for name in table[0]}
     if site not in sites:
-        raise ParameterError(
-            "{name} has no site {site!r}; it has {sites}",
-            code="no_data",
-            name=campaign.name,
-            site=site,
-            sites=sorted(sites),
+        raise ParameterError("{name} has no site {site!r}; it has {sites}").tag(
+            "no_data", name=campaign.name, site=site, sites=sorted(sites)
         )
     temperatures, air = _notes(campaign, site, "snow_temperature_C"), _notes(campaign, site, "air_temperature_C")
     densities = tuple(_densities(campaign, site))

@@ -106,12 +106,8 @@ def require_effect(thing: Any) -> None:
         if condition is None or condition.key not in values or value in (None, quantity.default):
             continue
         if not condition.holds(values[condition.key]):
-            raise ParameterError(
-                "{name} is {value}; it goes with {condition}. Change one of them",
-                code="contradiction",
-                name=quantity.name,
-                value=_in_short(value),
-                condition=condition.in_words,
+            raise ParameterError("{name} is {value}; it goes with {condition}. Change one of them").tag(
+                "contradiction", name=quantity.name, value=_in_short(value), condition=condition.in_words
             )
 
 
@@ -323,17 +319,13 @@ def checked_table(
     keys = {quantity.name: quantity for quantity in own_quantities(owner)}
     for name in table:
         if name not in keys and name not in further:
-            raise ParameterError(
-                "{place}: unknown name {name!r}. {allowed}",
-                code="unknown_name",
-                place=place,
-                name=name,
-                allowed=nearest(name, (*keys, *further)),
+            raise ParameterError("{place}: unknown name {name!r}. {allowed}").tag(
+                "unknown_name", place=place, name=name, allowed=nearest(name, (*keys, *further))
             )
     for name, key in keys.items():
         if key.needed and name not in table:
-            raise ParameterError(
-                "{place}: {name} is missing: {meaning}", code="missing", place=place, name=name, meaning=key.meaning
+            raise ParameterError("{place}: {name} is missing: {meaning}").tag(
+                "missing", place=place, name=name, meaning=key.meaning
             )
     try:
         return {name: keys[name].in_range(value) for name, value in table.items() if name in keys}

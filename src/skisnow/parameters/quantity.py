@@ -204,7 +204,7 @@ class Quantity:
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
             return self._number(value)
-        raise ParameterError(_OF_ANOTHER_KIND[self.kind], code="wrong_kind", name=self.name, value=_shown(value))
+        raise ParameterError(_OF_ANOTHER_KIND[self.kind]).tag("wrong_kind", name=self.name, value=_shown(value))
 
     def _number(self, value: float) -> float | int:
         try:
@@ -213,18 +213,13 @@ class Quantity:
             number = math.inf
         if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
             raise ParameterError(
-                "{name} is {value}, not a quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}",
-                code="wrong_kind",
-                name=self.name,
-                value=_shown(value),
-                smallest=SMALLEST,
-                largest=LARGEST,
-            )
+                "{name} is {value}, not a quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}"
+            ).tag("wrong_kind", name=self.name, value=_shown(value), smallest=SMALLEST, largest=LARGEST)
         if self.kind == "number":
             return number
         if not number.is_integer():
-            raise ParameterError(
-                "{name} is {value}; it must be a whole number", code="wrong_kind", name=self.name, value=_shown(value)
+            raise ParameterError("{name} is {value}; it must be a whole number").tag(
+                "wrong_kind", name=self.name, value=_shown(value)
             )
         return int(value)
 
@@ -240,13 +235,8 @@ class Quantity:
             for one, element in self.numbered(value):
                 one.in_range(element)
         if not self._allows(checked):
-            raise ParameterError(
-                _NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED,
-                code="out_of_range",
-                name=self.name,
-                value=_shown(value),
-                allowed=self.allowed,
-                unit=self.unit,
+            raise ParameterError(_NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED).tag(
+                "out_of_range", name=self.name, value=_shown(value), allowed=self.allowed, unit=self.unit
             )
         return checked
 
@@ -282,8 +272,8 @@ class Quantity:
         elif self.kind in ("number", "whole number"):
             self.in_range(_plain(value, self._held))
         elif self.in_range(value) != value:  # a file's text may have blanks around it
-            raise ParameterError(
-                _NOT_ALLOWED, code="out_of_range", name=self.name, value=_shown(value), allowed=self.allowed
+            raise ParameterError(_NOT_ALLOWED).tag(
+                "out_of_range", name=self.name, value=_shown(value), allowed=self.allowed
             )
 
     def _allows(self, value: InputValue) -> bool:

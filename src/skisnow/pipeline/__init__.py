@@ -169,10 +169,8 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
 def _require(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
     if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
-            "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact",
-            code="out_of_range",
-            unloading_ratio=unloading_ratio,
-        )
+            "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"
+        ).tag("out_of_range", unloading_ratio=unloading_ratio)
     if shear_displacement is not None:
         require_range("shear_displacement", shear_displacement, 0.0, above=True)
     require_range("runs", runs, FEWEST)
@@ -232,8 +230,8 @@ def inputs_with(priors: Iterable[Prior], turn: Scenario) -> tuple[Measured | Pri
         del inputs[CAMBER_ROUNDING]
     for prior in priors:
         if prior.key in MEASURED:
-            raise ParameterError(
-                "{key} has no prior here: its interval comes from the campaign", code="no_data", key=prior.key
+            raise ParameterError("{key} has no prior here: its interval comes from the campaign").tag(
+                "no_data", key=prior.key
             )
         inputs[prior.key] = prior
     return tuple(inputs.values())

@@ -84,21 +84,15 @@ class RacingLine(Shown):
     def __post_init__(self) -> None:
         gates = self.course.gates
         if len(self.turns) != len(gates):
-            raise ParameterError(
-                "the line has {n_turns} turns and the course {n_gates} gates; give one each",
-                code="wrong_shape",
-                n_turns=len(self.turns),
-                n_gates=len(gates),
+            raise ParameterError("the line has {n_turns} turns and the course {n_gates} gates; give one each").tag(
+                "wrong_shape", n_turns=len(self.turns), n_gates=len(gates)
             )
         way = ways(self.course, self.start)
         x, y, share = [self.start[0]], [self.start[1]], [0.5]
         for gate, turn, reach in zip(gates, self.turns, way, strict=True):
             if not LEAST_TURNING <= turn.turning <= 1.0:
-                raise ParameterError(
-                    "gate {name}: turning is {turning:g}; it must be from 0.2 to 1",
-                    code="out_of_range",
-                    name=gate.name,
-                    turning=turn.turning,
+                raise ParameterError("gate {name}: turning is {turning:g}; it must be from 0.2 to 1").tag(
+                    "out_of_range", name=gate.name, turning=turn.turning
                 )
             x.append(gate.turning[0] + turn.along * reach)
             y.append(gate.turning[1] + (turn.aside if gate.side == "left" else -turn.aside))
@@ -107,12 +101,8 @@ class RacingLine(Shown):
             if not x[i + 1] > x[i]:
                 raise ParameterError(
                     "gate {name}: its apex at x = {x:g} m does not lie below the one before, {before:g} m; a line "
-                    "goes down the slope",
-                    code="out_of_range",
-                    name=gate.name,
-                    x=x[i + 1],
-                    before=x[i],
-                )
+                    "goes down the slope"
+                ).tag("out_of_range", name=gate.name, x=x[i + 1], before=x[i])
         for name, values in (("_x", x), ("_y", y), ("_share", share)):
             object.__setattr__(self, name, values)
 
@@ -178,14 +168,14 @@ def ways(course: Course, start: tuple[float, float]) -> list[float]:
 def course_of(scenario: Scenario) -> Course:
     """Course of the scenario."""
     if scenario.course is None:
-        raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =", code="no_data")
+        raise ParameterError("the scenario has no course; a race needs one: [course] name = or file =").tag("no_data")
     return scenario.course
 
 
 def skier_of(scenario: Scenario) -> Skier:
     """Skier of the scenario."""
     if scenario.skier is None:
-        raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"', code="no_data")
+        raise ParameterError('the scenario has no skier; a race needs one: [skier] steers = "gates"').tag("no_data")
     return scenario.skier
 
 
@@ -250,12 +240,8 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     """
     rows = list(csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again.")))
     if not 0 < len(rows) <= len(course.gates):
-        raise ParameterError(
-            "{path}: it has {n_rows} rows. Allowed: 1 to {n_gates}, a row for each gate",
-            code="out_of_range",
-            path=path,
-            n_rows=len(rows),
-            n_gates=len(course.gates),
+        raise ParameterError("{path}: it has {n_rows} rows. Allowed: 1 to {n_gates}, a row for each gate").tag(
+            "out_of_range", path=path, n_rows=len(rows), n_gates=len(course.gates)
         )
     for row, gate in zip(rows, course.gates, strict=False):
         if row.cells["gate"] != gate.name:

@@ -77,8 +77,8 @@ class PointRacer:
         Raises ParameterError: the slope is not a plane, or the scenario has no skier.
         """
         if not isinstance(scenario.slope, Plane):
-            raise ParameterError(
-                "a point races on a plane; the scenario has a profile or a grid. Use the skier", code="not_supported"
+            raise ParameterError("a point races on a plane; the scenario has a profile or a grid. Use the skier").tag(
+                "not_supported"
             )
         ski, air, contact = scenario.ski, scenario.air, scenario.contact
         contact.require_linear_friction()

@@ -201,24 +201,15 @@ def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> R
     course = course_of(scenario)
     line = follower_line(scenario) if start is None else start
     if start is not None and len(start.turns) != len(course.gates) and gates is None:
-        raise ParameterError(
-            "the start line has {n_turns} turns and the course {n_gates} gates; state gates=",
-            code="wrong_shape",
-            n_turns=len(start.turns),
-            n_gates=len(course.gates),
+        raise ParameterError("the start line has {n_turns} turns and the course {n_gates} gates; state gates=").tag(
+            "wrong_shape", n_turns=len(start.turns), n_gates=len(course.gates)
         )
     for gate, turn in zip(course.gates, line.turns, strict=False):
         for name, (low, high) in RANGES.items():
             if not low <= getattr(turn, name) <= high:
                 raise ParameterError(
-                    "gate {gate}: {name} is {value:g}; a search begins within {low:g} to {high:g}",
-                    code="out_of_range",
-                    gate=gate.name,
-                    name=name,
-                    value=getattr(turn, name),
-                    low=low,
-                    high=high,
-                )
+                    "gate {gate}: {name} is {value:g}; a search begins within {low:g} to {high:g}"
+                ).tag("out_of_range", gate=gate.name, name=name, value=getattr(turn, name), low=low, high=high)
     count = len(course.gates) if gates is None else gates
     require_range("gates", count, 2, len(line.turns))
     return first_gates(line, count)

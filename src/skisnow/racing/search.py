@@ -68,9 +68,8 @@ class Evaluations:
             if row["place"] != place.tolist():
                 raise ParameterError(
                     "a stored evaluation has another point than this search: it comes from another machine or "
-                    "library. Remove the file to start again",
-                    code="different_versions",
-                )
+                    "library. Remove the file to start again"
+                ).tag("different_versions")
             self.done.append(Evaluated(number, tuple(place.tolist()), row))
 
 

@@ -131,12 +131,10 @@ def compare_variants(
     require_choice("model", model, get_args(RacerModel))
     if AS_IT_IS in others:
         raise ParameterError(
-            "others has the name {as_it_is!r}, which the scenario itself has. Rename the variant.",
-            code="repeated",
-            as_it_is=AS_IT_IS,
-        )
+            "others has the name {as_it_is!r}, which the scenario itself has. Rename the variant."
+        ).tag("repeated", as_it_is=AS_IT_IS)
     if not snows or not others:
-        raise ParameterError("a comparison needs one snow or more, and one variant or more", code="missing")
+        raise ParameterError("a comparison needs one snow or more, and one variant or more").tag("missing")
     named = {AS_IT_IS: scenario, **others}
     points = [_on(variant, scenario, snow) for variant in named.values() for snow in snows]
     finished_rows = None

@@ -92,26 +92,23 @@ def replay_of_bytes(content: bytes) -> Replay:
     Raises ParameterError: the bytes are not a replay, are incomplete, or have a later format.
     """
     if content[: len(MAGIC)] != MAGIC or len(content) < 8:
-        raise ParameterError("these bytes are not a replay: they do not begin with SKRP", code="not_a_replay")
+        raise ParameterError("these bytes are not a replay: they do not begin with SKRP").tag("not_a_replay")
     (length,) = struct.unpack("<I", content[4:8])
     try:
         header = json_value(content[8 : 8 + length].decode("utf-8"))
         if header["format"] != FORMAT:
-            raise ParameterError(
-                "the replay has format {format}; this program reads format {readable}",
-                code="unknown_format",
-                format=header["format"],
-                readable=FORMAT,
+            raise ParameterError("the replay has format {format}; this program reads format {readable}").tag(
+                "unknown_format", format=header["format"], readable=FORMAT
             )
         arrays = {name: _unpack(content, 8 + length, description) for name, description in header["arrays"].items()}
         if not np.isin(np.rint(arrays["groove_ski"]), range(len(SKI_NAMES))).all():
-            raise ParameterError("a piece of the groove belongs to no ski", code="damaged")
+            raise ParameterError("a piece of the groove belongs to no ski").tag("damaged")
         return _build(header, arrays)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         if isinstance(error, ParameterError) and not isinstance(error, GivenError):
             raise
-        raise ParameterError(
-            "the replay is damaged or cut off ({error}). Write it again", code="damaged", error=error
+        raise ParameterError("the replay is damaged or cut off ({error}). Write it again").tag(
+            "damaged", error=error
         ) from error
 
 

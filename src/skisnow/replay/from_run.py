@@ -166,7 +166,7 @@ def assemble_replay(
 ) -> Replay:
     """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
     if not len(arrays["time"]):
-        raise ParameterError("{run} has no moment to show: it ended before it began", code="no_data", run=title)
+        raise ParameterError("{run} has no moment to show: it ended before it began").tag("no_data", run=title)
     with np.errstate(divide="ignore"):
         curvature = 1.0 / arrays["turn_radius"]
     slope, course = setting.slope, setting.course
@@ -252,10 +252,8 @@ def _gates(places: npt.ArrayLike, slope: Slope) -> FloatArray:
     """Feet of the poles on the snow, shape (g, 3)."""
     points = np.asarray(places, dtype=float)
     if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-        raise ParameterError(
-            "gates are pairs of x and y in m; given is an array of shape {shape}",
-            code="wrong_shape",
-            shape=points.shape,
+        raise ParameterError("gates are pairs of x and y in m; given is an array of shape {shape}").tag(
+            "wrong_shape", shape=points.shape
         )
     return np.column_stack([points, _heights(slope, points)])
 

@@ -88,9 +88,8 @@ def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrac
     if isinstance(run, Replay):
         if track is not None or title is not None:
             raise ParameterError(
-                "a replay has its own title and track: give them to replay_of_run or replay_of_file",
-                code="not_together",
-            )
+                "a replay has its own title and track: give them to replay_of_run or replay_of_file"
+            ).tag("not_together")
         return run
     if isinstance(run, Run):
         return replay_of_run(run, track=track) if title is None else replay_of_run(run, title=title, track=track)

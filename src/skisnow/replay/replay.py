@@ -151,18 +151,12 @@ def measured_track(track: Track, *, starts_at: float = 0.0) -> ReplayTrack:
     """
     if track.axes == "east_north_up":
         raise ParameterError(
-            "{track} is in east, north and up; a run is in the axes of the slope. Turn it with slope_frame first",
-            code="wrong_axes",
-            track=track.name,
-        )
+            "{track} is in east, north and up; a run is in the axes of the slope. Turn it with slope_frame first"
+        ).tag("wrong_axes", track=track.name)
     placed = np.isfinite(track.place[:, :2]).all(axis=1)
     if placed.sum() < FEWEST_POINTS:
-        raise ParameterError(
-            "{track} has {points} points with a place; a line needs {fewest}",
-            code="too_few_points",
-            track=track.name,
-            points=placed.sum(),
-            fewest=FEWEST_POINTS,
+        raise ParameterError("{track} has {points} points with a place; a line needs {fewest}").tag(
+            "too_few_points", track=track.name, points=placed.sum(), fewest=FEWEST_POINTS
         )
     return ReplayTrack(name=track.name, place=track.place[placed], time=track.time[placed] + starts_at)
 

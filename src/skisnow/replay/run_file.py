@@ -84,11 +84,8 @@ def replay_of_file(
             raise
         raise _not_a_run(path, error) from error
     except OSError as error:
-        raise ParameterError(
-            "{path} cannot be read: {error}. Check the path",
-            code="cannot_read",
-            path=path,
-            error=error.strerror or error,
+        raise ParameterError("{path} cannot be read: {error}. Check the path").tag(
+            "cannot_read", path=path, error=error.strerror or error
         ) from error
     except _DAMAGE as error:
         raise _not_a_run(path, error) from error
@@ -190,7 +187,7 @@ def _not_a_run(path: Path, error: Exception) -> ParameterError:
     message = Message(
         "{path} is not a run.nc of skisnow ({error}). Simulate it again with --out", path=path, error=error
     )
-    return ParameterError(message, code="not_a_run")
+    return ParameterError(message).tag("not_a_run")
 
 
 _MISSING: Final = {
@@ -215,7 +212,7 @@ def _locate(path: Path, named: str, kind: str) -> Path:
         if place.is_file():
             return place
     message = Message(_MISSING[kind], path=path, file=named, folder=path.parent)
-    raise ParameterError(message, code="missing_file")
+    raise ParameterError(message).tag("missing_file")
 
 
 LARGEST: Final = 1e9
@@ -229,13 +226,13 @@ def require_drawable(arrays: Mapping[str, FloatArray]) -> None:
     """Check a run's arrays, named as in run.nc with vectors in one."""
     require_finite(arrays)
     if np.any(np.diff(arrays["time"]) < _SHORTEST_STEP):
-        raise ParameterError("time does not rise", code="not_rising")
+        raise ParameterError("time does not rise").tag("not_rising")
     if np.any(np.diff(arrays["station"]) >= 0.0):
-        raise ParameterError("station does not fall from tip to tail", code="not_falling")
+        raise ParameterError("station does not fall from tip to tail").tag("not_falling")
     attitude = arrays["attitude"]
     product = attitude @ attitude.swapaxes(-1, -2)
     if attitude.shape[-2:] != (3, 3) or not np.allclose(product, np.eye(3), atol=_ORTHOGONAL):
-        raise ParameterError("attitude is not a rotation", code="not_a_rotation")
+        raise ParameterError("attitude is not a rotation").tag("not_a_rotation")
 
 
 def require_finite(arrays: Mapping[str, FloatArray]) -> None:
@@ -245,12 +242,8 @@ def require_finite(arrays: Mapping[str, FloatArray]) -> None:
         sound = np.abs(values) >= SMALLEST_RADIUS if name == "turn_radius" else np.abs(values) <= LARGEST
         if not sound.all():
             place = np.unravel_index(int(np.argmin(sound)), values.shape)
-            raise ParameterError(
-                "{name} is {value:g} at place {place}",
-                code="not_finite",
-                name=name,
-                value=values[place],
-                place=[str(index + 1) for index in place],
+            raise ParameterError("{name} is {value:g} at place {place}").tag(
+                "not_finite", name=name, value=values[place], place=[str(index + 1) for index in place]
             )
 
 
@@ -266,5 +259,5 @@ def needed_value(values: Mapping[str, Any], name: str) -> Any:
     """A required value of the run's scenario by its full name; errors as in `scenario_value`, or it is missing."""
     value = scenario_value(values, name)
     if value is None:
-        raise ParameterError("{name} is missing", code="missing", name=name)
+        raise ParameterError("{name} is missing").tag("missing", name=name)
     return value

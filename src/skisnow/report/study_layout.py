@@ -59,9 +59,8 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     numbers = [name for name in varied if all(_is_number(row[name]) for row in table.rows)]
     if not numbers:
         raise ParameterError(
-            "the map needs a number that varies, such as edge_angle_deg; only names and switches vary",
-            code="nothing_varies",
-        )
+            "the map needs a number that varies, such as edge_angle_deg; only names and switches vary"
+        ).tag("nothing_varies")
     x = "edge_angle_deg" if "edge_angle_deg" in numbers else numbers[0]
     others = [name for name in numbers if name != x]
     names = [name for name in varied if name not in numbers]
@@ -75,12 +74,8 @@ def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
         counts = ", ".join(f"{name} with {len(_distinct(table, name))} values" for name in left)
         raise ParameterError(
             "the map would have {count} panels ({counts}); at most {most} are readable. The table is written; make a "
-            "study of fewer of them for the map",
-            code="too_many_panels",
-            count=count,
-            counts=counts,
-            most=MOST_PANELS,
-        )
+            "study of fewer of them for the map"
+        ).tag("too_many_panels", count=count, counts=counts, most=MOST_PANELS)
     return MapLayout(x, second, tuple(left), sampled)
 
 
@@ -91,7 +86,7 @@ def drawn_table(table: StudyTable) -> StudyTable:
     """
     rows = table.answers()
     if not rows:
-        raise ParameterError("the map is empty: no point of this table could be computed", code="nothing_to_draw")
+        raise ParameterError("the map is empty: no point of this table could be computed").tag("nothing_to_draw")
     pairs = {(row.get("ski"), row.get("ski_name")) for row in rows}
     names = {name for _, name in pairs}
     if None not in names and len(names) == len(pairs):

@@ -177,10 +177,10 @@ def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
         if tighter and wider:
             (name, a, b), (other, c, d) = tighter[0], wider[0]
             yield SkisnowWarning(
-                "Definitions of the radius rank {one} and {two} differently: {name} {a} and {b}, {other} {c} and {d}.",
-                code="ranks_differ", one=one, two=two, name=name, a=plain(a), b=plain(b),
-                other=other, c=plain(c), d=plain(d),
-            )  # fmt: skip
+                "Definitions of the radius rank {one} and {two} differently: {name} {a} and {b}, {other} {c} and {d}."
+            ).tag(
+                "ranks_differ", one=one, two=two, name=name, a=plain(a), b=plain(b), other=other, c=plain(c), d=plain(d)
+            )
 
 
 def identify_summary(result: Identification) -> str:

@@ -239,7 +239,7 @@ def write_samples(folder: str | Path, *, seed: int = 1) -> list[Path]:
     """
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()):
-        raise OutputError("{folder} is not empty. Give a new or an empty folder.", code="wrong_kind", folder=folder)
+        raise OutputError("{folder} is not empty. Give a new or an empty folder.").tag("wrong_kind", folder=folder)
     require_writable(folder)
     with staged(folder, last=LAST) as stage:
         for name, content in _contents(np.random.default_rng(seed)):

@@ -113,9 +113,8 @@ class Boots(Shown):
         if furthest > FURTHEST_TURN:
             raise ParameterError(
                 "boots: no spline joins these axes: they turn too far within too short a step. Correct the rows, or "
-                "space them more evenly.",
-                code="not_joined",
-            ) from cause
+                "space them more evenly."
+            ).tag("not_joined") from cause
         return splines
 
     def _require_sound(self) -> None:
@@ -127,17 +126,17 @@ class Boots(Shown):
         require_choice("boots: over", self.over, get_args(Over))
         if self.frame == "slope" and self.over == "distance":
             raise ParameterError(
-                "boots in the slope's frame are given over time: the distance follows from their motion",
-                code="contradiction",
-            )
+                "boots in the slope's frame are given over time: the distance follows from their motion"
+            ).tag("contradiction")
 
     def _require_shapes(self) -> None:
         n = len(self.at) if self.at.ndim == 1 else 0
         if n < FEWEST_POSES or self.place.shape != (n, 2, 3) or self.axes.shape != (n, 2, 3, 3):
             raise ParameterError(
                 "boots need {fewest_poses} rows or more, each with a place (2, 3) and axes (2, 3, 3); there are "
-                "{shape}, {shape_2} and {shape_3}",
-                code="wrong_shape",
+                "{shape}, {shape_2} and {shape_3}"
+            ).tag(
+                "wrong_shape",
                 fewest_poses=FEWEST_POSES,
                 shape=str(self.at.shape),
                 shape_2=str(self.place.shape),
@@ -147,15 +146,12 @@ class Boots(Shown):
     def _require_numbers(self) -> None:
         for name in ("at", "place", "axes"):
             if not np.isfinite(getattr(self, name)).all():
-                raise ParameterError(
-                    "boots: {name} contains a number that is not finite", code="not_a_number", name=name
+                raise ParameterError("boots: {name} contains a number that is not finite").tag(
+                    "not_a_number", name=name
                 )
             if np.abs(getattr(self, name)).max() > LARGEST:
-                raise ParameterError(
-                    "boots: {name} has a number beyond ±{largest:g}. Correct it.",
-                    code="out_of_range",
-                    name=name,
-                    largest=LARGEST,
+                raise ParameterError("boots: {name} has a number beyond ±{largest:g}. Correct it.").tag(
+                    "out_of_range", name=name, largest=LARGEST
                 )
 
     def _require_steps(self) -> None:
@@ -163,23 +159,20 @@ class Boots(Shown):
         row = int(np.argmin(steps > 0.0 if (steps <= 0.0).any() else steps >= SHORTEST_STEP))
         step = {"over": self.over, "row": row + 2, "at": self.at[row + 1], "before": self.at[row]}
         if steps[row] <= 0.0:
-            raise ParameterError(
-                "boots: {over} of row {row} is {at:g} after {before:g}; it must rise", code="not_rising", **step
+            raise ParameterError("boots: {over} of row {row} is {at:g} after {before:g}; it must rise").tag(
+                "not_rising", **step
             )
         if steps[row] < SHORTEST_STEP:
             raise ParameterError(
                 "boots: {over} of row {row} is {at:g} after {before:g}. Allowed: steps of {shortest_step:g} or more. "
-                "Correct the number, or omit one of the rows.",
-                code="out_of_range",
-                shortest_step=SHORTEST_STEP,
-                **step,
-            )
+                "Correct the number, or omit one of the rows."
+            ).tag("out_of_range", shortest_step=SHORTEST_STEP, **step)
 
     def _require_rotations(self) -> None:
         off = np.abs(self.axes @ np.swapaxes(self.axes, -1, -2) - np.eye(3)).max()
         if off > 1e-9 or np.any(np.linalg.det(self.axes) < 0.0):
-            raise ParameterError(
-                "boots: axes are off by {off:.1e} from right-handed orthonormal ones", code="not_a_rotation", off=off
+            raise ParameterError("boots: axes are off by {off:.1e} from right-handed orthonormal ones").tag(
+                "not_a_rotation", off=off
             )
 
     def _facts(self) -> Facts:
@@ -228,12 +221,8 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_read(name)}
     clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
-        raise ParameterError(
-            "{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more",
-            code="out_of_range",
-            path=path,
-            n_rows=len(rows),
-            fewest_poses=FEWEST_POSES,
+        raise ParameterError("{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more").tag(
+            "out_of_range", path=path, n_rows=len(rows), fewest_poses=FEWEST_POSES
         )
     _require_rising(path, clock, rows, table[clock])
     try:
@@ -259,21 +248,17 @@ def _rows(path: Path, text: str) -> list[Row]:
         rows, said = _of_csv(path, text), {}
     else:
         raise ParameterError(
-            "{path}: boots are read from .csv, .mot and .sto; give the file the ending of its format",
-            code="wrong_ending",
-            path=path,
-        )
+            "{path}: boots are read from .csv, .mot and .sto; give the file the ending of its format"
+        ).tag("wrong_ending", path=path)
     if not rows:
-        raise ParameterError("{path}: the row with the names of columns is missing", code="unknown_name", path=path)
+        raise ParameterError("{path}: the row with the names of columns is missing").tag("unknown_name", path=path)
     names = rows[0][1]
     require_whole(path, said, rows=len(rows) - 1, columns=len(names))
     if degrees_stated(path, said) is False and any(name.endswith(ANGLES) for name in names):
         raise ParameterError(
             "{path}: the header states inDegrees=no, but angles of boots are in degrees; multiply them by 57.29578 "
-            "and write inDegrees=yes",
-            code="in_degrees",
-            path=path,
-        )
+            "and write inDegrees=yes"
+        ).tag("in_degrees", path=path)
     return rows
 
 
@@ -284,7 +269,7 @@ def _of_csv(path: Path, text: str) -> list[Row]:
     try:
         rows = [(table.line_num, row) for row in table if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        raise ParameterError("{path} is not CSV text ({error})", code="wrong_kind", path=path, error=error) from error
+        raise ParameterError("{path} is not CSV text ({error})").tag("wrong_kind", path=path, error=error) from error
     cells = (cell for _, row in rows[1:] for cell in row)
     if separator == "," or decimal_mark([cells], separator=separator) == ".":
         return rows
@@ -295,11 +280,8 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
     """Rows of OpenSim's table, and the statements of its header."""
     ends = [i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END]
     if not ends:
-        raise ParameterError(
-            "{path} has no line {head_end}, which ends the head of a .mot or .sto file; add it",
-            code="no_data",
-            path=path,
-            head_end=HEAD_END,
+        raise ParameterError("{path} has no line {head_end}, which ends the head of a .mot or .sto file; add it").tag(
+            "no_data", path=path, head_end=HEAD_END
         )
     begin = ends[0] + 1
     rows = [(number, line.split()) for number, line in enumerate(lines[begin:], begin + 1) if line.strip()]
@@ -319,37 +301,27 @@ def _require_columns(path: Path, head: list[str]) -> None:
     motion_columns, counts = _known(head), Counter(head)
     for name in head:
         if _is_read(name) and name not in motion_columns:
-            raise ParameterError(
-                "{path}: unknown column {name}. {allowed}",
-                code="missing",
-                path=path,
-                name=name,
-                allowed=nearest(name, motion_columns),
+            raise ParameterError("{path}: unknown column {name}. {allowed}").tag(
+                "missing", path=path, name=name, allowed=nearest(name, motion_columns)
             )
         if counts[name] > 1:
-            raise ParameterError(
-                "{path}: the column {name} occurs twice; remove one", code="repeated", path=path, name=name
+            raise ParameterError("{path}: the column {name} occurs twice; remove one").tag(
+                "repeated", path=path, name=name
             )
     clocks = [name for name in CLOCKS if name in head]
     if len(clocks) != 1:
-        raise ParameterError(
-            "{path}: it needs one of the columns time_s (time in .mot) and distance_m", code="missing", path=path
+        raise ParameterError("{path}: it needs one of the columns time_s (time in .mot) and distance_m").tag(
+            "missing", path=path
         )
     if not any(_is_read(name) and name not in clocks for name in head):
-        raise ParameterError(
-            "{path}: no column is one of a boot. There are {known}",
-            code="missing",
-            path=path,
-            known=list(motion_columns[3:]),
+        raise ParameterError("{path}: no column is one of a boot. There are {known}").tag(
+            "missing", path=path, known=list(motion_columns[3:])
         )
     needed = [f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES)] if "left_x_m" in head else []
     for name in needed:
         if name not in head:
-            raise ParameterError(
-                "{path}: the column {name} is missing; boots in the slope's frame need every one",
-                code="missing",
-                path=path,
-                name=name,
+            raise ParameterError("{path}: the column {name} is missing; boots in the slope's frame need every one").tag(
+                "missing", path=path, name=name
             )
 
 
@@ -358,19 +330,14 @@ def _require_rising(path: Path, clock: str, rows: list[Row], at: FloatArray) -> 
         if not after > before:
             raise ParameterError(
                 "{path}, row {line}, column {clock}: {after:g} after {before:g}; it must rise. Put the rows in "
-                "order, or leave one of two with the same pose out",
-                code="not_rising",
-                path=path,
-                line=line,
-                clock=clock,
-                after=after,
-                before=before,
-            )
+                "order, or leave one of two with the same pose out"
+            ).tag("not_rising", path=path, line=line, clock=clock, after=after, before=before)
         if after - before < SHORTEST_STEP:
             raise ParameterError(
                 "{path}, row {line}, column {clock}: {after:g} after {before:g}. Allowed: steps of {shortest_step:g} "
-                "or more. Correct the number, or omit one of the rows.",
-                code="out_of_range",
+                "or more. Correct the number, or omit one of the rows."
+            ).tag(
+                "out_of_range",
                 path=path,
                 line=line,
                 clock=clock,
@@ -384,13 +351,8 @@ def _column(path: Path, rows: list[Row], head: list[str], place: int) -> FloatAr
     values = np.empty(len(rows))
     for i, (line, row) in enumerate(rows):
         if len(row) != len(head):
-            raise ParameterError(
-                "{path}, row {line}: {n_row} cells for {n_head} names of columns",
-                code="wrong_number_of_cells",
-                path=path,
-                line=line,
-                n_row=len(row),
-                n_head=len(head),
+            raise ParameterError("{path}, row {line}: {n_row} cells for {n_head} names of columns").tag(
+                "wrong_number_of_cells", path=path, line=line, n_row=len(row), n_head=len(head)
             )
         values[i] = _cell(path, line, head[place], row[place])
     return values
@@ -404,29 +366,18 @@ def _cell(path: Path, line: int, column: str, text: str) -> float:
         value = math.nan
     cell = {"path": path, "line": line, "head": column}
     if not math.isfinite(value):
-        raise ParameterError(
-            "{path}, row {line}, column {head}: {value!r} is not a finite number; write one",
-            code="not_a_number",
-            value=text.strip(),
-            **cell,
+        raise ParameterError("{path}, row {line}, column {head}: {value!r} is not a finite number; write one").tag(
+            "not_a_number", value=text.strip(), **cell
         )
     if abs(value) > LARGEST:
         raise ParameterError(
-            "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number.",
-            code="out_of_range",
-            value=value,
-            largest=LARGEST,
-            **cell,
-        )
+            "{path}, row {line}, column {head}: {value:g} is beyond ±{largest:g}. Correct the number."
+        ).tag("out_of_range", value=value, largest=LARGEST, **cell)
     if column.endswith(_EDGE) and abs(value) > _ON_ITS_SIDE:
         raise ParameterError(
             "{path}, row {line}, column {head}: {value:g} is beyond ±{on_its_side:g}, a ski on its side; correct or "
-            "remove the row",
-            code="out_of_range",
-            value=value,
-            on_its_side=_ON_ITS_SIDE,
-            **cell,
-        )
+            "remove the row"
+        ).tag("out_of_range", value=value, on_its_side=_ON_ITS_SIDE, **cell)
     return value
 
 

@@ -41,7 +41,7 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     slope = _slope(resolution)
     contact = _contact(resolution)
     if "run.duration_s" not in values and "run.length_m" not in values:
-        raise ParameterError("the run has no end: give run.duration_s or run.length_m", code="no_data")
+        raise ParameterError("the run has no end: give run.duration_s or run.length_m").tag("no_data")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
     course = _course(resolution, slope)
     parts: dict[str, Any] = {
@@ -58,12 +58,8 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
 
 def _require(values: Mapping[str, Any], name: str, remedy: Message) -> None:
     if name not in values:
-        raise ParameterError(
-            "{name} is missing: {meaning}. {remedy}",
-            code="missing",
-            name=name,
-            meaning=SCENARIO_KEYS[name].meaning,
-            remedy=remedy,
+        raise ParameterError("{name} is missing: {meaning}. {remedy}").tag(
+            "missing", name=name, meaning=SCENARIO_KEYS[name].meaning, remedy=remedy
         )
 
 
@@ -102,19 +98,14 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
     name, file = options.pop("name", None), options.pop("file", None)
     if name is None and file is None:
         if options:
-            raise ParameterError(
-                "course.{key} is stated without a course; add course.file, or remove it",
-                code="contradiction",
-                key=next(iter(options)),
+            raise ParameterError("course.{key} is stated without a course; add course.file, or remove it").tag(
+                "contradiction", key=next(iter(options))
             )
         return None
     if name is not None and name not in course_names():
         raise ParameterError(
-            "course.name is {name!r}, no course of the catalogue. {allowed} A path is course.file",
-            code="unknown_name",
-            name=name,
-            allowed=nearest(str(name), course_names()),
-        )
+            "course.name is {name!r}, no course of the catalogue. {allowed} A path is course.file"
+        ).tag("unknown_name", name=name, allowed=nearest(str(name), course_names()))
     course = read_course(name or resolution.files["course.file"], **options)
     return course_on_slope(course, slope)
 
@@ -124,16 +115,13 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
         return sources.ski(str(resolution.files["ski.file"].absolute()))
     name = resolution.values.get("ski.name")
     if name is None:
-        raise ParameterError(
-            "a ski has either ski.name, of the catalogue, or ski.file; neither is there", code="missing"
+        raise ParameterError("a ski has either ski.name, of the catalogue, or ski.file; neither is there").tag(
+            "missing"
         )
     if name not in ski_names():
         raise ParameterError(
-            "ski.name is {name!r}, not a ski of the catalogue. {allowed} Put a path under ski.file",
-            code="unknown_name",
-            name=name,
-            allowed=nearest(str(name), ski_names()),
-        )
+            "ski.name is {name!r}, not a ski of the catalogue. {allowed} Put a path under ski.file"
+        ).tag("unknown_name", name=name, allowed=nearest(str(name), ski_names()))
     return sources.ski(str(name))
 
 
@@ -153,7 +141,7 @@ def _contact(resolution: Resolution) -> Contact:
             if resolution.snow
             else Message("{name} is missing: {meaning}. Give it", **fields)
         )
-        raise ParameterError(problem, code="missing")
+        raise ParameterError(problem).tag("missing")
     measured: dict[str, Any] = {"unloading_ratio": snow.unloading_ratio if ratio is None else ratio}
     if snow.shear_displacement is not None:
         measured["shear_displacement"] = snow.shear_displacement
@@ -169,20 +157,18 @@ def _snow(resolution: Resolution) -> SnowProperties:
     """Named snow, numbers and map, each for the quantities that they give."""
     values, snow, snow_map = dict(resolution.values), resolution.snow, resolution.snow_map
     if "snow.site" in values and "snow.results" not in values:
-        raise ParameterError(
-            "snow.site names one site of a campaign and needs snow.results. Remove it", code="contradiction"
+        raise ParameterError("snow.site names one site of a campaign and needs snow.results. Remove it").tag(
+            "contradiction"
         )
     if snow is None:
         if snow_map is not None:
             values.setdefault(H_V, (snow_map.mean_hardness or math.nan) / N_PER_MM3)
             values.setdefault(S_F, (snow_map.mean_stress or math.nan) / N_PER_MM2)
         if H_V not in values:
-            raise ParameterError(
-                "no snow is given: H_V has no default. {choices}", code="missing", choices=SNOW_CHOICES
-            )
+            raise ParameterError("no snow is given: H_V has no default. {choices}").tag("missing", choices=SNOW_CHOICES)
         if S_F not in values:
-            raise ParameterError(
-                "{name} is missing: the failure shear stress S_f. It has no default", code="missing", name=S_F
+            raise ParameterError("{name} is missing: the failure shear stress S_f. It has no default").tag(
+                "missing", name=S_F
             )
         snow = made(SnowProperties, values, section="snow", source=Message("given as numbers"))
     else:
@@ -213,10 +199,8 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
         if isinstance(SCENARIO_KEYS[name], Word):
             raise ParameterError(
                 "{name} is a word of a scenario's file; in Python give the part itself, such as snow=, ski= or "
-                "slope=, or read the scenario with it: skisnow.load_scenario(…, changes={{…}})",
-                code="wrong_kind",
-                name=name,
-            )
+                "slope=, or read the scenario with it: skisnow.load_scenario(…, changes={{…}})"
+            ).tag("wrong_kind", name=name)
     if isinstance(parts.get("ski"), str | Path):
         parts["ski"] = read_ski(parts["ski"])
     if "snow" in parts:
@@ -240,8 +224,8 @@ def _full_name(name: str, part_names: Collection[str]) -> str:
         part = most_like(name, part_names)
         if part is None:
             raise
-        raise ParameterError(
-            "{problem} Did you mean the part {part}?", code="unknown_name", problem=error, part=part
+        raise ParameterError("{problem} Did you mean the part {part}?").tag(
+            "unknown_name", problem=error, part=part
         ) from error
 
 
@@ -266,10 +250,8 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     if not isinstance(new, SnowProperties):
         raise ParameterError(
             "snow is a {kind}; it must be SnowProperties, as Analysis.snow and snow_from_results give it, or the "
-            "name of a published snow",
-            code="wrong_kind",
-            kind=type(new).__name__,
-        )
+            "name of a published snow"
+        ).tag("wrong_kind", kind=type(new).__name__)
     ratio = contact.unloading_ratio if new.unloading_ratio is None else new.unloading_ratio
     displacement = contact.shear_displacement if new.shear_displacement is None else new.shear_displacement
     return replace(contact, snow=new, snow_map=None, unloading_ratio=ratio, shear_displacement=displacement)
@@ -287,17 +269,11 @@ def _require_changeable(scenario: Scenario, numbers: Mapping[str, object]) -> No
     for name in numbers:
         if snow_map is not None and mapped.get(name) is not None:
             raise ParameterError(
-                "{name} is given by a map, snow.map_file, {source}. Remove the map with snow_map=None",
-                code="contradiction",
-                name=name,
-                source=snow_map.source,
-            )
+                "{name} is given by a map, snow.map_file, {source}. Remove the map with snow_map=None"
+            ).tag("contradiction", name=name, source=snow_map.source)
     for name in numbers.keys() - values_of(scenario).keys():
         part = name.partition(".")[0]
         raise ParameterError(
             "{name} has no effect in this scenario, whose {part} is of another kind. Remove it, or replace the part "
-            "itself: {part}=",
-            code="wrong_kind",
-            name=name,
-            part=part,
-        )
+            "itself: {part}="
+        ).tag("wrong_kind", name=name, part=part)

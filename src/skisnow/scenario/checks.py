@@ -26,7 +26,7 @@ def require_sound(
 ) -> None:
     """Refuse parts that do not go together."""
     for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
-        raise ParameterError(complaint, code="contradiction")
+        raise ParameterError(complaint).tag("contradiction")
 
 
 def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, has_course: bool) -> None:
@@ -34,25 +34,20 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
     if skier is None:
         return
     if sledge.edge_angle != 0.0:
-        raise ParameterError(
-            "sledge.edge_angle_deg is {degrees:g}; the skier sets the edges itself: write 0",
-            code="contradiction",
-            degrees=math.degrees(sledge.edge_angle),
+        raise ParameterError("sledge.edge_angle_deg is {degrees:g}; the skier sets the edges itself: write 0").tag(
+            "contradiction", degrees=math.degrees(sledge.edge_angle)
         )
     if has_boots:
-        raise ParameterError("boots.file and [skier] both move the boots; remove one of them", code="contradiction")
+        raise ParameterError("boots.file and [skier] both move the boots; remove one of them").tag("contradiction")
     if skier.steers == "gates" and not has_course:
-        raise ParameterError(
-            'skier.steers is "gates" without a course; give course.name or course.file', code="contradiction"
+        raise ParameterError('skier.steers is "gates" without a course; give course.name or course.file').tag(
+            "contradiction"
         )
     if skier.longest_leg <= sledge.centre_of_mass[1]:
         raise ParameterError(
             "skier.longest_leg_m is {longest_leg:g}, and sledge.centre_of_mass_height_m {centre_of_mass:g}; the leg "
-            "must be longer than that",
-            code="out_of_range",
-            longest_leg=skier.longest_leg,
-            centre_of_mass=sledge.centre_of_mass[1],
-        )
+            "must be longer than that"
+        ).tag("out_of_range", longest_leg=skier.longest_leg, centre_of_mass=sledge.centre_of_mass[1])
 
 
 def _together(

@@ -308,40 +308,36 @@ class Contact:
         require_declared(self)
         if (self.layer_depth is None) != (self.lower_hardness is None):
             raise ParameterError(
-                "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none", code="contradiction"
-            )
+                "snow.layer_depth_mm and snow.lower_H_V_N_per_mm3 go together: give both, or none"
+            ).tag("contradiction")
         self._require_one_friction()
         if self.layers is not None and (self.layer_depth is not None or self.hardness_growth > 0.0):
             raise ParameterError(
                 "snow.layers_file gives the hardness over the depth. Remove it, or snow.layer_depth_mm and "
-                "snow.hardness_growth_per_mm",
-                code="contradiction",
-            )
+                "snow.hardness_growth_per_mm"
+            ).tag("contradiction")
         if not self.is_layered:
             return
         if self.snow_map is not None and self.snow_map.hardness is not None:
             raise ParameterError(
                 "snow.map_file gives H_V as a map, and layers need one value of H_V. Remove the layers, or the map's "
-                "column H_V_N_per_mm3",
-                code="contradiction",
-            )
+                "column H_V_N_per_mm3"
+            ).tag("contradiction")
         if self.damping > 0.0 or self.delayed_share > 0.0:
             raise ParameterError(
-                "layers of snow cannot be combined with snow.damping_N_s_per_mm3 or snow.delayed_share. Remove one",
-                code="contradiction",
-            )
+                "layers of snow cannot be combined with snow.damping_N_s_per_mm3 or snow.delayed_share. Remove one"
+            ).tag("contradiction")
 
     def _require_one_friction(self) -> None:
         if self.friction_law is None:
             if self.temperature is not None or self.liquid_water is not None:
                 raise ParameterError(
                     "friction.temperature_C and friction.liquid_water_percent go with friction.law_file. Add it, or "
-                    "remove them",
-                    code="contradiction",
-                )
+                    "remove them"
+                ).tag("contradiction")
         elif self.friction != 0.0 or self.friction_by_speed != 0.0:
-            raise ParameterError(
-                "friction.law_file gives μ. Set friction.mu_0 and friction.mu_1_s_per_m to 0", code="contradiction"
+            raise ParameterError("friction.law_file gives μ. Set friction.mu_0 and friction.mu_1_s_per_m to 0").tag(
+                "contradiction"
             )
         else:
             self.friction_law.at(self.temperature, self.liquid_water or 0.0)
@@ -368,9 +364,8 @@ class Contact:
         if self.friction_law is not None:
             raise ParameterError(
                 "this computation has μ = μ_0 + μ_1 v. Give friction.mu_0 and friction.mu_1_s_per_m instead of "
-                "friction.law_file",
-                code="not_supported",
-            )
+                "friction.law_file"
+            ).tag("not_supported")
 
     @property
     def is_layered(self) -> bool:

@@ -54,24 +54,18 @@ def require_known(section: Mapping[str, Any]) -> None:
     given_parameters(section)
     clock = section.get("clock", "start")
     if clock not in CLOCKS:
-        raise ParameterError(
-            '[identify] clock is {clock!r}; it must be "start" or "free"', code="out_of_range", clock=clock
+        raise ParameterError('[identify] clock is {clock!r}; it must be "start" or "free"').tag(
+            "out_of_range", clock=clock
         )
     for name in _table(section, "site"):
         if name not in SITE:
-            raise ParameterError(
-                "[identify.site]: unknown name {name!r}. {allowed}",
-                code="unknown_name",
-                name=name,
-                allowed=nearest(name, SITE),
+            raise ParameterError("[identify.site]: unknown name {name!r}. {allowed}").tag(
+                "unknown_name", name=name, allowed=nearest(name, SITE)
             )
     for run, entries in _table(section, "runs").items():
         if not isinstance(entries, dict):
-            raise ParameterError(
-                'identify.runs."{run}" is {entries!r}; it must be a table of keys',
-                code="wrong_kind",
-                run=run,
-                entries=entries,
+            raise ParameterError('identify.runs."{run}" is {entries!r}; it must be a table of keys').tag(
+                "wrong_kind", run=run, entries=entries
             )
         for word in entries:
             _key(word, f'[identify.runs."{run}"]')
@@ -88,14 +82,8 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         if not isinstance(table, dict):
             raise ParameterError(
                 'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
-                '[identify."{key}"]. A value of the scenario belongs to its own section, [{section}]',
-                code="wrong_kind",
-                word=word,
-                table=table,
-                given=list(GIVEN),
-                key=key,
-                section=key.partition(".")[0],
-            )
+                '[identify."{key}"]. A value of the scenario belongs to its own section, [{section}]'
+            ).tag("wrong_kind", word=word, table=table, given=list(GIVEN), key=key, section=key.partition(".")[0])
         parameters[key] = checked_table(Sought, table, f'[identify."{key}"]')
     return parameters
 
@@ -105,7 +93,7 @@ def _key(word: str, place: str, meant: Message | None = None) -> str:
         return free_key(word)
     except ParameterError as error:
         problem = joined([error.message, meant]) if meant else error.message
-        raise ParameterError("{place}: {problem}", code=error.code, place=place, problem=problem) from None
+        raise ParameterError("{place}: {problem}").tag(error.code, place=place, problem=problem) from None
 
 
 def _no_key_meant(word: str) -> Message | None:
@@ -117,12 +105,8 @@ def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = section.get(name, {})
     if not isinstance(table, dict):
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'
-        raise ParameterError(
-            "identify.{name} is {table!r}; it must be a table, begun by the line {line}",
-            code="wrong_kind",
-            name=name,
-            table=table,
-            line=what,
+        raise ParameterError("identify.{name} is {table!r}; it must be a table, begun by the line {line}").tag(
+            "wrong_kind", name=name, table=table, line=what
         )
     return table
 
@@ -145,13 +129,8 @@ class Prior:
     def __post_init__(self) -> None:
         if not 0.0 < self.low <= self.high:
             raise ParameterError(
-                "the prior of {key} is {low:g} to {high:g}; its ends must be above 0, the first one not above the "
-                "other",
-                code="out_of_range",
-                key=self.key,
-                low=self.low,
-                high=self.high,
-            )
+                "the prior of {key} is {low:g} to {high:g}; its ends must be above 0, the first one not above the other"
+            ).tag("out_of_range", key=self.key, low=self.low, high=self.high)
         if not self.about:
             for end in (self.low, self.high):
                 SCENARIO_KEYS[self.key].in_range(end)
@@ -179,10 +158,8 @@ def prior_of(word: str) -> Prior:
     except ValueError:
         raise ParameterError(
             "{word!r} is not a prior; write KEY=LOW:HIGH, such as snow.unloading_ratio=5:20, with equal ends where "
-            "it is known",
-            code="wrong_kind",
-            word=word,
-        ) from None
+            "it is known"
+        ).tag("wrong_kind", word=word) from None
     return Prior(key=free_key(name), low=low, high=high, origin="given")
 
 

@@ -37,16 +37,13 @@ def full_name(name: str) -> str:
     if not section and key in _FULL_NAMES:
         return _FULL_NAMES[key]
     if key in _FULL_NAMES:
-        raise ParameterError(
-            "{name} is not a key of a scenario. Did you mean {similar}?",
-            code="unknown_name",
-            name=name,
-            similar=_FULL_NAMES[key],
+        raise ParameterError("{name} is not a key of a scenario. Did you mean {similar}?").tag(
+            "unknown_name", name=name, similar=_FULL_NAMES[key]
         )
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
     short = most_like(key, _FULL_NAMES)
     similar = most_like(name, keys) or (_FULL_NAMES[short] if short else most_like(name, SCENARIO_KEYS))
-    raise ParameterError(_unknown_key(name, similar, keys), code="unknown_name")
+    raise ParameterError(_unknown_key(name, similar, keys)).tag("unknown_name")
 
 
 def _unknown_key(name: str, similar: str | None, allowed: Sequence[str]) -> Message:
@@ -63,18 +60,12 @@ def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
     values: dict[str, object] = {}
     for section, table in sections.items():
         if section not in SECTIONS:
-            raise ParameterError(
-                "unknown section [{section}]. {allowed}",
-                code="missing",
-                section=section,
-                allowed=nearest(section, SECTIONS),
+            raise ParameterError("unknown section [{section}]. {allowed}").tag(
+                "missing", section=section, allowed=nearest(section, SECTIONS)
             )
         if not isinstance(table, dict):
-            raise ParameterError(
-                "{section} is {table!r}; it must be a table, begun by the line [{section}]",
-                code="wrong_kind",
-                section=section,
-                table=table,
+            raise ParameterError("{section} is {table!r}; it must be a table, begun by the line [{section}]").tag(
+                "wrong_kind", section=section, table=table
             )
         values.update({full_name(f"{section}.{key}"): value for key, value in table.items()})
     return values
@@ -94,10 +85,8 @@ def parse_change(text: str) -> tuple[str, object]:
     """
     name, equals, value_text = (part.strip() for part in text.partition("="))
     if not equals:
-        raise ParameterError(
-            "{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35",
-            code="changes_nothing",
-            text=text,
+        raise ParameterError("{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35").tag(
+            "changes_nothing", text=text
         )
     name = full_name(name)
     is_text = SCENARIO_KEYS[name].kind == "text"
@@ -106,11 +95,8 @@ def parse_change(text: str) -> tuple[str, object]:
     except GivenError:
         if not is_text and "," in value_text and is_number(value_text, ","):
             corrected = text.replace(value_text, value_text.replace(",", "."))
-            raise ParameterError(
-                "{text!r}: numbers are written with a decimal point here. Write {corrected}",
-                code="not_a_number",
-                text=text,
-                corrected=corrected,
+            raise ParameterError("{text!r}: numbers are written with a decimal point here. Write {corrected}").tag(
+                "not_a_number", text=text, corrected=corrected
             ) from None
         return name, value_text
     value = values["value"] if values.keys() == {"value"} else value_text  # a second line is not part of the value
@@ -186,21 +172,17 @@ def free_key(word: str) -> str:
     meant = _KEYS_BY_WORD.get(word, ())
     usable = tuple(key for key in meant if key in FREE_KEYS)
     if len(usable) > 1:
-        raise ParameterError(
-            "{word} may mean one of {keys}. Write one of them in full", code="ambiguous", word=word, keys=list(usable)
+        raise ParameterError("{word} may mean one of {keys}. Write one of them in full").tag(
+            "ambiguous", word=word, keys=list(usable)
         )
     if usable:
         return usable[0]
     if meant:
-        raise ParameterError(
-            "{key} cannot be identified: {reason}. Allowed: {keys}",
-            code="not_free",
-            key=meant[0],
-            reason=_why_not(meant[0]),
-            keys=list(FREE_KEYS),
+        raise ParameterError("{key} cannot be identified: {reason}. Allowed: {keys}").tag(
+            "not_free", key=meant[0], reason=_why_not(meant[0]), keys=list(FREE_KEYS)
         )
-    raise ParameterError(
-        "{word!r} is not a key of a scenario. {allowed}", code="unknown_name", word=word, allowed=_near(word)
+    raise ParameterError("{word!r} is not a key of a scenario. {allowed}").tag(
+        "unknown_name", word=word, allowed=_near(word)
     )
 
 
@@ -219,19 +201,15 @@ def free_keys(words: str | Iterable[str]) -> tuple[str, ...]:
         raise error.at("--free") from None
     for key in keys:
         if keys.count(key) > 1:
-            raise ParameterError("--free: {key} is named twice. Remove one of them", code="repeated", key=key)
+            raise ParameterError("--free: {key} is named twice. Remove one of them").tag("repeated", key=key)
     return tuple(keys)
 
 
 def _key_of_run(word: str) -> str:
     own, at, run = word.partition("@")
     if at and not run.strip():
-        raise ParameterError(
-            "behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}",
-            code="missing",
-            word=word,
-            own=own.strip(),
-            each=EACH,
+        raise ParameterError("behind the @ of {word!r} a run is missing. Name one, or write {own}@{each}").tag(
+            "missing", word=word, own=own.strip(), each=EACH
         )
     return free_key(own) + at + run.strip()
 

@@ -83,10 +83,8 @@ def _factor(text: str) -> float:
     except ValueError:
         value = math.nan
     if not 0.0 < value < math.inf:
-        raise ParameterError(
-            "the description of the map system states a unit of {text!r}. Allowed: above 0, in m",
-            code="out_of_range",
-            text=text[:40],
+        raise ParameterError("the description of the map system states a unit of {text!r}. Allowed: above 0, in m").tag(
+            "out_of_range", text=text[:40]
         )
     return value
 
@@ -124,12 +122,12 @@ def require_true_lengths(path: object, system: MapSystem, x: float, y: float) ->
     true_scale = _scale(system, x, y)
     if true_scale is None:
         if _MERCATOR.search(system.text):
-            raise ParameterError(_stretched(_BY_LATITUDE, path, system), code="stretched")
+            raise ParameterError(_stretched(_BY_LATITUDE, path, system)).tag("stretched")
         return
     scales, target = true_scale
     worst = max(scales, key=lambda scale: abs(scale - 1.0))
     if not abs(worst - 1.0) <= TRUE_LENGTHS:
-        raise ParameterError(_stretched(_BY_FACTOR, path, system, factor=worst, target=target), code="stretched")
+        raise ParameterError(_stretched(_BY_FACTOR, path, system, factor=worst, target=target)).tag("stretched")
 
 
 _BY_LATITUDE: Final = template(

@@ -87,8 +87,9 @@ def number_within(row: CsvRow, column: str, limits: Limits | None = None) -> flo
     if not allowed.lowest <= value <= allowed.highest:
         raise ParameterError(
             "{path}, row {row}, column {column}: {cell!r} is out of range. Allowed: from {lowest:g} to {highest:g}. "
-            "{note}",
-            code="out_of_range",
+            "{note}"
+        ).tag(
+            "out_of_range",
             path=row.path,
             row=row.row,
             column=column,
@@ -109,23 +110,13 @@ def require_size(path: str | Path, n_columns: float, n_rows: float) -> None:
     """Reject a grid that is too small for a surface or too large for the memory."""
     for name, count in (("ncols", n_columns), ("nrows", n_rows)):
         if not 2 <= count <= MOST_CELLS or count != int(count):
-            raise ParameterError(
-                "{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {most_cells}.",
-                code="out_of_range",
-                path=path,
-                name=name,
-                count=count,
-                most_cells=MOST_CELLS,
+            raise ParameterError("{path}: {name} is {count:g}. Allowed: whole numbers from 2 to {most_cells}.").tag(
+                "out_of_range", path=path, name=name, count=count, most_cells=MOST_CELLS
             )
     if n_columns * n_rows > MOST_CELLS:
         raise ParameterError(
-            "{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {most_cells}. Cut out the slope.",
-            code="out_of_range",
-            path=path,
-            n_columns=n_columns,
-            n_rows=n_rows,
-            most_cells=MOST_CELLS,
-        )
+            "{path}: The grid has {n_columns:g} × {n_rows:g} cells. Allowed: at most {most_cells}. Cut out the slope."
+        ).tag("out_of_range", path=path, n_columns=n_columns, n_rows=n_rows, most_cells=MOST_CELLS)
 
 
 def require_places(path: str | Path, first: tuple[float, float], step: tuple[float, float], n: tuple[int, int]) -> None:
@@ -134,20 +125,15 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
     for axis, start, size, count in zip("xy", first, step, n, strict=True):
         if not 0.0 < abs(size) <= COARSEST:
             raise ParameterError(
-                "{path}: The cells are {size:g} m wide in {axis}. Allowed: from {finest:g} to {coarsest:g} m.",
-                code="out_of_range",
-                path=path,
-                size=size,
-                axis=axis,
-                finest=FINEST,
-                coarsest=COARSEST,
-            )
+                "{path}: The cells are {size:g} m wide in {axis}. Allowed: from {finest:g} to {coarsest:g} m."
+            ).tag("out_of_range", path=path, size=size, axis=axis, finest=FINEST, coarsest=COARSEST)
         ends += [start, start + size * (count - 1)]
         if not max(abs(ends[-2]), abs(ends[-1])) <= _PLACE.highest:
             raise ParameterError(
                 "{path}: The grid reaches from {axis} = {first:g} to {last:g} m. Allowed: from {lowest:g} to "
-                "{highest:g} m.",
-                code="out_of_range",
+                "{highest:g} m."
+            ).tag(
+                "out_of_range",
                 path=path,
                 axis=axis,
                 first=ends[-2],
@@ -158,16 +144,11 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
     fine = max(abs(size) for size in step) < FINEST
     if fine and max(map(abs, ends[:2])) <= 360.0 and max(map(abs, ends[2:])) <= 90.0:
         raise ParameterError(
-            _in_degrees(path, Message("The unit of x and y looks like degrees."), ends[0], ends[2], abs(step[0])),
-            code="in_degrees",
-        )
+            _in_degrees(path, Message("The unit of x and y looks like degrees."), ends[0], ends[2], abs(step[0]))
+        ).tag("in_degrees")
     if min(abs(size) for size in step) < FINEST:
-        raise ParameterError(
-            "{path}: A cell is {step:g} m wide. Allowed: {finest:g} m or more.",
-            code="out_of_range",
-            path=path,
-            step=min(map(abs, step)),
-            finest=FINEST,
+        raise ParameterError("{path}: A cell is {step:g} m wide. Allowed: {finest:g} m or more.").tag(
+            "out_of_range", path=path, step=min(map(abs, step)), finest=FINEST
         )
 
 
@@ -208,17 +189,13 @@ def _require_usable(raster: Raster, system: MapSystem) -> None:
                 x,
                 y,
                 abs(raster.step[0]),
-            ),
-            code="in_degrees",
-        )
+            )
+        ).tag("in_degrees")
     if system.downwards:
         raise ParameterError(
             "{path}: The vertical system of {name} counts downwards. Allowed: heights. Fix: change the sign and "
-            "state heights.",
-            code="out_of_range",
-            path=raster.path,
-            name=system.name,
-        )
+            "state heights."
+        ).tag("out_of_range", path=raster.path, name=system.name)
     require_true_lengths(raster.path, system, x, y)
 
 
@@ -247,8 +224,9 @@ def _require_heights(raster: Raster, heights: FloatArray) -> None:
     problem = Message("no height (NODATA)") if np.isnan(value) else Message("{value:g} m is not a height", value=value)
     raise ParameterError(
         "{path}, {where}: {problem}; {count} of {size} cells are like it. Allowed: from {lowest:g} to {highest:g} m. "
-        "{note}",
-        code="out_of_range",
+        "{note}"
+    ).tag(
+        "out_of_range",
         path=raster.path,
         where=raster.where(row, column),
         problem=problem,

@@ -29,8 +29,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
     vertical system, else in m.
     """
     if not is_file(path):
-        raise ParameterError(
-            "{path} cannot be read: the file does not exist. Check the path.", code="cannot_read", path=path
+        raise ParameterError("{path} cannot be read: the file does not exist. Check the path.").tag(
+            "cannot_read", path=path
         )
     rasterio = _rasterio(path)
     try:
@@ -42,8 +42,8 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
             system = None if crs is None else map_system(crs.to_wkt())
             unit = _height_unit(path, source.units[0], system)
     except raster_errors() as error:
-        raise ParameterError(
-            "{path} cannot be read as a GeoTIFF: {error}. Export it again.", code="cannot_read", path=path, error=error
+        raise ParameterError("{path} cannot be read as a GeoTIFF: {error}. Export it again.").tag(
+            "cannot_read", path=path, error=error
         ) from error
     _require_north_up(path, transform, system)
     raster = Raster(
@@ -71,32 +71,22 @@ def _require_one_band(path: str | Path, source: Any) -> None:
     if len(bands) != 1 or bands[0] == "palette" or colours[0] == "alpha":
         raise ParameterError(
             "{path} has {n_colours} bands ({colours}). Allowed: one band of heights. Fix: write the band with only "
-            "the heights, such as by gdal_translate -b 1.",
-            code="out_of_range",
-            path=path,
-            n_colours=len(colours),
-            colours=list(colours),
-        )
+            "the heights, such as by gdal_translate -b 1."
+        ).tag("out_of_range", path=path, n_colours=len(colours), colours=list(colours))
 
 
 def _heights(path: str | Path, source: Any) -> FloatArray:
     """The first band in its unit, NaN where it is masked."""
     band = source.read(1, masked=True)
     if np.iscomplexobj(band):
-        raise ParameterError(
-            "{path}: The first band has complex numbers. Allowed: heights. Export them again.",
-            code="out_of_range",
-            path=path,
+        raise ParameterError("{path}: The first band has complex numbers. Allowed: heights. Export them again.").tag(
+            "out_of_range", path=path
         )
     scale, offset = float(source.scales[0]), float(source.offsets[0])
     if not (np.isfinite([scale, offset]).all() and scale != 0.0):
         raise ParameterError(
-            "{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers.",
-            code="not_a_number",
-            path=path,
-            scale=scale,
-            offset=offset,
-        )
+            "{path}: The first band has scale {scale:g} and offset {offset:g}. Allowed: finite numbers."
+        ).tag("not_a_number", path=path, scale=scale, offset=offset)
     with np.errstate(over="ignore", invalid="ignore"):  # huge values are rejected as heights
         return np.asarray(np.ma.filled(band.astype(float), np.nan) * scale + offset)
 
@@ -109,34 +99,24 @@ def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -
     unit = length_unit(str(name))
     if unit is None:
         raise ParameterError(
-            "{path}: The unit of the first band is {name!r}. Allowed: {lengths}. Fix: gdal_edit -units m.",
-            code="out_of_range",
-            path=path,
-            name=name,
-            lengths=list(LENGTHS),
-        )
+            "{path}: The unit of the first band is {name!r}. Allowed: {lengths}. Fix: gdal_edit -units m."
+        ).tag("out_of_range", path=path, name=name, lengths=list(LENGTHS))
     if vertical is not None and abs(unit - vertical) > 1e-4 * vertical:
         raise ParameterError(
             "{path}: The first band is in {name}, but one unit of its vertical system is {vertical:g} m. Fix: state "
-            "one unit, such as by gdal_edit -units or -a_srs.",
-            code="contradiction",
-            path=path,
-            name=name,
-            vertical=vertical,
-        )
+            "one unit, such as by gdal_edit -units or -a_srs."
+        ).tag("contradiction", path=path, name=name, vertical=vertical)
     return unit
 
 
 def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None) -> None:
     if transform.b != 0.0 or transform.d != 0.0:
         raise ParameterError(
-            "{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned",
-            code="wrong_kind",
-            path=path,
-        )
+            "{path}: its rows do not run east; warp it, such as by gdalwarp, to a grid that is not turned"
+        ).tag("wrong_kind", path=path)
     if system is None and (transform.a, transform.c, transform.e, transform.f) == (1.0, 0.0, 1.0, 0.0):
-        raise ParameterError(
-            "{path}: The position and the size of the cells are missing. Export it again.", code="missing", path=path
+        raise ParameterError("{path}: The position and the size of the cells are missing. Export it again.").tag(
+            "missing", path=path
         )
 
 
@@ -177,7 +157,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
 
 
 def _refuse(path: str | Path, what: str) -> NoReturn:
-    raise ParameterError("{path}: {what}", code="invalid", path=path, what=what)
+    raise ParameterError("{path}: {what}").tag("invalid", path=path, what=what)
 
 
 def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
@@ -189,13 +169,8 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
             header[entry[1].lower()] = float(entry[2])
         except ValueError:
             line = text.count("\n", 0, entry.start(2)) + 1
-            raise ParameterError(
-                "{path}, line {line}: {key} is {value!r}. Allowed: a number.",
-                code="out_of_range",
-                path=path,
-                line=line,
-                key=entry[1],
-                value=entry[2],
+            raise ParameterError("{path}, line {line}: {key} is {value!r}. Allowed: a number.").tag(
+                "out_of_range", path=path, line=line, key=entry[1], value=entry[2]
             ) from None
         at = entry.end()
     return header, at
@@ -261,13 +236,8 @@ def _refuse_word(path: str | Path, line: int, words: list[str]) -> NoReturn:
             float(word)
         except ValueError:
             raise ParameterError(
-                "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point.",
-                code="not_a_number",
-                path=path,
-                line=line,
-                column=column,
-                word=word,
-            ) from None
+                "{path}, line {line}, column {column}: {word!r} is not a number. Use digits and a decimal point."
+            ).tag("not_a_number", path=path, line=line, column=column, word=word) from None
     raise AssertionError(words)
 
 
@@ -318,9 +288,8 @@ def _even(
     """Even places and the number of each row's place among them."""
     different = np.unique(places)
     if len(different) < 2:
-        raise ParameterError(
-            "{path}, column {column}: there is only {places}; a grid needs two or more",
-            code="out_of_range",
+        raise ParameterError("{path}, column {column}: there is only {places}; a grid needs two or more").tag(
+            "out_of_range",
             path=path,
             column=column,
             places=", ".join(f"{value:g} m" for value in different) or "nothing",
@@ -358,37 +327,18 @@ def _require_each_once(
     if len(x) * len(y) > SPARSE * len(rows):
         raise ParameterError(
             "{path}: {n_rows} rows have {n_x} different x_m and {n_y} different y_m, so that they lie on no grid; "
-            "interpolate onto one. {action}",
-            code="not_a_grid",
-            path=path,
-            n_rows=len(rows),
-            n_x=len(x),
-            n_y=len(y),
-            action=action,
-        )
+            "interpolate onto one. {action}"
+        ).tag("not_a_grid", path=path, n_rows=len(rows), n_x=len(x), n_y=len(y), action=action)
     place = i * len(y) + j
     count = np.bincount(place, minlength=len(x) * len(y))
     if np.any(count > 1):
         twice = np.flatnonzero(place == int(np.argmax(count > 1)))[:2]
         first, again = (rows[int(index)] for index in twice)
         raise ParameterError(
-            "{path}, row {row}: x_m = {x_m}, y_m = {y_m} are in row {first}, too; keep one of them",
-            code="repeated",
-            path=path,
-            row=again.row,
-            x_m=again.cells["x_m"],
-            y_m=again.cells["y_m"],
-            first=first.row,
-        )
+            "{path}, row {row}: x_m = {x_m}, y_m = {y_m} are in row {first}, too; keep one of them"
+        ).tag("repeated", path=path, row=again.row, x_m=again.cells["x_m"], y_m=again.cells["y_m"], first=first.row)
     if np.any(count == 0):
         gap = int(np.argmin(count))
         raise ParameterError(
-            "{path}: no row has x_m = {x:g} and y_m = {y:g}, of {n_x} places in x and {n_y} in y. {action}",
-            code="missing",
-            path=path,
-            x=x[gap // len(y)],
-            y=y[gap % len(y)],
-            n_x=len(x),
-            n_y=len(y),
-            action=action,
-        )
+            "{path}: no row has x_m = {x:g} and y_m = {y:g}, of {n_x} places in x and {n_y} in y. {action}"
+        ).tag("missing", path=path, x=x[gap // len(y)], y=y[gap % len(y)], n_x=len(x), n_y=len(y), action=action)

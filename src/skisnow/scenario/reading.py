@@ -103,7 +103,7 @@ def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     """
     scenario, messages, _ = _built(load_input(name_or_path).changed(changes), Sources())
     for text in messages:
-        warnings.warn(RangeWarning(text, code="unusual"), stacklevel=2)
+        warnings.warn(RangeWarning(text).tag("unusual"), stacklevel=2)
     return scenario
 
 
@@ -125,11 +125,8 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
-            "unknown scenario {word!r}. {allowed} Any other scenario is read from a file ending in .toml",
-            code="unknown_name",
-            word=word,
-            allowed=nearest(word, scenario_names()),
-        )
+            "unknown scenario {word!r}. {allowed} Any other scenario is read from a file ending in .toml"
+        ).tag("unknown_name", word=word, allowed=nearest(word, scenario_names()))
     return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
 
 
@@ -137,12 +134,8 @@ def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
     sections = toml_values(text, title=title)
     identify = sections.pop(IDENTIFY, {})
     if not isinstance(identify, dict):
-        raise ParameterError(
-            "{title}: {key} is {value!r}; it must be a table, begun by the line [{key}]",
-            code="wrong_kind",
-            title=title,
-            key=IDENTIFY,
-            value=identify,
+        raise ParameterError("{title}: {key} is {value!r}; it must be a table, begun by the line [{key}]").tag(
+            "wrong_kind", title=title, key=IDENTIFY, value=identify
         )
     try:
         require_known(identify)
@@ -255,11 +248,8 @@ def scenario_text(name: str) -> str:
     Raises ParameterError: the scenario does not exist; the message names the nearest.
     """
     if name not in scenario_names():
-        raise ParameterError(
-            "unknown built-in scenario {name!r}. {allowed}",
-            code="unknown_name",
-            name=name,
-            allowed=nearest(name, scenario_names()),
+        raise ParameterError("unknown built-in scenario {name!r}. {allowed}").tag(
+            "unknown_name", name=name, allowed=nearest(name, scenario_names())
         )
     text = (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     head, *parts = _SECTION.split(text)

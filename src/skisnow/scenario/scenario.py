@@ -193,13 +193,11 @@ class Scenario(Shown):
 
     def __post_init__(self) -> None:
         if self.contact.snow.failure_shear_stress is None:
-            raise ParameterError(
-                "the snow ({source}) has no failure shear stress S_f; a turn needs it: give one",
-                code="no_data",
-                source=self.contact.snow.source,
+            raise ParameterError("the snow ({source}) has no failure shear stress S_f; a turn needs it: give one").tag(
+                "no_data", source=self.contact.snow.source
             )
         if self.stop.duration is None and self.stop.length is None:
-            raise ParameterError("the run has no end: give a duration or a length", code="no_data")
+            raise ParameterError("the run has no end: give a duration or a length").tag("no_data")
         require_declared(self)
         if self.camber_rounding is not None:
             object.__setattr__(self, "ski", self.ski.camber_rounded(self.camber_rounding))

@@ -119,10 +119,8 @@ class RigidSledge:
         roll, pitch, yaw = self.inertia
         if 2.0 * max(self.inertia) > roll + pitch + yaw:
             raise ParameterError(
-                "inertia is {inertia} kg m²; each moment must be above 0 and none more than the sum of the others",
-                code="out_of_range",
-                inertia=self.inertia,
-            )
+                "inertia is {inertia} kg m²; each moment must be above 0 and none more than the sum of the others"
+            ).tag("out_of_range", inertia=self.inertia)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -299,8 +297,8 @@ class Shear:
     def __post_init__(self) -> None:
         require_declared(self)
         if self.law == "by-density" and self.snow_density is None:
-            raise ParameterError(
-                'shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3', code="missing"
+            raise ParameterError('shear.law = "by-density" needs the density: give shear.snow_density_kg_per_m3').tag(
+                "missing"
             )
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:

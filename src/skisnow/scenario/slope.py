@@ -161,34 +161,21 @@ def _require_points(x: FloatArray, height: FloatArray) -> None:
     if x.ndim != 1 or x.shape != height.shape or len(x) < FEWEST_POINTS:
         raise ParameterError(
             "a profile needs {fewest_points} points or more, each with x and height; there are x of shape {shape} "
-            "and heights of shape {shape_2}",
-            code="wrong_shape",
-            fewest_points=FEWEST_POINTS,
-            shape=str(x.shape),
-            shape_2=str(height.shape),
-        )
+            "and heights of shape {shape_2}"
+        ).tag("wrong_shape", fewest_points=FEWEST_POINTS, shape=str(x.shape), shape_2=str(height.shape))
     for name, table in (("x", x), ("the height", height)):
         if not np.isfinite(table).all():
             place = int(np.argmin(np.isfinite(table)))
-            raise ParameterError(
-                "{name} of point {place} of the profile is {value}; correct it",
-                code="not_a_number",
-                name=name,
-                place=place + 1,
-                value=table[place],
+            raise ParameterError("{name} of point {place} of the profile is {value}; correct it").tag(
+                "not_a_number", name=name, place=place + 1, value=table[place]
             )
     rises = np.diff(x) >= SHORTEST_STEP
     if not rises.all():
         place = int(np.argmin(rises))
         raise ParameterError(
             "x of the profile's point {place} is {x:g} m after {before:g} m; x must rise by {shortest_step:g} m or "
-            "more from point to point. Sort the points, and keep one of those at the same place",
-            code="out_of_range",
-            place=place + 2,
-            x=x[place + 1],
-            before=x[place],
-            shortest_step=SHORTEST_STEP,
-        )
+            "more from point to point. Sort the points, and keep one of those at the same place"
+        ).tag("out_of_range", place=place + 2, x=x[place + 1], before=x[place], shortest_step=SHORTEST_STEP)
 
 
 def _require_no_gap(x: FloatArray) -> None:
@@ -197,13 +184,8 @@ def _require_no_gap(x: FloatArray) -> None:
     if widths[place] > LONGEST_GAP:
         raise ParameterError(
             "the profile has no point between x = {x:g} m and {end:g} m, a gap of {width:.3g} m; at most "
-            '{longest_gap:g} m are joined unasked. Add points, or write slope.profile_gap = "interpolate"',
-            code="out_of_range",
-            x=x[place],
-            end=x[place + 1],
-            width=widths[place],
-            longest_gap=LONGEST_GAP,
-        )
+            '{longest_gap:g} m are joined unasked. Add points, or write slope.profile_gap = "interpolate"'
+        ).tag("out_of_range", x=x[place], end=x[place + 1], width=widths[place], longest_gap=LONGEST_GAP)
 
 
 def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
@@ -219,13 +201,8 @@ def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
         degrees = math.degrees(math.atan(steepness[worst, piece]))
         raise ParameterError(
             "the profile has a cliff of {degrees:.3g} degrees between x = {x:g} m and {end:g} m; at most "
-            "{steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its heights or end it there",
-            code="out_of_range",
-            degrees=degrees,
-            x=x[piece],
-            end=x[piece + 1],
-            steepest_deg=STEEPEST_DEG,
-        )
+            "{steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its heights or end it there"
+        ).tag("out_of_range", degrees=degrees, x=x[piece], end=x[piece + 1], steepest_deg=STEEPEST_DEG)
 
 
 COLUMNS: Final = ("x", "y")

@@ -64,8 +64,8 @@ class SnowMap(Shown):
     def __post_init__(self) -> None:
         grids = (("H_V", self.hardness), ("S_f", self.failure_shear_stress), ("mu_share", self.friction_share))
         if all(grid is None for _, grid in grids):
-            raise ParameterError(
-                "a snow map has neither H_V nor S_f nor friction; add at least one of them", code="missing"
+            raise ParameterError("a snow map has neither H_V nor S_f nor friction; add at least one of them").tag(
+                "missing"
             )
         for name, grid in grids:
             if grid is not None:
@@ -110,13 +110,8 @@ def _require_positive(name: str, grid: Grid) -> None:
     """At the places, and between them, where smooth patches may swing below the values that they join."""
     i, j = np.unravel_index(int(np.argmin(grid.values)), grid.values.shape)
     if grid.values[i, j] <= 0.0:
-        raise ParameterError(
-            "{name} of the snow map is {value:g} at x = {x:g} m, y = {y:g} m; it must be above 0",
-            code="out_of_range",
-            name=name,
-            value=grid.values[i, j],
-            x=grid.x[i],
-            y=grid.y[j],
+        raise ParameterError("{name} of the snow map is {value:g} at x = {x:g} m, y = {y:g} m; it must be above 0").tag(
+            "out_of_range", name=name, value=grid.values[i, j], x=grid.x[i], y=grid.y[j]
         )
     x, y = _corners_that_may_swing(grid)
     parts = np.linspace(0.0, 1.0, FINER + 1)
@@ -130,12 +125,8 @@ def _require_positive(name: str, grid: Grid) -> None:
         if values.flat[lowest] <= 0.0:
             raise ParameterError(
                 "{name} of the snow map falls from one place to the next so steeply that the curve through its "
-                "values goes below 0 at x = {x:g} m, y = {y:g} m; give more places there",
-                code="out_of_range",
-                name=name,
-                x=finer_x.flat[lowest],
-                y=finer_y.flat[lowest],
-            )
+                "values goes below 0 at x = {x:g} m, y = {y:g} m; give more places there"
+            ).tag("out_of_range", name=name, x=finer_x.flat[lowest], y=finer_y.flat[lowest])
 
 
 def _corners_that_may_swing(grid: Grid) -> tuple[FloatArray, FloatArray]:
@@ -182,12 +173,8 @@ def read_snow_map(path: str | Path) -> SnowMap:
     rows = [_positive(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
-        raise ParameterError(
-            "{path}: no column of {columns}, or no row. {action}",
-            code="missing",
-            path=path,
-            columns=list(SIZES),
-            action=_ACTION,
+        raise ParameterError("{path}: no column of {columns}, or no row. {action}").tag(
+            "missing", path=path, columns=list(SIZES), action=_ACTION
         )
     grids = _grids(path, names) if "y_m" in rows[0].cells else _along(path, rows, names)
     try:
@@ -218,11 +205,8 @@ def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> di
     """Uneven places are brought to even ones by cubics that do not overshoot."""
     x = np.array([number_within(row, "x_m") for row in rows])
     if len(x) < 2:
-        raise ParameterError(
-            "{path}: there are {n_x} rows; snow that varies needs two or more",
-            code="out_of_range",
-            path=path,
-            n_x=len(x),
+        raise ParameterError("{path}: there are {n_x} rows; snow that varies needs two or more").tag(
+            "out_of_range", path=path, n_x=len(x)
         )
     for row, step in zip(rows[1:], np.diff(x), strict=True):
         if not step > CLOSEST:
@@ -267,14 +251,8 @@ def read_snow_layers(path: str | Path) -> SnowLayers:
     if len(names) != 1 or len(rows) > MOST_LAYERS:
         raise ParameterError(
             "{path}: {count} rows with the columns {columns}; allowed are 1 to {most} rows with one of hardness_share "
-            "and force_N. {action}",
-            code="wrong_kind",
-            path=path,
-            count=len(rows),
-            columns=names,
-            most=MOST_LAYERS,
-            action=_LAYERS_ACTION,
-        )
+            "and force_N. {action}"
+        ).tag("wrong_kind", path=path, count=len(rows), columns=names, most=MOST_LAYERS, action=_LAYERS_ACTION)
     tops = np.array([row.number("depth_mm") for row in rows]) * MM
     values = np.array([row.number(names[0]) for row in rows])
     for row, step, value in zip(rows, np.diff(tops, prepend=-1.0), values, strict=True):

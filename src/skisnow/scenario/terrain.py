@@ -122,12 +122,8 @@ class Terrain(Shown):
             object.__setattr__(self, name, values)
         if min(measured.values.shape) < FEWEST_PLACES:
             raise ParameterError(
-                "a grid needs {fewest_places} places or more in x and in y; it has {n_x} and {n_y}",
-                code="out_of_range",
-                fewest_places=FEWEST_PLACES,
-                n_x=len(self.x),
-                n_y=len(self.y),
-            )
+                "a grid needs {fewest_places} places or more in x and in y; it has {n_x} and {n_y}"
+            ).tag("out_of_range", fewest_places=FEWEST_PLACES, n_x=len(self.x), n_y=len(self.y))
         height = smoothed(measured.values, measured.steps, cutoff=self.smoothing)
         object.__setattr__(self, "surface", Grid(self.x - self.origin_x, self.y - self.origin_y, height))
         _require_no_cliff(self.surface)
@@ -154,13 +150,8 @@ def _require_no_cliff(surface: Grid) -> None:
             raise ParameterError(
                 "the grid has a cliff of {degrees:.3g} degrees at x = {x:g} m, y = {y:g} m; at most {steepest_deg:g} "
                 "degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over more metres, or "
-                "cut out a part without it",
-                code="out_of_range",
-                degrees=degrees,
-                x=x[i],
-                y=y[j],
-                steepest_deg=STEEPEST_DEG,
-            )
+                "cut out a part without it"
+            ).tag("out_of_range", degrees=degrees, x=x[i], y=y[j], steepest_deg=STEEPEST_DEG)
 
 
 HEIGHT: Final = "z_m"

@@ -127,11 +127,8 @@ class BootDrive:
             dynamics.push(*push(moment))
         count = len(dynamics.body.skis)
         if len(poses) != count or not all(isinstance(pose, BootPose) for pose in poses):
-            raise ParameterError(
-                "boots: the control gave {poses!r}; it must give {count} BootPose",
-                code="wrong_kind",
-                poses=poses,
-                count=count,
+            raise ParameterError("boots: the control gave {poses!r}; it must give {count} BootPose").tag(
+                "wrong_kind", poses=poses, count=count
             )
         return poses
 

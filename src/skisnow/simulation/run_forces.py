@@ -28,7 +28,7 @@ def balance_of(run: Run) -> BalanceHistory:
     """Lean of the body over the run."""
     boots = run.boots
     if boots is None:
-        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate", code="no_data")
+        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate").tag("no_data")
     normal = normals_of(run.scenario.slope, run.place[:, 0], run.place[:, 1])
     ahead = boots.axes[:, :, 0].mean(axis=1)
     ahead = ahead - np.einsum("na,na->n", ahead, normal)[:, None] * normal

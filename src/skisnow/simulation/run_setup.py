@@ -225,15 +225,14 @@ def set_up(
 def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
     if boots is not None:
         if scenario.boots is not None:
-            raise ParameterError(
-                "the boots move by boots.file and by a function; give one of them", code="contradiction"
+            raise ParameterError("the boots move by boots.file and by a function; give one of them").tag(
+                "contradiction"
             )
         if scenario.skier is not None and not _balances(boots):
             raise ParameterError(
                 "boots: the scenario has a skier, whose control moves the boots. Use the scenario without it, "
-                "scenario.with_(skier=None), or a BalancedSkier.",
-                code="contradiction",
-            )
+                "scenario.with_(skier=None), or a BalancedSkier."
+            ).tag("contradiction")
         return BootDrive(boots)
     if scenario.skier is not None:
         return BootDrive(BalancedSkier(scenario))

@@ -132,5 +132,5 @@ def write_boots(run: Run, path: str | Path) -> None:
 
 def _boots(run: Run) -> BootHistory:
     if run.boots is None:
-        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate", code="no_data")
+        raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate").tag("no_data")
     return run.boots

@@ -147,10 +147,10 @@ def simulate(
     * The page docs/methods/simulated-turn.md.
     """
     for code, text in model_limits(scenario.ski).items():
-        warnings.warn(ModelLimitWarning(text, code=code), stacklevel=2)
+        warnings.warn(ModelLimitWarning(text).tag(code), stacklevel=2)
     if controller is not None:
         if boots is not None:
-            raise ParameterError("boots and controller both move the boots; give one of them", code="contradiction")
+            raise ParameterError("boots and controller both move the boots; give one of them").tag("contradiction")
         boots = BalancedSkier(scenario, controller)
     run, setup = _run_once(scenario, progress, laws=laws, boots=boots, strength_along=strength_along)
     if run.outcome == "energy_open" and boots is None and not scenario.solver.fixed:
@@ -198,7 +198,7 @@ def _warn_of_closer_lines(spacing: float, closer: float) -> None:
         spacing=spacing / MM,
         closer=closer / MM,
     )
-    warnings.warn(ModelLimitWarning(text, code="repeated_with_closer_lines"), stacklevel=3)
+    warnings.warn(ModelLimitWarning(text).tag("repeated_with_closer_lines"), stacklevel=3)
 
 
 def _warn_of_unseen_tracks(setup: Setup) -> None:
@@ -213,7 +213,7 @@ def _warn_of_unseen_tracks(setup: Setup) -> None:
             spacing=setup.numbers["line_spacing_m"] / MM,
             force=force,
         )
-        warnings.warn(ModelLimitWarning(text, code="tracks_between_lines"), stacklevel=3)
+        warnings.warn(ModelLimitWarning(text).tag("tracks_between_lines"), stacklevel=3)
 
 
 def _warn_of_friction(run: Run) -> None:
@@ -231,7 +231,7 @@ def _warn_of_friction(run: Run) -> None:
             zero_at=zero_at,
             fastest=fastest,
         )
-        warnings.warn(ModelLimitWarning(text, code="friction_below_zero"), stacklevel=3)
+        warnings.warn(ModelLimitWarning(text).tag("friction_below_zero"), stacklevel=3)
 
 
 @dataclass(slots=True)

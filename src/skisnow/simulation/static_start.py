@@ -61,7 +61,7 @@ def no_start(setup: Setup) -> SolverError:
     }
     for side, (away, reach) in beside.items():
         if away > reach:
-            return SolverError(Message(_BESIDE[side], away=away, reach=reach), code="no_start", side=side)
+            return SolverError(Message(_BESIDE[side], away=away, reach=reach)).tag("no_start", side=side)
     sledge = setup.scenario.sledge
     forward, height = sledge.centre_of_mass
     tries: dict[str, tuple[float, Callable[[float], RigidSledge]]] = {
@@ -75,18 +75,13 @@ def no_start(setup: Setup) -> SolverError:
             return SolverError(
                 "the sledge falls over at its start: its weight passes between the skis, but leans it further as the "
                 "snow gives way. It stands with a {key} of {stands_with:g}; the scenario has {value:.3g}. Take that, "
-                "or harder snow",
-                code="no_start",
-                key=key,
-                stands_with=stands_with,
-                value=value,
-            )
+                "or harder snow"
+            ).tag("no_start", key=key, stands_with=stands_with, value=value)
     return SolverError(
         "the search for the sledge at rest, from which the run starts, did not come to an end, although its weight "
         "falls between the skis. Take a smaller sledge.edge_angle_deg, a stiffer ski, softer snow, or a lower "
-        "sledge.centre_of_mass_height_m, and please report the scenario",
-        code="no_start",
-    )
+        "sledge.centre_of_mass_height_m, and please report the scenario"
+    ).tag("no_start")
 
 
 def largest_standing(setup: Setup, value: float, sledge_with: Callable[[float], RigidSledge]) -> float | None:

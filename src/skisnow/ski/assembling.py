@@ -119,14 +119,8 @@ def _parabola(table: StationTable, layout: Layout) -> _Parabola:
         raise ParameterError(
             "the column width_mm has {size} rows, {span:.0f} mm apart, within the sidecut length, from {front:.4g} "
             "to {rear:.4g} m. Allowed are {fewest_rows} rows or more over at least half of it: give rows at both "
-            "ends and at the waist, and better every 10 cm",
-            code="table_too_short",
-            size=station.size,
-            span=span * 1e3,
-            front=front,
-            rear=rear,
-            fewest_rows=FEWEST_ROWS,
-        )
+            "ends and at the waist, and better every 10 cm"
+        ).tag("table_too_short", size=station.size, span=span * 1e3, front=front, rear=rear, fewest_rows=FEWEST_ROWS)
     within = np.clip(station, rear, front)
     coefficients = np.asarray(np.polynomial.polynomial.polyfit(within, table.value[inside], 2), dtype=np.float64)
     return _Parabola(coefficients, front, rear)

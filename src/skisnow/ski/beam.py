@@ -236,12 +236,8 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     if not 0.0 <= clamp_length / 2.0 < min(front, -rear):
         raise ParameterError(
             "clamp_length is {clamp_length} m; it must be 0 or more and its half less than the distance from boot to "
-            "tip and to tail ({front:.3f} and {value:.3f} m)",
-            code="out_of_range",
-            clamp_length=clamp_length,
-            front=front,
-            value=-rear,
-        )
+            "tip and to tail ({front:.3f} and {value:.3f} m)"
+        ).tag("out_of_range", clamp_length=clamp_length, front=front, value=-rear)
     require_range("elements", elements, 4)
     if footprint_stiffness is not None:
         require_range("footprint_stiffness", footprint_stiffness, 0.0, above=True)

@@ -73,8 +73,8 @@ def require_tables(name: str, tables: SkiSections) -> None:
 
 
 def _refuse(name: str, problem: Message, action: Message) -> None:
-    raise ParameterError(
-        "ski {name!r}: {problem}. {action}.", code="invalid_ski", name=name, problem=problem, action=action
+    raise ParameterError("ski {name!r}: {problem}. {action}.").tag(
+        "invalid_ski", name=name, problem=problem, action=action
     )
 
 

@@ -57,12 +57,8 @@ class SkiEdit:
         for what, edits, columns in (("factors", self.factors, factors), ("values", self.values, (*EDITED_COLUMNS,))):
             for column in edits:
                 if column not in columns:
-                    raise ParameterError(
-                        "SkiEdit: {field} has no {column!r}. {allowed}",
-                        code="unknown_name",
-                        field=what,
-                        column=column,
-                        allowed=nearest(column, columns),
+                    raise ParameterError("SkiEdit: {field} has no {column!r}. {allowed}").tag(
+                        "unknown_name", field=what, column=column, allowed=nearest(column, columns)
                     )
 
 
@@ -154,13 +150,8 @@ def _require(edit: SkiEdit) -> None:
     for column, factor in edit.factors.items():
         if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
             raise ParameterError(
-                "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it",
-                code="out_of_range",
-                column=column,
-                factor=factor,
-                lowest=1.0 / _LARGEST_FACTOR,
-                highest=_LARGEST_FACTOR,
-            )
+                "the factor of {column} is {factor:g}; allowed is {lowest:g} to {highest:g}. Correct it"
+            ).tag("out_of_range", column=column, factor=factor, lowest=1.0 / _LARGEST_FACTOR, highest=_LARGEST_FACTOR)
     for column, values in edit.values.items():
         for station, value in zip(edit.station, values, strict=True):
             if not np.isnan(value):
@@ -197,14 +188,10 @@ def shape_value(ski: Ski, name: str) -> float:
         if ski.keys is None and name.startswith("ski."):
             raise ParameterError(
                 "{name}: the ski {ski} was not read from a file with keys only, or was changed since. Use one of "
-                "{allowed}.",
-                code="no_keys",
-                name=name,
-                ski=ski.name,
-                allowed=list(FACTORS),
-            )
-        raise ParameterError(
-            "the ski has no parameter {name}. {allowed}", code="unknown_name", name=name, allowed=nearest(name, allowed)
+                "{allowed}."
+            ).tag("no_keys", name=name, ski=ski.name, allowed=list(FACTORS))
+        raise ParameterError("the ski has no parameter {name}. {allowed}").tag(
+            "unknown_name", name=name, allowed=nearest(name, allowed)
         )
     return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
 
@@ -401,5 +388,5 @@ def parsed_keys(ski: Ski) -> SkiFile:
     own = ski_of_keys(ski.keys or {}, like=ski)
     for table in ("width", "base_height", "bending_stiffness", "torsional_stiffness"):
         if not np.allclose(getattr(own, table), getattr(ski, table), rtol=1e-9, atol=1e-12):
-            raise ParameterError("the tables of the ski {ski} are not those of its keys.", code="no_keys", ski=ski.name)
+            raise ParameterError("the tables of the ski {ski} are not those of its keys.").tag("no_keys", ski=ski.name)
     return MADE_OF_KEYS[own]

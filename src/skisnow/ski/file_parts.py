@@ -138,7 +138,7 @@ class FileParts:
         length, reach = values.said.length, float(station[0] - station[-1])
         if length is not None and abs(length - reach) > _SAME_LENGTH:
             problem = _TABLE_TOO_SHORT if reach < length else _TABLE_TOO_LONG
-            raise ParameterError(problem, code="contradiction", reach=reach * 1e3, length=length * 1e3)
+            raise ParameterError(problem).tag("contradiction", reach=reach * 1e3, length=length * 1e3)
         return Layout(
             tip=float(station[0]),
             tail=float(station[-1]),
@@ -161,8 +161,8 @@ class FileParts:
         if values.said.rigid:
             values.refuse_together(LISTS, "rigid", Message("Remove one of them."))
             if key in self.table:
-                raise ParameterError(
-                    "the column {key} contradicts rigid = true. Remove one of them.", code="contradiction", key=key
+                raise ParameterError("the column {key} contradicts rigid = true. Remove one of them.").tag(
+                    "contradiction", key=key
                 )
             return lambda station: np.full(np.shape(station), RIGID)
         if key in self.table:
@@ -173,8 +173,8 @@ class FileParts:
         try:
             return stiffness_table(stiffness, station, layout).at
         except ParameterError as error:
-            raise ParameterError(
-                "{key} and stiffness_station_mm: {problem}", code=error.code, key=key, problem=error
+            raise ParameterError("{key} and stiffness_station_mm: {problem}").tag(
+                error.code, key=key, problem=error
             ) from error
 
     def _warn_of_lengths(self, ski: Ski) -> None:
@@ -183,12 +183,7 @@ class FileParts:
                 warnings.warn(
                     RangeWarning(
                         "{file}: {key} is {value:g}, the ski {length:g} mm long; usual are 0.7 to 0.95 of it. Is it "
-                        "in mm?",
-                        code="unusual",
-                        file=self.values.file,
-                        key=key,
-                        value=length * 1e3,
-                        length=ski.length * 1e3,
-                    ),
+                        "in mm?"
+                    ).tag("unusual", file=self.values.file, key=key, value=length * 1e3, length=ski.length * 1e3),
                     stacklevel=2,
                 )

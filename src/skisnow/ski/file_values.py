@@ -53,11 +53,8 @@ class FileValues:
         """Give a number in SI that the file must have."""
         number: float | None = getattr(self.said, SKI_KEYS[key].field)
         if number is None:
-            raise ParameterError(
-                "{file}: the key {key} is missing. Add it, in the unit that it names.",
-                code="missing",
-                file=self.file,
-                key=key,
+            raise ParameterError("{file}: the key {key} is missing. Add it, in the unit that it names.").tag(
+                "missing", file=self.file, key=key
             )
         return number
 
@@ -65,11 +62,8 @@ class FileValues:
         """Give a list of numbers in SI that the file must have."""
         numbers = getattr(self.said, SKI_KEYS[key].field)
         if numbers is None:
-            raise ParameterError(
-                "{file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].",
-                code="missing",
-                file=self.file,
-                key=key,
+            raise ParameterError("{file}: the key {key} is missing. Add a list such as {key} = [100, 440, 100].").tag(
+                "missing", file=self.file, key=key
             )
         return np.array(numbers)
 
@@ -82,26 +76,16 @@ class FileValues:
         for key in keys:
             if key in self.values:
                 raise ParameterError(
-                    "{file}: {key} = {value} is stated together with {other} for the same quantity. {action}",
-                    code="contradiction",
-                    file=self.file,
-                    key=key,
-                    value=shown(self.values[key]),
-                    other=other,
-                    action=action,
+                    "{file}: {key} = {value} is stated together with {other} for the same quantity. {action}"
+                ).tag(
+                    "contradiction", file=self.file, key=key, value=shown(self.values[key]), other=other, action=action
                 )
 
 
 def refuse(file: Path, place: str, value: object, allowed: str, action: Message) -> NoReturn:
     """Raise the error for a value at a place of a file."""
-    raise ParameterError(
-        "{file}: {place} is {value}; allowed is {allowed}. {action}",
-        code="out_of_range",
-        file=file,
-        place=place,
-        value=shown(value),
-        allowed=allowed,
-        action=action,
+    raise ParameterError("{file}: {place} is {value}; allowed is {allowed}. {action}").tag(
+        "out_of_range", file=file, place=place, value=shown(value), allowed=allowed, action=action
     )
 
 
@@ -110,12 +94,8 @@ def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
     try:
         return quantity.in_range(value)
     except ParameterError as error:
-        raise ParameterError(
-            "{file}: {problem}. {action}",
-            code=error.code or "out_of_range",
-            file=file,
-            problem=error,
-            action=_remedy(value, quantity),
+        raise ParameterError("{file}: {problem}. {action}").tag(
+            error.code or "out_of_range", file=file, problem=error, action=_remedy(value, quantity)
         ) from None
 
 
@@ -161,7 +141,7 @@ def warn_of_unusual(file: Path, values: Mapping[str, float], quantity: Quantity)
         else Message("{file}: {place} is {value:g}; usual is {low:g} to {high:g}. The value is used.", **fields)
     )
     unit = _likely_unit(value, quantity)
-    warnings.warn(RangeWarning(joined([text, unit]) if unit else text, code="unusual"), stacklevel=2)
+    warnings.warn(RangeWarning(joined([text, unit]) if unit else text).tag("unusual"), stacklevel=2)
 
 
 def file_values(path: Path) -> FileValues:
@@ -173,12 +153,8 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
     """Check the keys of a ski file that were parsed already; `path`: the file that errors name."""
     for key in values:
         if key not in SKI_KEYS:
-            raise ParameterError(
-                "{path}: the key {key} is not known. {allowed}",
-                code="unknown_name",
-                path=path,
-                key=key,
-                allowed=nearest(key, SKI_KEYS),
+            raise ParameterError("{path}: the key {key} is not known. {allowed}").tag(
+                "unknown_name", path=path, key=key, allowed=nearest(key, SKI_KEYS)
             )
     checked_values = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
     for key, value in checked_values.items():

@@ -36,27 +36,22 @@ class Layout:
     def __post_init__(self) -> None:
         if self.tip - self.tail > LONGEST:
             raise ParameterError(
-                "the ski is {tip:.6g} m long. Allowed: at most {longest:g} m. Correct the lengths or their units.",
-                code="out_of_range",
-                tip=self.tip - self.tail,
-                longest=LONGEST,
-            )
+                "the ski is {tip:.6g} m long. Allowed: at most {longest:g} m. Correct the lengths or their units."
+            ).tag("out_of_range", tip=self.tip - self.tail, longest=LONGEST)
         for name in ("running_length", "sidecut_length"):
             length = getattr(self, name)
             if not length > 0:
-                raise ParameterError(
-                    "{name} is {length!r} m; it must be above 0. Correct it.",
-                    code="out_of_range",
-                    name=name,
-                    length=length,
+                raise ParameterError("{name} is {length!r} m; it must be above 0. Correct it.").tag(
+                    "out_of_range", name=name, length=length
                 )
             front, rear = self.middle + length / 2.0, self.middle - length / 2.0
             if front > self.tip + 1e-9 or rear < self.tail - 1e-9:
                 raise ParameterError(
                     "the {name} of {length:.1f} mm reaches from {front:.1f} to {rear:.1f} mm from the boot, but the "
                     "ski only from {tip:.1f} to {tail:.1f} mm. Correct the lengths, the boot position or the tail "
-                    "overhang.",
-                    code="contradiction",
+                    "overhang."
+                ).tag(
+                    "contradiction",
                     name=name,
                     length=length * 1e3,
                     front=front * 1e3,
@@ -259,8 +254,9 @@ class BaseShape:
         if foremost - hindmost < LEAST_CONTACT:
             raise ParameterError(
                 "the rockers, {tip_rocker_length:.1f} and {tail_rocker_length:.1f} mm long, leave less than "
-                "{least_contact:g} mm of the running length of {running_length:.1f} mm. Shorten them.",
-                code="contradiction",
+                "{least_contact:g} mm of the running length of {running_length:.1f} mm. Shorten them."
+            ).tag(
+                "contradiction",
                 tip_rocker_length=self.tip_rocker_length * 1e3,
                 tail_rocker_length=self.tail_rocker_length * 1e3,
                 least_contact=LEAST_CONTACT * 1e3,
@@ -299,11 +295,8 @@ class _End:
         if self.rocker_height > 0 and not self.rocker_length > 0:
             raise ParameterError(
                 "the rocker before the {name} has a height of {rocker_height:.1f} mm but no length. State its length "
-                "or remove the height.",
-                code="contradiction",
-                name=self.name,
-                rocker_height=self.rocker_height * 1e3,
-            )
+                "or remove the height."
+            ).tag("contradiction", name=self.name, rocker_height=self.rocker_height * 1e3)
         share = np.minimum(distance, self.rocker_length) / self.rocker_length if self.rocker_length > 0 else 0.0
         beyond = np.maximum(distance - self.rocker_length, 0.0)
         return np.asarray(self.rocker_height * share**2 + self._slope * beyond + self._bend() * beyond**2)
@@ -318,11 +311,8 @@ class _End:
             if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:
                 raise ParameterError(
                     "the {name} height is {given_height:.1f} mm, but the running length ends where the ski does. "
-                    "State the length of the {name} or remove its height.",
-                    code="contradiction",
-                    name=self.name,
-                    given_height=self.given_height * 1e3,
-                )
+                    "State the length of the {name} or remove its height."
+                ).tag("contradiction", name=self.name, given_height=self.given_height * 1e3)
             return 0.0
         straight = self.rocker_height + self._slope * self.length
         default = SHOVEL_HEIGHT if self.name == "shovel" else TAIL_HEIGHT
@@ -330,12 +320,8 @@ class _End:
         if height < straight - 1e-9:
             raise ParameterError(
                 "the {name} height is {height:.1f} mm, but straight on from its rocker the base is already "
-                "{straight:.1f} mm high. Raise the {name} or flatten the rocker.",
-                code="contradiction",
-                name=self.name,
-                height=height * 1e3,
-                straight=straight * 1e3,
-            )
+                "{straight:.1f} mm high. Raise the {name} or flatten the rocker."
+            ).tag("contradiction", name=self.name, height=height * 1e3, straight=straight * 1e3)
         return (height - straight) / self.length**2
 
 

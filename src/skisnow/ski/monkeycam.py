@@ -107,16 +107,12 @@ def _board(path: Path) -> dict[str, Any]:
     board = design.get("board") if isinstance(design, dict) else None
     if not isinstance(board, dict):
         raise ParameterError(
-            "{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json.",
-            code="missing",
-            path=path,
-        )
+            "{path} has no section 'board'. Give a design file of MonkeyCAM, such as ski-def.json."
+        ).tag("missing", path=path)
     if board.get("splitboard"):
         raise ParameterError(
-            "{path}: board: splitboard is true. Its outline is of two halves together; give a ski.",
-            code="wrong_kind",
-            path=path,
-        )
+            "{path}: board: splitboard is true. Its outline is of two halves together; give a ski."
+        ).tag("wrong_kind", path=path)
     form = board.get("edge shape")
     kind = form.get("type") if isinstance(form, dict) else None
     if kind != "Basic Arc":

@@ -173,7 +173,7 @@ class Ski(Shown):
                 if self.base is None
                 else Message("the ski {name} has no camber to round. Remove it", name=self.name)
             )
-            raise ParameterError(problem, code="no_camber")
+            raise ParameterError(problem).tag("no_camber")
         base = replace(self.base, camber_rounding=length)
         height = base.height_at(self.station, self.layout)
         return replace(

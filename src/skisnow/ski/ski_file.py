@@ -67,11 +67,8 @@ def read_ski(name_or_path: str | Path) -> Ski:
     if path.suffix.lower() == ".json":
         raise ParameterError(
             "{path} has a shape but no stiffness and no mass. Write a TOML file with shape = {file!r}, EI_N_m2, "
-            "GJ_N_m2 and mass_kg, and read that.",
-            code="no_stiffness",
-            path=path,
-            file=path.name,
-        )
+            "GJ_N_m2 and mass_kg, and read that."
+        ).tag("no_stiffness", path=path, file=path.name)
     if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or is_file(path):
         return _ski_in(path)
     raise _no_such_ski(str(name_or_path))
@@ -118,11 +115,8 @@ def ski_names() -> tuple[str, ...]:
 
 
 def _no_such_ski(name: str) -> ParameterError:
-    return ParameterError(
-        "unknown ski {name!r}. {allowed} Any other ski is read from a file ending in .toml.",
-        code="unknown_name",
-        name=name,
-        allowed=nearest(name, ski_names()),
+    return ParameterError("unknown ski {name!r}. {allowed} Any other ski is read from a file ending in .toml.").tag(
+        "unknown_name", name=name, allowed=nearest(name, ski_names())
     )
 
 
@@ -178,8 +172,8 @@ def write_ski(ski: Ski, path: str | Path) -> None:
     """
     path = Path(path)
     if path.suffix.lower() != ".toml":
-        raise OutputError(
-            "{path} cannot be written: a ski file ends in .toml. Choose such a name.", code="cannot_write", path=path
+        raise OutputError("{path} cannot be written: a ski file ends in .toml. Choose such a name.").tag(
+            "cannot_write", path=path
         )
     table = path.with_suffix(".csv")
     write_file(table, _table_text(ski))

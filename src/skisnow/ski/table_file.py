@@ -44,29 +44,17 @@ def read_table(path: Path) -> dict[str, StationTable]:
     header = column_names(cells, COLUMNS)
     for place, name in enumerate(header):
         if name not in COLUMNS:
-            raise ParameterError(
-                "{path}, line {line}: the column {name!r} is not known. {allowed}",
-                code="unknown_name",
-                path=path,
-                line=first,
-                name=name,
-                allowed=nearest(name, COLUMNS),
+            raise ParameterError("{path}, line {line}: the column {name!r} is not known. {allowed}").tag(
+                "unknown_name", path=path, line=first, name=name, allowed=nearest(name, COLUMNS)
             )
         if name in header[:place]:
-            raise ParameterError(
-                "{path}, line {line}: the column {name} occurs twice. Remove one.",
-                code="repeated",
-                path=path,
-                line=first,
-                name=name,
+            raise ParameterError("{path}, line {line}: the column {name} occurs twice. Remove one.").tag(
+                "repeated", path=path, line=first, name=name
             )
     if "station_m" not in header or len(header) < 2:
         raise ParameterError(
-            "{path}, line {line}: needed are the column station_m and one or more others. Add it.",
-            code="missing",
-            path=path,
-            line=first,
-        )
+            "{path}, line {line}: needed are the column station_m and one or more others. Add it."
+        ).tag("missing", path=path, line=first)
     mark = decimal_mark([(cell for _, cells in lines[1:] for cell in cells)], separator=separator)
     rows = [_row(path, line, header, cells, mark) for line, cells in lines[1:]]
     columns = dict(zip(header, np.array(rows).T, strict=True))
@@ -84,12 +72,8 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
     try:
         text = decoded(plain_bytes(path, most_bytes=MOST_BYTES)).text
     except NoTextError as error:
-        raise ParameterError(
-            "{path} is not text ({place} is not {encoding}). Save it as UTF-8.",
-            code="not_text",
-            path=path,
-            place=error.place,
-            encoding=error.encoding,
+        raise ParameterError("{path} is not text ({place} is not {encoding}). Save it as UTF-8.").tag(
+            "not_text", path=path, place=error.place, encoding=error.encoding
         ) from error
     named = named_separator(text)
     first = 2 if named in SEPARATOR_NAMES else 1
@@ -98,29 +82,21 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
     try:
         lines = [(line, [cell.strip() for cell in row]) for line, row in rows if any(map(str.strip, row))]
     except csv.Error as error:
-        raise ParameterError(
-            "{path} is not a table of cells ({error}). Check for a quote that is never closed.",
-            code="not_csv",
-            path=path,
-            error=error,
+        raise ParameterError("{path} is not a table of cells ({error}). Check for a quote that is never closed.").tag(
+            "not_csv", path=path, error=error
         ) from error
     lines = [(line, cells) for line, cells in lines if not cells[0].startswith("#")]
     if len(lines) < 3:
-        raise ParameterError(
-            "{path}: a table needs a line of column names and two rows or more. Complete it.", code="missing", path=path
+        raise ParameterError("{path}: a table needs a line of column names and two rows or more. Complete it.").tag(
+            "missing", path=path
         )
     return separator, lines
 
 
 def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
     if len(cells) != len(header):
-        raise ParameterError(
-            "{path}, line {line}: {n_cells} cells for {n_header} columns. Correct it.",
-            code="wrong_number_of_cells",
-            path=path,
-            line=line,
-            n_cells=len(cells),
-            n_header=len(header),
+        raise ParameterError("{path}, line {line}: {n_cells} cells for {n_header} columns. Correct it.").tag(
+            "wrong_number_of_cells", path=path, line=line, n_cells=len(cells), n_header=len(header)
         )
     return [_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
 
@@ -164,17 +140,13 @@ class StationTable:
 
     def __post_init__(self) -> None:
         if self.station.shape != self.value.shape or self.station.ndim != 1 or not self.station.size:
-            raise ParameterError(
-                "{size} values for {size_2} stations. Give one value for each station.",
-                code="wrong_shape",
-                size=self.value.size,
-                size_2=self.station.size,
+            raise ParameterError("{size} values for {size_2} stations. Give one value for each station.").tag(
+                "wrong_shape", size=self.value.size, size_2=self.station.size
             )
         if np.any(np.diff(self.station) >= 0):
             raise ParameterError(
-                "the stations do not fall. List them from tip to tail, positive in front of the boot.",
-                code="not_falling",
-            )
+                "the stations do not fall. List them from tip to tail, positive in front of the boot."
+            ).tag("not_falling")
 
     def at(self, station: FloatArray) -> FloatArray:
         """Values at stations (m). Shape of ``station``."""

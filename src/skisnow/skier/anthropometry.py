@@ -117,13 +117,8 @@ def body_of(mass: float, height: float) -> Body:
     """
     for name, value, low, high in (("mass", mass, 20.0, 200.0), ("height", height, 1.0, 2.3)):
         if not low <= value <= high:
-            raise ParameterError(
-                "body_of: {name} is {value:g}; it must be from {low:g} to {high:g}",
-                code="wrong_kind",
-                name=name,
-                value=value,
-                low=low,
-                high=high,
+            raise ParameterError("body_of: {name} is {value:g}; it must be from {low:g} to {high:g}").tag(
+                "wrong_kind", name=name, value=value, low=low, high=high
             )
     shares = []
     for weight, tall, below, standing, crouched in SUBJECTS:

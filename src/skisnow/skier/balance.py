@@ -90,8 +90,8 @@ class BalancedSkier:
     def __post_init__(self) -> None:
         scenario = self.scenario
         if scenario.skier is None:
-            raise ParameterError(
-                "BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())", code="no_data"
+            raise ParameterError("BalancedSkier: the scenario has no skier; give Scenario.with_(skier=Skier())").tag(
+                "no_data"
             )
         self.skier, sledge = scenario.skier, scenario.sledge
         half = float(scenario.ski.at(0.0).width) / 2.0

@@ -98,28 +98,21 @@ def _of_site(
         return None if value is None else float(value), ends
     except (AttributeError, KeyError, TypeError, ValueError, IndexError) as error:
         raise ParameterError(
-            "{path}: {place} is not a list with {keys} ({error!r}); give the results.json that `skisnow analyse` wrote",
-            code="wrong_kind",
-            path=path,
-            place=".".join(place),
-            keys=["site", *keys],
-            error=error,
-        ) from error
+            "{path}: {place} is not a list with {keys} ({error!r}); give the results.json that `skisnow analyse` wrote"
+        ).tag("wrong_kind", path=path, place=".".join(place), keys=["site", *keys], error=error) from error
 
 
 def _results(path: Path) -> dict[str, Any]:
     try:
         results = read_json(path)
     except GivenError as error:
-        raise ParameterError(
-            "{problem} Needed is the results.json that `skisnow analyse` wrote", code="wrong_kind", problem=error
+        raise ParameterError("{problem} Needed is the results.json that `skisnow analyse` wrote").tag(
+            "wrong_kind", problem=error
         ) from error
     if not isinstance(results, dict) or not {"penetration", "shear"} <= results.keys():
         raise ParameterError(
-            "{path} has no entries 'penetration' and 'shear'; give the results.json that `skisnow analyse` wrote",
-            code="missing",
-            path=path,
-        )
+            "{path} has no entries 'penetration' and 'shear'; give the results.json that `skisnow analyse` wrote"
+        ).tag("missing", path=path)
     return results
 
 
@@ -140,13 +133,8 @@ def _used(results: dict[str, Any], part: str, key: str, site: str | None, path: 
     except (KeyError, TypeError, ValueError) as error:
         raise ParameterError(
             "{path}: {part}.experiments is not a list of experiments with used, site and {key} ({error!r}); give the "
-            "results.json that `skisnow analyse` wrote",
-            code="wrong_kind",
-            path=path,
-            part=part,
-            key=key,
-            error=error,
-        ) from error
+            "results.json that `skisnow analyse` wrote"
+        ).tag("wrong_kind", path=path, part=part, key=key, error=error) from error
 
 
 def snow_dict(snow: SnowProperties) -> dict[str, Any]:
@@ -238,7 +226,7 @@ def published_snow(name: str) -> SnowProperties:
             if near
             else Message("no published snow is named {name!r}.", name=name)
         )
-        raise ParameterError("{problem} There are {names}", code="unknown_name", problem=problem, names=list(snows))
+        raise ParameterError("{problem} There are {names}").tag("unknown_name", problem=problem, names=list(snows))
     return snows[name]
 
 

@@ -38,16 +38,12 @@ def mean_snow(
     """
     hardness, stress = hardness_N_per_mm3, stress_N_per_mm2
     if not (np.all(hardness > 0) and np.all(stress >= 0) and (stress.size == 0 or np.any(stress > 0))):
-        raise ParameterError(
-            "{where}: H_V of a used experiment must be above 0, and S_f of one at least",
-            code="out_of_range",
-            where=where,
+        raise ParameterError("{where}: H_V of a used experiment must be above 0, and S_f of one at least").tag(
+            "out_of_range", where=where
         )
     if not (np.all(hardness >= 1.0 / _LARGEST) and np.all(hardness <= _LARGEST) and np.all(stress <= _LARGEST)):
-        raise ParameterError(
-            "{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²",
-            code="out_of_range",
-            where=where,
+        raise ParameterError("{where}: H_V and S_f of a used experiment must lie from 1e-9 to 1e9 N/mm³ and N/mm²").tag(
+            "out_of_range", where=where
         )
     H_V, H_V_interval = _mean(np.log(hardness))
     S_f, S_f_interval = _mean(stress) if stress.size else (None, None)
@@ -114,7 +110,7 @@ def no_used_experiment(source: object, site: str | None, sites: Sequence[str]) -
             site=site,
             sites=list(map(repr, sites)),
         )
-    return ParameterError(message, code="no_data")
+    return ParameterError(message).tag("no_data")
 
 
 def _scaled(interval: Interval | None, unit: float) -> Interval | None:
@@ -159,16 +155,11 @@ def measured_intervals(snow: SnowProperties) -> tuple[Interval, Interval]:
     if hardness is None or stress is None:
         raise ParameterError(
             "the snow ({source}) has no interval of {quantity}, which needs two used experiments of each kind. "
-            "Choose a site that has them",
-            code="no_data",
-            source=snow.source,
-            quantity="H_V" if hardness is None else "S_f",
-        )
+            "Choose a site that has them"
+        ).tag("no_data", source=snow.source, quantity="H_V" if hardness is None else "S_f")
     if not stress[0] > 0.0:
-        raise ParameterError(
-            "the interval of S_f begins at {stress:g} N/m²; no snow above 0 can be drawn from it",
-            code="out_of_range",
-            stress=stress[0],
+        raise ParameterError("the interval of S_f begins at {stress:g} N/m²; no snow above 0 can be drawn from it").tag(
+            "out_of_range", stress=stress[0]
         )
     return hardness, stress
 

@@ -95,7 +95,7 @@ class MeasuredRange:
             highest=self.highest / self.unit_factor,
             source=self.source,
         )
-        warnings.warn(RangeWarning(message, code="outside_measured"), stacklevel=stacklevel + 1)
+        warnings.warn(RangeWarning(message).tag("outside_measured"), stacklevel=stacklevel + 1)
 
 
 def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:

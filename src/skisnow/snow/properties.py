@@ -99,10 +99,8 @@ class SnowProperties(Shown):
     def __post_init__(self) -> None:
         require_declared(self)
         if self.unloading_ratio is not None and not self.unloading_ratio >= 1.0:
-            raise ParameterError(
-                "unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more",
-                code="out_of_range",
-                unloading_ratio=self.unloading_ratio,
+            raise ParameterError("unloading_ratio is {unloading_ratio}; k_u/H_V must be 1 (elastic) or more").tag(
+                "out_of_range", unloading_ratio=self.unloading_ratio
             )
 
     @property
@@ -157,17 +155,13 @@ def require_stress(snow: SnowProperties, S_f_N_per_mm2: float | None, *, carves:
     if S_f_N_per_mm2 is not None and snow.failure_shear_stress is not None:
         raise ParameterError(
             "S_f_N_per_mm2 conflicts with this snow ({source}), which has an S_f. Remove one, or give H_V_N_per_mm3 "
-            "and S_f_N_per_mm2 as numbers",
-            code="contradiction",
-            source=snow.source,
-        )
+            "and S_f_N_per_mm2 as numbers"
+        ).tag("contradiction", source=snow.source)
     if carves and S_f_N_per_mm2 is None and snow.failure_shear_stress is None:
         raise ParameterError(
             "this snow ({source}) has no failure shear stress S_f, which a carved turn needs. Add S_f_N_per_mm2 "
-            "(--S-f-N-per-mm2), or compute the ski at rest (--at-rest)",
-            code="no_data",
-            source=snow.source,
-        )
+            "(--S-f-N-per-mm2), or compute the ski at rest (--at-rest)"
+        ).tag("no_data", source=snow.source)
 
 
 def with_stress(snow: SnowProperties, S_f_N_per_mm2: float | None) -> SnowProperties:

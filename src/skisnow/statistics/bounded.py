@@ -98,20 +98,15 @@ def _lengths(A: FloatArray) -> FloatArray:
 def _require_few(p: int) -> None:
     if not 1 <= p <= MOST_COEFFICIENTS:
         raise ParameterError(
-            "{p} coefficients; every set of bounds is tried, which is practical for 1 to 6 of them",
-            code="too_many",
-            p=p,
-        )
+            "{p} coefficients; every set of bounds is tried, which is practical for 1 to 6 of them"
+        ).tag("too_many", p=p)
 
 
 def _root_weights(weights: npt.ArrayLike, n: int) -> FloatArray:
     w = np.asarray(weights, dtype=float)
     if w.shape != (n,) or not np.all(np.isfinite(w)) or np.any(w < 0):
-        raise ParameterError(
-            "weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response",
-            code="wrong_shape",
-            shape=str(w.shape),
-            n=n,
+        raise ParameterError("weights of shape {shape}; {n} finite numbers ≥ 0 are needed, one for each response").tag(
+            "wrong_shape", shape=str(w.shape), n=n
         )
     return np.sqrt(w)
 
@@ -190,11 +185,8 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     """
     G, m = np.asarray(gram, dtype=float), np.asarray(moment, dtype=float)
     if m.ndim != 2 or G.shape != (*m.shape, m.shape[1]):
-        raise ParameterError(
-            "gram has shape {shape}, moment {shape_2}; (B, p, p) and (B, p) are needed",
-            code="wrong_shape",
-            shape=str(G.shape),
-            shape_2=str(m.shape),
+        raise ParameterError("gram has shape {shape}, moment {shape_2}; (B, p, p) and (B, p) are needed").tag(
+            "wrong_shape", shape=str(G.shape), shape_2=str(m.shape)
         )
     _require_few(m.shape[1])
     finite = np.isfinite(m).all(axis=1) & np.isfinite(G).all(axis=(1, 2))

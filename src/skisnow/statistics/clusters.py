@@ -100,11 +100,8 @@ def cluster_intervals(
     X = as_predictors(predictors, len(y))
     labels = np.asarray(clusters)
     if labels.shape != y.shape:
-        raise ParameterError(
-            "clusters have shape {shape}; one of them is needed for each of {n_y} responses",
-            code="wrong_shape",
-            shape=str(labels.shape),
-            n_y=len(y),
+        raise ParameterError("clusters have shape {shape}; one of them is needed for each of {n_y} responses").tag(
+            "wrong_shape", shape=str(labels.shape), n_y=len(y)
         )
     names, cluster = np.unique(labels, return_inverse=True)
     columns = standardised(X, intercept=intercept)

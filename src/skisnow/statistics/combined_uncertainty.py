@@ -184,12 +184,8 @@ def resampling_counts(
     """
     if n_units < 1 or n_resamples < 0 or (chunk is not None and chunk < 1):
         raise ParameterError(
-            "n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed",
-            code="out_of_range",
-            n_units=n_units,
-            n_resamples=n_resamples,
-            chunk=chunk,
-        )
+            "n_units = {n_units}, n_resamples = {n_resamples}, chunk = {chunk}; at least 1, 0 and 1 are needed"
+        ).tag("out_of_range", n_units=n_units, n_resamples=n_resamples, chunk=chunk)
     return _drawn(n_units, n_resamples, rng, chunk or max(1, _DRAWS_AT_ONCE // n_units))
 
 
@@ -233,7 +229,7 @@ def percentile_interval(samples: npt.ArrayLike, *, confidence: float = 0.95) -> 
     require_confidence(confidence)
     values = np.asarray(samples, dtype=float)
     if values.ndim == 0:
-        raise ParameterError("samples must have at least one axis, that of the resamples", code="wrong_shape")
+        raise ParameterError("samples must have at least one axis, that of the resamples").tag("wrong_shape")
     if len(values) == 0:
         return np.full((*values.shape[1:], 2), np.nan)
     tail = 0.5 * (1.0 - confidence)

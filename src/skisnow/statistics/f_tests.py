@@ -69,17 +69,11 @@ def nested_f_test(
     if df1 < 0:
         raise ParameterError(
             "the reduced model has {n_parameters_reduced} parameters, the full one "
-            "{n_parameters_full}; the reduced model must be the smaller one: are the two swapped?",
-            code="contradiction",
-            n_parameters_reduced=n_parameters_reduced,
-            n_parameters_full=n_parameters_full,
-        )
+            "{n_parameters_full}; the reduced model must be the smaller one: are the two swapped?"
+        ).tag("contradiction", n_parameters_reduced=n_parameters_reduced, n_parameters_full=n_parameters_full)
     if sse_full < 0 or sse_reduced < 0:
-        raise ParameterError(
-            "sums of squares are {sse_full!r} and {sse_reduced!r}; they cannot be below 0",
-            code="out_of_range",
-            sse_full=sse_full,
-            sse_reduced=sse_reduced,
+        raise ParameterError("sums of squares are {sse_full!r} and {sse_reduced!r}; they cannot be below 0").tag(
+            "out_of_range", sse_full=sse_full, sse_reduced=sse_reduced
         )
     if df1 == 0 or df2 <= 0:
         return NestedTest(float("nan"), df1, df2, float("nan"))
@@ -157,7 +151,7 @@ def one_way_anova(groups: Sequence[npt.ArrayLike]) -> Anova:
     """
     rows = [np.asarray(group, dtype=float) for group in groups]
     if not rows or any(row.ndim != 1 or row.size == 0 for row in rows):
-        raise ParameterError("groups must be one or more rows of at least one number each", code="wrong_shape")
+        raise ParameterError("groups must be one or more rows of at least one number each").tag("wrong_shape")
     for number, row in enumerate(rows, start=1):
         require_finite(f"group {number}", row)
     overall = np.concatenate(rows).mean()
@@ -267,17 +261,11 @@ def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, al
     """
     if not (sd_log > 0 and math.isfinite(sd_log) and ratio > 0 and math.isfinite(ratio) and ratio != 1):
         raise ParameterError(
-            "sd_log is {sd_log!r}, ratio {ratio!r}; a scatter above 0 and a ratio above 0 other than 1 are needed",
-            code="out_of_range",
-            sd_log=sd_log,
-            ratio=ratio,
-        )
+            "sd_log is {sd_log!r}, ratio {ratio!r}; a scatter above 0 and a ratio above 0 other than 1 are needed"
+        ).tag("out_of_range", sd_log=sd_log, ratio=ratio)
     if not 0 < alpha < power < 1:
-        raise ParameterError(
-            "alpha is {alpha!r}, power {power!r}; 0 < alpha < power < 1 is needed",
-            code="out_of_range",
-            alpha=alpha,
-            power=power,
+        raise ParameterError("alpha is {alpha!r}, power {power!r}; 0 < alpha < power < 1 is needed").tag(
+            "out_of_range", alpha=alpha, power=power
         )
     effect = abs(math.log(ratio)) / sd_log
     low, high = 1, 2
@@ -285,11 +273,8 @@ def tests_per_group(sd_log: float, *, ratio: float = 1.1, power: float = 0.8, al
         low, high = high, 2 * high
         if low > _MOST_TESTS:
             raise FitError(
-                "more than {most_tests} tests per group would be needed for a ratio of {ratio} at this scatter",
-                code="too_many",
-                most_tests=_MOST_TESTS,
-                ratio=ratio,
-            )
+                "more than {most_tests} tests per group would be needed for a ratio of {ratio} at this scatter"
+            ).tag("too_many", most_tests=_MOST_TESTS, ratio=ratio)
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if _power(middle, effect, alpha) >= power else (middle, high)

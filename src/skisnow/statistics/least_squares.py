@@ -68,10 +68,8 @@ def as_response(response: npt.ArrayLike) -> FloatArray:
     """Check a response: one dimension, at least one finite number, no others."""
     y = np.asarray(response, dtype=float)
     if y.ndim != 1 or y.size == 0:
-        raise ParameterError(
-            "response has shape {shape}; it must be a row of at least one number",
-            code="wrong_shape",
-            shape=str(y.shape),
+        raise ParameterError("response has shape {shape}; it must be a row of at least one number").tag(
+            "wrong_shape", shape=str(y.shape)
         )
     require_finite("response", y)
     return y
@@ -83,11 +81,8 @@ def as_predictors(predictors: npt.ArrayLike, n: int) -> FloatArray:
     if X.ndim == 1:
         X = X[:, None]
     if X.ndim != 2 or len(X) != n:
-        raise ParameterError(
-            "predictors have shape {shape}; {n} rows are needed, one for each response",
-            code="wrong_shape",
-            shape=str(X.shape),
-            n=n,
+        raise ParameterError("predictors have shape {shape}; {n} rows are needed, one for each response").tag(
+            "wrong_shape", shape=str(X.shape), n=n
         )
     require_finite("predictors", X)
     return X
@@ -98,12 +93,8 @@ def require_finite(name: str, values: FloatArray) -> None:
     bad = ~np.isfinite(values)
     if np.any(bad):
         place = tuple(int(i) for i in np.argwhere(bad)[0])
-        raise ParameterError(
-            "{name}{place} is {value}; only finite numbers can be fitted: remove such rows",
-            code="not_a_number",
-            name=name,
-            place=place,
-            value=values[place],
+        raise ParameterError("{name}{place} is {value}; only finite numbers can be fitted: remove such rows").tag(
+            "not_a_number", name=name, place=place, value=values[place]
         )
 
 
@@ -155,13 +146,13 @@ def factorise(columns: Columns) -> Factorisation:
     """Factorise a design of full rank."""
     n, p = columns.scaled.shape
     if n < p:
-        raise FitError(
-            "{n} observations cannot determine {p} coefficients; at least {p} are needed", code="too_few_data", n=n, p=p
+        raise FitError("{n} observations cannot determine {p} coefficients; at least {p} are needed").tag(
+            "too_few_data", n=n, p=p
         )
     Q, R, order = pivoted_qr(columns.scaled)
     rank = rank_of(R, n)
     if rank < p:
-        raise FitError(_dependence(columns.names, order[rank:].tolist(), rank), code="rank_deficient")
+        raise FitError(_dependence(columns.names, order[rank:].tolist(), rank)).tag("rank_deficient")
     inverse = np.empty((p, p))
     inverse[order] = solve_triangular(R, np.eye(p))
     return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
@@ -184,7 +175,7 @@ def warn_if_ill_conditioned(columns: FloatArray, *, limit: float = CONDITION_LIM
             limit=f"{limit:.0e}",
             digits=f"{-np.log10(_EPS * condition):.0f}",
         )
-        warnings.warn(FitWarning(message, code="ill_conditioned"), stacklevel=4)
+        warnings.warn(FitWarning(message).tag("ill_conditioned"), stacklevel=4)
 
 
 class Spread(TypedDict):

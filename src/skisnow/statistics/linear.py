@@ -196,11 +196,8 @@ def chebyshev_columns(x: FloatArray, degree: int) -> Columns:
     The scale is a power of two and middle has few binary digits, so that t keeps every digit of x.
     """
     if x.shape[1] != 1 or degree < 0:
-        raise ParameterError(
-            "a polynomial needs one predictor (found {count}) and a degree ≥ 0 (found {degree})",
-            code="out_of_range",
-            count=x.shape[1],
-            degree=degree,
+        raise ParameterError("a polynomial needs one predictor (found {count}) and a degree ≥ 0 (found {degree})").tag(
+            "out_of_range", count=x.shape[1], degree=degree
         )
     low, high = float(x.min()), float(x.max())
     scale = 2.0 ** math.ceil(math.log2(high - low) - 1.0) if high > low else 1.0

@@ -136,15 +136,12 @@ def nonlinear_fit(
     n, p = len(observed), len(b)
     labels = tuple(names) if names is not None else tuple(f"b{j + 1}" for j in range(p))
     if len(labels) != p:
-        raise ParameterError(
-            "{n_labels} names for {p} parameters; one is needed for each starting value",
-            code="wrong_shape",
-            n_labels=len(labels),
-            p=p,
+        raise ParameterError("{n_labels} names for {p} parameters; one is needed for each starting value").tag(
+            "wrong_shape", n_labels=len(labels), p=p
         )
     if n < p:
-        raise FitError(
-            "{n} observations cannot determine {p} parameters; at least {p} are needed", code="too_few_data", n=n, p=p
+        raise FitError("{n} observations cannot determine {p} parameters; at least {p} are needed").tag(
+            "too_few_data", n=n, p=p
         )
     scale = np.where(b != 0, np.abs(b), 1.0)
 
@@ -152,11 +149,8 @@ def nonlinear_fit(
         with np.errstate(all="ignore"):  # trial steps may leave the model's domain; they are judged by their residuals
             fitted = np.asarray(model(x, *parameters), dtype=float)
         if fitted.shape != (n,):
-            raise ParameterError(
-                "the model returned shape {shape}; one value is needed for each of {n} responses",
-                code="wrong_shape",
-                shape=str(fitted.shape),
-                n=n,
+            raise ParameterError("the model returned shape {shape}; one value is needed for each of {n} responses").tag(
+                "wrong_shape", shape=str(fitted.shape), n=n
             )
         return fitted
 
@@ -190,13 +184,12 @@ def _searched(values: Values, observed: FloatArray, start: FloatArray, scale: Fl
                 max_nfev=2000,
             )
         except (ValueError, np.linalg.LinAlgError) as error:
-            raise FitError(
-                "the search broke off: {error}; start nearer to the solution", code="not_converged", error=error
+            raise FitError("the search broke off: {error}; start nearer to the solution").tag(
+                "not_converged", error=error
             ) from error
     if result.status <= 0 or not np.all(np.isfinite(result.x)):
-        raise FitError(
-            "the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter",
-            code="not_converged",
+        raise FitError("the search did not settle in 2000 steps; start nearer to the solution, or fix a parameter").tag(
+            "not_converged"
         )
     return np.asarray(result.x, dtype=float)
 
@@ -220,8 +213,8 @@ def _polished(
         slopes = jacobian(values, b, scale)
         design, residual = _factorised(slopes, names), observed - values(b)
     if not least <= _SETTLED:
-        raise FitError(
-            "the last steps of the fit did not shrink; the data hardly determine the parameters", code="not_converged"
+        raise FitError("the last steps of the fit did not shrink; the data hardly determine the parameters").tag(
+            "not_converged"
         )
     return b, design, _known(slopes, design, residual, values(b), np.abs(b) + error + _SETTLED * scale, least)
 
@@ -252,9 +245,8 @@ def _known(
 def _factorised(slopes: Jacobian, names: tuple[str, ...]) -> Factorisation:
     if not (np.all(np.isfinite(slopes.values)) and np.all(np.isfinite(slopes.error))):
         raise FitError(
-            "the model has no finite derivatives at the solution; it may lie on the border of its domain",
-            code="not_a_number",
-        )
+            "the model has no finite derivatives at the solution; it may lie on the border of its domain"
+        ).tag("not_a_number")
     length = np.linalg.norm(slopes.values, axis=0)
     unit = np.where(length > 0, length, 1.0)
     return factorise(Columns(slopes.values / unit, np.diag(1.0 / unit), names))
@@ -279,7 +271,7 @@ def _warn(uncertainty: _Known, errors_exist: bool) -> None:
     for few_digits, share, allowed in checks[: 2 if errors_exist else 1]:
         if not share <= allowed:
             digits = max(int(-np.log10(share)), 0) if np.isfinite(share) and share > 0 else 0
-            warnings.warn(FitWarning(Message(few_digits, digits=digits), code="few_digits"), stacklevel=3)
+            warnings.warn(FitWarning(Message(few_digits, digits=digits)).tag("few_digits"), stacklevel=3)
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     response, design = _checked(y, X)
     whole = ~(np.isnan(response) | np.any(np.isnan(design), axis=1))
     if not np.any(whole):
-        raise FitError("every row of y and X contains NaN; nothing can be fitted", code="no_data")
+        raise FitError("every row of y and X contains NaN; nothing can be fitted").tag("no_data")
     fit = _factorised(design[whole])
     b, residuals = fit.solve(response[whole])
     _warn_without_constant(fit)
@@ -126,11 +126,8 @@ def _checked(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray
     if design.ndim == 1:
         design = design[:, None]
     if response.ndim != 1 or design.ndim != 2 or len(response) != len(design) or design.shape[1] == 0:
-        raise ParameterError(
-            "y has shape {shape}, X {shape_2}; X needs one row for each value of y",
-            code="wrong_shape",
-            shape=str(response.shape),
-            shape_2=str(design.shape),
+        raise ParameterError("y has shape {shape}, X {shape_2}; X needs one row for each value of y").tag(
+            "wrong_shape", shape=str(response.shape), shape_2=str(design.shape)
         )
     for name, values in (("y", response), ("X", design)):
         require_finite(name, np.where(np.isnan(values), 0.0, values))
@@ -150,14 +147,11 @@ def _factorised(design: FloatArray) -> Factorisation:
         columns = standardised(design, intercept=False)
     used = independent_columns(columns.scaled)
     if not used:
-        raise FitError("X is zero throughout; it determines no coefficient", code="no_data")
+        raise FitError("X is zero throughout; it determines no coefficient").tag("no_data")
     if len(used) < design.shape[1]:
         warnings.warn(
-            FitWarning(
-                "X has {count} columns but rank {rank}: coefficients that are not determined are set to 0",
-                code="rank_deficient",
-                count=design.shape[1],
-                rank=len(used),
+            FitWarning("X has {count} columns but rank {rank}: coefficients that are not determined are set to 0").tag(
+                "rank_deficient", count=design.shape[1], rank=len(used)
             ),
             stacklevel=3,
         )
@@ -174,9 +168,8 @@ def _warn_without_constant(fit: Factorisation) -> None:
             FitWarning(
                 "no combination of the columns of X is constant: R², F and p in stats are not those of a "
                 "regression; add a column of ones, or compare models without an intercept by "
-                "nested_f_test",
-                code="no_constant_column",
-            ),
+                "nested_f_test"
+            ).tag("no_constant_column"),
             stacklevel=3,
         )
 

@@ -240,50 +240,34 @@ class Axis:
             return cls._of_range(key, value)
         values = value if isinstance(value, list) and not _is_one(key, value) else [value]
         if not values:
-            raise ParameterError(
-                "{name} is an empty list; write at least one value", code="out_of_range", name=key.name
-            )
+            raise ParameterError("{name} is an empty list; write at least one value").tag("out_of_range", name=key.name)
         checked = tuple(key.of_kind(value) for value in values)
         repeated = next((value for place, value in enumerate(checked) if value in checked[:place]), None)
         if repeated is not None:
-            raise ParameterError(
-                "{name} contains {repeated!r} twice; write each value once",
-                code="repeated",
-                name=key.name,
-                repeated=repeated,
+            raise ParameterError("{name} contains {repeated!r} twice; write each value once").tag(
+                "repeated", name=key.name, repeated=repeated
             )
         return cls(key, checked)
 
     @classmethod
     def _of_range(cls, key: Quantity, table: Mapping[str, Any]) -> Self:
         if key.kind not in ("number", "whole number"):
-            raise ParameterError(
-                "{name} has no range; write a list such as {name} = [...]", code="no_data", name=key.name
+            raise ParameterError("{name} has no range; write a list such as {name} = [...]").tag(
+                "no_data", name=key.name
             )
         limits = made(Range, checked_table(Range, table, key.name))
         low, high, log = limits.first, limits.last, limits.log
         if log and not (low > 0 and high > 0):
-            raise ParameterError(
-                "{name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}",
-                code="out_of_range",
-                name=key.name,
-                low=low,
-                high=high,
+            raise ParameterError("{name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}").tag(
+                "out_of_range", name=key.name, low=low, high=high
             )
         if low > high:
-            raise ParameterError(
-                "{name}: from is {low:g} and to is {high:g}; from must be the smaller one",
-                code="wrong_kind",
-                name=key.name,
-                low=low,
-                high=high,
+            raise ParameterError("{name}: from is {low:g} and to is {high:g}; from must be the smaller one").tag(
+                "wrong_kind", name=key.name, low=low, high=high
             )
         if low == high:
-            raise ParameterError(
-                "{name}: from and to are both {low:g}; write the value under [fixed]",
-                code="out_of_range",
-                name=key.name,
-                low=low,
+            raise ParameterError("{name}: from and to are both {low:g}; write the value under [fixed]").tag(
+                "out_of_range", name=key.name, low=low
             )
         return cls(key, ends=(low, high), n=limits.n, log=log)
 
@@ -292,7 +276,7 @@ class Axis:
         if self.values:
             return list(self.values)
         if self.n is None:
-            raise ParameterError("{name}: n, the number of values, is missing", code="missing", name=self.key.name)
+            raise ParameterError("{name}: n, the number of values, is missing").tag("missing", name=self.key.name)
         low, high = self.ends
         share = np.linspace(0.0, 1.0, self.n)
         middle = self._at(share)
@@ -304,8 +288,8 @@ class Axis:
             index = np.minimum((share * len(self.values)).astype(int), len(self.values) - 1)
             return Column(index, self.values)
         if self.n is not None:
-            raise ParameterError(
-                "{name}: n belongs in [latin_hypercube], not in a range", code="contradiction", name=self.key.name
+            raise ParameterError("{name}: n belongs in [latin_hypercube], not in a range").tag(
+                "contradiction", name=self.key.name
             )
         numbers = self._at(share)
         whole = self.key.kind == "whole number"
@@ -338,11 +322,8 @@ def hypercube_points(axes: list[Axis], fixed: Point, n: int, seed: int) -> Sampl
 def require_count(n: int) -> None:
     """Reject a study with more points than can be computed."""
     if n > MOST_POINTS:
-        raise ParameterError(
-            "the study has {n} points; at most {most_points} are allowed. Use fewer values",
-            code="out_of_range",
-            n=n,
-            most_points=MOST_POINTS,
+        raise ParameterError("the study has {n} points; at most {most_points} are allowed. Use fewer values").tag(
+            "out_of_range", n=n, most_points=MOST_POINTS
         )
 
 

@@ -95,12 +95,8 @@ def csv_block(path: Path, data: bytes, columns: Sequence[str], readers: Sequence
     try:
         lines = list(csv.reader(io.StringIO(data.decode("utf-8"), newline="")))
     except (UnicodeDecodeError, csv.Error) as error:
-        raise ParameterError(
-            "{path} is not a table of a study, from about line {first} on: {error}",
-            code="unknown_name",
-            path=path,
-            first=first,
-            error=error,
+        raise ParameterError("{path} is not a table of a study, from about line {first} on: {error}").tag(
+            "unknown_name", path=path, first=first, error=error
         ) from error
     return [row_of(f"{path}, line {number}", columns, line, readers) for number, line in enumerate(lines, start=first)]
 
@@ -151,11 +147,8 @@ class DatabaseRows(StoredRows):
 
 def _no_table(path: Path, why: object) -> ParameterError:
     return ParameterError(
-        "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again",
-        code="cannot_read",
-        path=path,
-        reason=why,
-    )
+        "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again"
+    ).tag("cannot_read", path=path, reason=why)
 
 
 def _natural(value: Any, kind: str) -> Any:
@@ -257,24 +250,16 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
     """A row by the names of its columns."""
     if len(cells) != len(columns):
         raise ParameterError(
-            "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line",
-            code="wrong_number_of_cells",
-            place=place,
-            n_columns=len(columns),
-            n_cells=len(cells),
-        )
+            "{place}: a row of this table has {n_columns} cells, this line has {n_cells}. Remove the line"
+        ).tag("wrong_number_of_cells", place=place, n_columns=len(columns), n_cells=len(cells))
     try:
         return {name: read(text) for name, text, read in zip(columns, cells, readers, strict=True)}
     except (ValueError, TypeError):
         name, text = next(
             (name, text) for name, text, read in zip(columns, cells, readers, strict=True) if _fails(read, text)
         )
-        raise ParameterError(
-            "{place}: {name} is {text!r}; it must be a number. Correct or remove it",
-            code="wrong_kind",
-            place=place,
-            name=name,
-            text=text,
+        raise ParameterError("{place}: {name} is {text!r}; it must be a number. Correct or remove it").tag(
+            "wrong_kind", place=place, name=name, text=text
         ) from None
 
 
@@ -299,13 +284,8 @@ def require_kinds(place: str, row: Row, texts: Sequence[bool]) -> None:
         if not text and isinstance(value, list) and all(map(_is_number, value)):
             continue
         kind = Message("a text") if text else Message("a number, a switch or a list of numbers")
-        raise ParameterError(
-            "{place}: {name} is {value!r}. Allowed: {allowed}. Correct or remove it",
-            code="out_of_range",
-            place=place,
-            name=name,
-            value=str(value)[:80],
-            allowed=kind,
+        raise ParameterError("{place}: {name} is {value!r}. Allowed: {allowed}. Correct or remove it").tag(
+            "out_of_range", place=place, name=name, value=str(value)[:80], allowed=kind
         )
 
 

@@ -51,10 +51,8 @@ def table_state(
     try:
         table = read_table(out, keys)
     except ParameterError as error:
-        raise ParameterError(
-            "{problem}. It is not replaced: name another place in out, or move it away",
-            code="wrong_kind",
-            problem=error,
+        raise ParameterError("{problem}. It is not replaced: name another place in out, or move it away").tag(
+            "wrong_kind", problem=error
         ) from error
     tally = table.tally()
     same = tally.rows == points and tally.studies == {fingerprint}
@@ -120,8 +118,8 @@ def run_study(
     finished_rows = kept_rows(study, study.partial, fingerprint)
     try:
         if _stamp(study.out) != before:
-            raise OutputError(
-                "{out} was just written by another run. Start again to see its table", code="in_use", out=study.out
+            raise OutputError("{out} was just written by another run. Start again to see its table").tag(
+                "in_use", out=study.out
             )
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
@@ -249,11 +247,8 @@ class StudyRows:
             if _hash(path) != wanted:
                 raise SkisnowError(
                     "the worker on {node} has not the {path} of this study. Put the study into a folder that all "
-                    "computers share",
-                    code="different_files",
-                    node=platform.node(),
-                    path=path,
-                )
+                    "computers share"
+                ).tag("different_files", node=platform.node(), path=path)
 
 
 def _hash(path: Path) -> str:

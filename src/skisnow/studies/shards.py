@@ -53,11 +53,8 @@ class Shard:
         if shard is None or not 1 <= shard.number <= shard.count <= MOST_SHARDS:
             raise ParameterError(
                 "shard is {text!r}; it is written i/n, from 1/n to n/n, such as 2/8 for the second of eight; n is "
-                "{most_shards} at most",
-                code="out_of_range",
-                text=text,
-                most_shards=MOST_SHARDS,
-            )
+                "{most_shards} at most"
+            ).tag("out_of_range", text=text, most_shards=MOST_SHARDS)
         return shard
 
     def points(self, count: int) -> range:
@@ -151,7 +148,7 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
     writer_of(out)
     places = [Path(part) for part in parts]
     if not places:
-        raise ParameterError("no part is named; name the files of all parts of the study", code="unknown_name")
+        raise ParameterError("no part is named; name the files of all parts of the study").tag("unknown_name")
     with ExitStack() as opened:
         shard_rows = []
         for place in dict.fromkeys(places):
@@ -187,12 +184,10 @@ class _Parts:
                 None,
             )
             if odd is not None:
-                raise ParameterError(text, code="another_study", path=odd.path, other=parts[0].path)
+                raise ParameterError(text).tag("another_study", path=odd.path, other=parts[0].path)
         if "points" not in about[0] or parts[0].columns is None:
-            raise ParameterError(
-                "{path} is not a part of a study. Name the files that --shard left",
-                code="unknown_name",
-                path=parts[0].path,
+            raise ParameterError("{path} is not a part of a study. Name the files that --shard left").tag(
+                "unknown_name", path=parts[0].path
             )
         self.columns: tuple[str, ...] | None = parts[0].columns
         self.fingerprint = about[0]["fingerprint"]
@@ -215,10 +210,8 @@ class _Parts:
             if last is None or text[0] != last[0]:
                 yield text
             elif text[1] != last[1]:
-                raise ParameterError(
-                    "two parts have different rows for point {each}. Compute one of them again",
-                    code="contradiction",
-                    each=text[0] + 1,
+                raise ParameterError("two parts have different rows for point {each}. Compute one of them again").tag(
+                    "contradiction", each=text[0] + 1
                 )
             last = text
 
@@ -238,9 +231,5 @@ class _Parts:
             first = numbers_seen.index(0)
             raise ParameterError(
                 "{missing} of {count} points are in none of the parts, the first is point {first}. Compute or name "
-                "the missing parts",
-                code="missing",
-                missing=missing,
-                count=self.count,
-                first=first + 1,
-            )
+                "the missing parts"
+            ).tag("missing", missing=missing, count=self.count, first=first + 1)

@@ -186,8 +186,8 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
 def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
     for key in values:
         if key not in TOP_KEYS:
-            raise ParameterError(
-                "{key} is not a key of a study. {allowed}", code="unknown_name", key=key, allowed=nearest(key, TOP_KEYS)
+            raise ParameterError("{key} is not a key of a study. {allowed}").tag(
+                "unknown_name", key=key, allowed=nearest(key, TOP_KEYS)
             )
     subject_ = _subject(path, values, subject)
     form = _form(values)
@@ -196,10 +196,8 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     inputs = subject_.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
     axes = [_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
     if not axes:
-        raise ParameterError(
-            "[{form}] contains no varied input; write one, such as edge_angle_deg = [30, 45, 60]",
-            code="missing",
-            form=form,
+        raise ParameterError("[{form}] contains no varied input; write one, such as edge_angle_deg = [30, 45, 60]").tag(
+            "missing", form=form
         )
     points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
     subject_.require_sound(points, fixed)
@@ -211,10 +209,8 @@ def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Stu
         return subject(path.parent)
     word = values["scenario"]
     if not isinstance(word, str) or not word.strip():
-        raise ParameterError(
-            'scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"',
-            code="wrong_kind",
-            word=word,
+        raise ParameterError('scenario is {word!r}; it is a name or a file, such as scenario = "carved-46m"').tag(
+            "wrong_kind", word=word
         )
     return ScenarioModel(path.parent, word)
 
@@ -227,18 +223,15 @@ def _form(values: Mapping[str, Any]) -> str:
             if forms
             else Message("a study has either [grid] or [latin_hypercube]; neither is there")
         )
-        raise ParameterError(problem, code="contradiction")
+        raise ParameterError(problem).tag("contradiction")
     return forms[0]
 
 
 def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = values.get(name, {})
     if not isinstance(table, dict):
-        raise ParameterError(
-            "{name} is {table!r}; it must be a table, begun by the line [{name}]",
-            code="wrong_kind",
-            name=name,
-            table=table,
+        raise ParameterError("{name} is {table!r}; it must be a table, begun by the line [{name}]").tag(
+            "wrong_kind", name=name, table=table
         )
     return table
 
@@ -248,11 +241,8 @@ def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
     for name, value in table.items():
         _require_key("fixed", name, keys)
         if isinstance(value, dict) or (isinstance(value, list) and keys[name].kind != "three numbers"):
-            raise ParameterError(
-                "fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]",
-                code="wrong_kind",
-                name=name,
-                value=value,
+            raise ParameterError("fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]").tag(
+                "wrong_kind", name=name, value=value
             )
         fixed[name] = _in_range(keys[name], value)
     return fixed
@@ -262,26 +252,22 @@ def _in_range(key: Quantity, value: object) -> InputValue:
     try:
         return key.in_range(value)
     except ParameterError as error:
-        raise ParameterError("fixed.{problem}", code=error.code, problem=error) from error
+        raise ParameterError("fixed.{problem}").tag(error.code, problem=error) from error
 
 
 def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
     _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
-        raise ParameterError(
-            "{name} is in [{form}] and in [fixed]. Remove one of them", code="contradiction", name=name, form=form
+        raise ParameterError("{name} is in [{form}] and in [fixed]. Remove one of them").tag(
+            "contradiction", name=name, form=form
         )
     return Axis.of(keys[name], value)
 
 
 def _require_key(table: str, name: str, keys: Collection[str]) -> None:
     if name not in keys:
-        raise ParameterError(
-            "{table}.{name} is not an input. {allowed}",
-            code="unknown_name",
-            table=table,
-            name=name,
-            allowed=nearest(name, keys),
+        raise ParameterError("{table}.{name} is not an input. {allowed}").tag(
+            "unknown_name", table=table, name=name, allowed=nearest(name, keys)
         )
 
 
@@ -299,12 +285,9 @@ def _out(path: Path, values: Mapping[str, Any]) -> Path:
             if out is None
             else Message('out is {out!r}; it is the place of the table, such as out = "table.csv"', out=out)
         )
-        raise ParameterError(problem, code="wrong_kind")
+        raise ParameterError(problem).tag("wrong_kind")
     if Path(out).suffix.lower() not in WRITERS:
-        raise ParameterError(
-            "out is {out!r}; the name of the table must end in {writers}",
-            code="wrong_ending",
-            out=out,
-            writers=list(WRITERS),
+        raise ParameterError("out is {out!r}; the name of the table must end in {writers}").tag(
+            "wrong_ending", out=out, writers=list(WRITERS)
         )
     return path.parent / out

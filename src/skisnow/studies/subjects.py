@@ -192,7 +192,7 @@ class ScenarioModel(ShownFields):
             for part, part_value in parts.items():
                 full = full_name(part)
                 if full in values:
-                    raise ParameterError("{full} is given twice. Remove one of them", code="repeated", full=full)
+                    raise ParameterError("{full} is given twice. Remove one of them").tag("repeated", full=full)
                 values[full] = part_value
         return values
 

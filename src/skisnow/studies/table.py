@@ -199,8 +199,8 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
     except OSError as error:
         raise _unreadable(path, error) from error
     except (NoTextError, csv.Error) as error:
-        raise ParameterError(
-            "{path} is not a table of a study: {error}", code="unknown_name", path=path, error=error
+        raise ParameterError("{path} is not a table of a study: {error}").tag(
+            "unknown_name", path=path, error=error
         ) from error
     mark = "." if separator == "," else decimal_mark([chain.from_iterable(row for _, row in lines)], separator=";")
     cell_readers = readers(columns, keys, mark)
@@ -208,17 +208,15 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
 
 
 def _unreadable(path: Path, error: OSError) -> ParameterError:
-    return ParameterError(
-        "{path} cannot be read: {reason}", code="cannot_read", path=path, reason=error.strerror or error
+    return ParameterError("{path} cannot be read: {reason}").tag(
+        "cannot_read", path=path, reason=error.strerror or error
     )
 
 
 def _require_columns(path: str | Path, columns: Sequence[str]) -> None:
     if not {"outcome", "study"} <= set(columns):
-        raise ParameterError(
-            "{path} is not a table of a study: its first line names no columns outcome and study",
-            code="unknown_name",
-            path=path,
+        raise ParameterError("{path} is not a table of a study: its first line names no columns outcome and study").tag(
+            "unknown_name", path=path
         )
 
 

@@ -46,8 +46,8 @@ def writer_of(path: Path) -> Writer:
     """Writer for the suffix of a file name."""
     ending = path.suffix.lower()
     if ending not in WRITERS:
-        raise ParameterError(
-            "{path}: the name of a table ends in {writers}", code="wrong_ending", path=path, writers=list(WRITERS)
+        raise ParameterError("{path}: the name of a table ends in {writers}").tag(
+            "wrong_ending", path=path, writers=list(WRITERS)
         )
     if ending == ".parquet":
         require_pyarrow()

@@ -61,13 +61,8 @@ class GeodeticPoint(Shown):
         for name, limit in (("latitude_deg", 90.0), ("longitude_deg", 180.0), ("height", HIGHEST)):
             value = getattr(self, name)
             if not abs(value) <= limit:
-                raise ParameterError(
-                    "{name} of an origin is {value:g}; it must be from {lowest:g} to {limit:g}",
-                    code="out_of_range",
-                    name=name,
-                    value=value,
-                    lowest=-limit,
-                    limit=limit,
+                raise ParameterError("{name} of an origin is {value:g}; it must be from {lowest:g} to {limit:g}").tag(
+                    "out_of_range", name=name, value=value, lowest=-limit, limit=limit
                 )
 
     def __str__(self) -> str:

@@ -86,13 +86,10 @@ def read_track(
     """
     for name, value in (("fastest", fastest), ("gap_factor", gap_factor)):
         if not value > 0.0:
-            raise ParameterError("{name} is {value:g}; it must be above 0", code="out_of_range", name=name, value=value)
+            raise ParameterError("{name} is {value:g}; it must be above 0").tag("out_of_range", name=name, value=value)
     if kind is not None and kind not in get_args(TrackFormat):
-        raise ParameterError(
-            "unknown track format {kind!r}; allowed are {allowed}",
-            code="unknown_name",
-            kind=kind,
-            allowed=list(get_args(TrackFormat)),
+        raise ParameterError("unknown track format {kind!r}; allowed are {allowed}").tag(
+            "unknown_name", kind=kind, allowed=list(get_args(TrackFormat))
         )
     path = Path(path)
     data = _bytes(path)

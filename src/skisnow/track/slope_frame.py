@@ -118,31 +118,21 @@ def _rotate_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
 
 def _require(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> None:
     if track.axes == "slope":
-        raise ParameterError(
-            "the track {name} is in a slope's frame already: {frame}",
-            code="already_on_slope",
-            name=track.name,
-            frame=track.frame,
+        raise ParameterError("the track {name} is in a slope's frame already: {frame}").tag(
+            "already_on_slope", name=track.name, frame=track.frame
         )
     if not abs(azimuth) <= 2.0 * math.pi:
         raise ParameterError(
-            "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?",
-            code="out_of_range",
-            azimuth=azimuth,
-        )
+            "the fall line's azimuth is {azimuth:g} rad; it must be from -2π to 2π. Is it in degrees?"
+        ).tag("out_of_range", azimuth=azimuth)
     if slope_angle is not None and not 0.0 <= slope_angle <= STEEPEST:
         raise ParameterError(
-            "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad",
-            code="out_of_range",
-            slope_angle=slope_angle,
-            steepest=STEEPEST,
-        )
+            "the slope angle is {slope_angle:g} rad; it must be from 0 to 75° = {steepest:.4g} rad"
+        ).tag("out_of_range", slope_angle=slope_angle, steepest=STEEPEST)
     place = np.asarray(origin, float)
     if place.shape != (3,) or not np.isfinite(place).all():
-        raise ParameterError(
-            "the origin of a slope is {value!r}; it must be three finite numbers in m",
-            code="not_a_number",
-            value=origin,
+        raise ParameterError("the origin of a slope is {value!r}; it must be three finite numbers in m").tag(
+            "not_a_number", value=origin
         )
 
 

@@ -74,23 +74,15 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
     _require_positive("place_noise", "m", place_noise)
     usable = usable_points(track)
     if np.count_nonzero(usable) < FEWEST_POINTS:
-        raise ParameterError(
-            "{name}: {count} usable points; a smoothed track needs {fewest}. Give a longer track",
-            code="too_few_points",
-            name=track.name,
-            count=np.count_nonzero(usable),
-            fewest=FEWEST_POINTS,
+        raise ParameterError("{name}: {count} usable points; a smoothed track needs {fewest}. Give a longer track").tag(
+            "too_few_points", name=track.name, count=np.count_nonzero(usable), fewest=FEWEST_POINTS
         )
     step = _interval(track.time[usable])
     if step < SHORTEST_INTERVAL:
         raise ParameterError(
             "{name}: the points are {interval:.3g} s apart. Allowed: at least {least:g} s. Check the column of times "
-            "and its unit",
-            code="too_many_points",
-            name=track.name,
-            interval=step,
-            least=SHORTEST_INTERVAL,
-        )
+            "and its unit"
+        ).tag("too_many_points", name=track.name, interval=step, least=SHORTEST_INTERVAL)
     length = max(SHORTEST_WINDOW, POINTS_IN_WINDOW * step) if window is None else window
     part = parts(track, usable)
     windows = window_bounds(track.time, part, length)
@@ -153,20 +145,16 @@ def _require_sparse(track: Track, windows: tuple[IntArray, IntArray], length: fl
         at = int(np.argmax(count))
         raise ParameterError(
             "{name}: {count} points are within {length:.3g} s of {time:.6g} s. Allowed: at most {most}. Check the "
-            "column of times, or give fewer points",
-            code="too_many_points",
-            name=track.name,
-            count=count[at],
-            length=length,
-            time=track.time[at],
-            most=MOST_IN_WINDOW,
+            "column of times, or give fewer points"
+        ).tag(
+            "too_many_points", name=track.name, count=count[at], length=length, time=track.time[at], most=MOST_IN_WINDOW
         )
 
 
 def _require_positive(name: str, unit: str, value: float | None) -> None:
     if value is not None and not (np.isfinite(value) and value > 0.0):
-        raise ParameterError(
-            "{name} is {value:g} {unit}. Allowed: above 0", code="out_of_range", name=name, value=value, unit=unit
+        raise ParameterError("{name} is {value:g} {unit}. Allowed: above 0").tag(
+            "out_of_range", name=name, value=value, unit=unit
         )
 
 

@@ -115,11 +115,8 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
     """
     motion = track_motion(track, window=window, place_noise=place_noise)
     if not np.isfinite(motion.smoothed.velocity[:, 0]).any():
-        raise ParameterError(
-            "{name}: no window of {window:g} s contains six usable points. Use a longer window",
-            code="too_few_points",
-            name=track.name,
-            window=motion.smoothed.resolution.window,
+        raise ParameterError("{name}: no window of {window:g} s contains six usable points. Use a longer window").tag(
+            "too_few_points", name=track.name, window=motion.smoothed.resolution.window
         )
     day = split_day(track, motion)
     turns = tuple(turn for run in day.runs for turn in find_turns(motion, first=run.first, last=run.last))

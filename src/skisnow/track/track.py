@@ -127,11 +127,8 @@ class Track(Shown):
         if self.axes != "east_north_up" or self.origin is None:
             raise ParameterError(
                 "the track {name} is in local metres ({frame}), not in east, north and up from an origin. Read it "
-                "from a file with latitude and longitude.",
-                code="no_origin",
-                name=self.name,
-                frame=self.frame,
-            )
+                "from a file with latitude and longitude."
+            ).tag("no_origin", name=self.name, frame=self.frame)
         frame = self.frame.replace(str(self.origin), str(origin))
         return replace(self, place=place_from_origin(self.place, self.origin, origin), origin=origin, frame=frame)
 

@@ -257,7 +257,7 @@ class AnalysisCache:
             state = self._state(kind, id_)  # before reading: a later entry makes the cached state old
             source = await run.io_bound(CampaignSource, self._lab, kind, id_)
             if source is None:
-                raise StoreError("The lab is about to end.", code="lab_ends")
+                raise StoreError("The lab is about to end.").tag("lab_ends")
             self._subjects[(kind, id_)] = (state, source)
             self._subjects.move_to_end((kind, id_))
             while len(self._subjects) > MOST_CAMPAIGNS:
@@ -271,10 +271,8 @@ class AnalysisCache:
             return len(Journals(self._lab.store).corrections(stored.id))
         counts = {head.id: head.n_entries for head in Journals(self._lab.store).list()}
         if id_ not in counts:
-            raise StoreError(
-                "The store has no campaign with the id {id!r}; the list of campaigns names all.",
-                code="unknown_campaign",
-                id=id_,
+            raise StoreError("The store has no campaign with the id {id!r}; the list of campaigns names all.").tag(
+                "unknown_campaign", id=id_
             )
         return counts[id_]
 

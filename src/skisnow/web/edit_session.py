@@ -188,10 +188,8 @@ class CorrectionSession(EditSession):
         try:
             text = decode(self._tables.read(CAMPAIGN_FILE) or b"").text
         except (FileNotFoundError, UnreadableTextError) as error:
-            raise StoreError(
-                "{file} of this campaign cannot be read, so nothing in it can be.",
-                code="cannot_read",
-                file=CAMPAIGN_FILE,
+            raise StoreError("{file} of this campaign cannot be read, so nothing in it can be.").tag(
+                "cannot_read", file=CAMPAIGN_FILE
             ) from error
         described = read_campaign_file(text, problems)
         if described is None:
@@ -232,7 +230,7 @@ class CorrectionSession(EditSession):
             edited.
         """
         if CORRECTIONS.file in self._tables.places and entry.file != ATTACHMENTS:
-            raise StoreError(OWN_SHEET, code="in_a_workbook")
+            raise StoreError(OWN_SHEET).tag("in_a_workbook")
         standing = self.file_cells(entry.file, entry.test)
         written = self._journals.correct(self.id, entry, seen=seen, standing=standing)
         self.refresh()

@@ -61,8 +61,8 @@ class LabSkis:
         if name in ski_names():
             return name
         if name not in self.saved():
-            raise ParameterError(
-                "the lab has no ski named {name!r}. Choose one from the list", code="unknown_ski", name=name
+            raise ParameterError("the lab has no ski named {name!r}. Choose one from the list").tag(
+                "unknown_ski", name=name
             )
         return str((self._folder / name / FILE).absolute())
 
@@ -90,8 +90,8 @@ class LabSkis:
         named = _NAME_LINE.sub(lambda _: line, text, count=1) if _NAME_LINE.search(text) else f"{line}\n{text}"
         ski, _ = ski_of_texts(named, table)
         if ski.name != name:
-            raise ParameterError(
-                "write the name into the file yourself, on a separate line: {line}", code="no_place_for_name", line=line
+            raise ParameterError("write the name into the file yourself, on a separate line: {line}").tag(
+                "no_place_for_name", line=line
             )
 
         def write(folder: Path) -> None:
@@ -104,22 +104,17 @@ class LabSkis:
     def require_new(self, name: str) -> None:
         """Reject a name that exists or is not a valid name of a folder on every system."""
         if not _NAME.fullmatch(name) or _DEVICES.fullmatch(name):
-            raise ParameterError(
-                "a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one",
-                code="name_not_allowed",
+            raise ParameterError("a ski's name has 1 to 40 letters, digits, blanks, - and _; give it another one").tag(
+                "name_not_allowed"
             )
         if name.casefold() in (NOTHING, EDITED):
             raise ParameterError(
-                "{name} already means something else in the lists of skis; give this one another name",
-                code="name_not_allowed",
-                name=name,
-            )
+                "{name} already means something else in the lists of skis; give this one another name"
+            ).tag("name_not_allowed", name=name)
         if name.casefold() in (other.casefold() for other in self.names()):
             raise ParameterError(
-                "there is a ski {name} already, and none is overwritten; give this one another name",
-                code="already_there",
-                name=name,
-            )
+                "there is a ski {name} already, and none is overwritten; give this one another name"
+            ).tag("already_there", name=name)
 
     def _save(self, name: str, write: Writing) -> None:
         self.require_new(name)
@@ -133,11 +128,8 @@ class LabSkis:
             made.chmod(0o755)
             made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
         except OSError as error:
-            raise OutputError(
-                "the ski {name} cannot be saved: {error}. Try another name",
-                code="cannot_write",
-                name=name,
-                error=error.strerror or error,
+            raise OutputError("the ski {name} cannot be saved: {error}. Try another name").tag(
+                "cannot_write", name=name, error=error.strerror or error
             ) from error
         finally:
             shutil.rmtree(made, ignore_errors=True)
@@ -157,7 +149,7 @@ def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:
         try:
             ski, warned = with_range_warnings(lambda: read_ski(place))
         except ParameterError as error:
-            raise ParameterError(_without_folder(name, error.message), code=error.code) from error
+            raise ParameterError(_without_folder(name, error.message)).tag(error.code) from error
     return ski, " ".join(_without_folder(name, warning) for warning in warned)
 
 
@@ -181,17 +173,12 @@ def _require_no_other_file(text: str) -> None:
         return  # the reader reports it with its line
     if "shape" in keys:
         raise ParameterError(
-            "{file}: a shape of another program cannot be read here. Use read_ski or the command line",
-            code="foreign_shape",
-            file=FILE,
-        )
+            "{file}: a shape of another program cannot be read here. Use read_ski or the command line"
+        ).tag("foreign_shape", file=FILE)
     if keys.get("table", TABLE) != TABLE:
         raise ParameterError(
-            '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"',
-            code="wrong_table",
-            file=FILE,
-            table=TABLE,
-        )
+            '{file}: the table of a ski of the lab is in the field below it: write table = "{table}"'
+        ).tag("wrong_table", file=FILE, table=TABLE)
 
 
 def _without_folder(folder: str, message: str) -> str:
@@ -304,21 +291,18 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
     elif not files and not designs and names:
         raise ParameterError(
             "a table alone states neither length nor mass of a ski; choose it together with a .toml file that names "
-            "it (table = '{table}'): “Download the file” on the page gives one to begin with",
-            code="table_alone",
-            table=names[0],
-        )
+            "it (table = '{table}'): “Download the file” on the page gives one to begin with"
+        ).tag("table_alone", table=names[0])
     else:
         raise ParameterError(
-            "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM",
-            code="not_one_ski",
-        )
+            "choose one ski: its .toml file with the table that it names, or the ski-def.json of MonkeyCAM"
+        ).tag("not_one_ski")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             ski = read_ski(place)
         except ParameterError as error:
-            raise ParameterError(_without_folder(folder, error.message), code=error.code) from error
+            raise ParameterError(_without_folder(folder, error.message)).tag(error.code) from error
     warned = " ".join(str(warning.message).replace(f"{folder}/", "") for warning in caught)
     is_whole = len(names) == 1 and files
     text, table = (place.read_text(encoding="utf-8-sig"), "") if is_whole else texts_of_ski(ski)
@@ -331,9 +315,5 @@ def _require_own_files(place: Path, names: Sequence[str]) -> None:
     for key in ("table", "shape"):
         if (named := keys.get(key)) is not None and named not in names:
             raise ParameterError(
-                "{file}: {key} is {needed!r}; choose that file, too, and name it without a folder",
-                code="missing_file",
-                file=place.name,
-                key=key,
-                needed=named,
-            )
+                "{file}: {key} is {needed!r}; choose that file, too, and name it without a folder"
+            ).tag("missing_file", file=place.name, key=key, needed=named)

@@ -91,10 +91,8 @@ class TrackFolders:
         """
         _require_allowed(placing)
         if len(self.names()) >= MOST_TRACKS:
-            raise ParameterError(
-                "{most} tracks are stored already; remove some on the page Replay",
-                code="too_many_files",
-                most=MOST_TRACKS,
+            raise ParameterError("{most} tracks are stored already; remove some on the page Replay").tag(
+                "too_many_files", most=MOST_TRACKS
             )
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
@@ -127,17 +125,15 @@ class TrackFolders:
         Raises ParameterError: the lab has no such track, or its folder is damaged.
         """
         if name not in self.names():
-            raise ParameterError(
-                "there is no track {name!r} here. Choose one from the list", code="unknown_track", name=name
+            raise ParameterError("there is no track {name!r} here. Choose one from the list").tag(
+                "unknown_track", name=name
             )
         placing = read_record(self._folder / name / ABOUT, Placing)
         _require_allowed(placing)
         places = [path for path in (self._folder / name).iterdir() if path.name != ABOUT]
         if len(places) != 1:
-            raise ParameterError(
-                "the folder of the track {name} is damaged. Remove it and upload the track again",
-                code="damaged",
-                name=name,
+            raise ParameterError("the folder of the track {name} is damaged. Remove it and upload the track again").tag(
+                "damaged", name=name
             )
         return places[0], placing
 
@@ -186,29 +182,20 @@ def track_on_slope(place: Path, placing: Placing, slope_angle: float | None) -> 
 def _require_allowed(placing: Placing) -> None:
     azimuth, start = placing.fall_line_azimuth_deg, placing.starts_at_s
     if azimuth is not None and not -360.0 <= azimuth <= 360.0:
-        raise ParameterError(
-            "the fall line's direction is {azimuth:g}°; it must be from −360 to 360",
-            code="out_of_range",
-            azimuth=azimuth,
+        raise ParameterError("the fall line's direction is {azimuth:g}°; it must be from −360 to 360").tag(
+            "out_of_range", azimuth=azimuth
         )
     if not abs(start) <= LONGEST_WAIT_S:
-        raise ParameterError(
-            "the start of the track is {start:g} s; it must be within {longest:g} s of the run's",
-            code="out_of_range",
-            start=start,
-            longest=LONGEST_WAIT_S,
+        raise ParameterError("the start of the track is {start:g} s; it must be within {longest:g} s of the run's").tag(
+            "out_of_range", start=start, longest=LONGEST_WAIT_S
         )
 
 
 def _require_few_points(track: Track) -> None:
     if len(track.time) > MOST_POINTS:
         raise ParameterError(
-            "{track} has {points} points; at most {most} are drawn next to a run. Cut the turn out",
-            code="too_many_points",
-            track=track.name,
-            points=len(track.time),
-            most=MOST_POINTS,
-        )
+            "{track} has {points} points; at most {most} are drawn next to a run. Cut the turn out"
+        ).tag("too_many_points", track=track.name, points=len(track.time), most=MOST_POINTS)
 
 
 def _copy_limited(content: IO[bytes], place: Path) -> None:
@@ -217,10 +204,8 @@ def _copy_limited(content: IO[bytes], place: Path) -> None:
         while piece := content.read(_CHUNK):
             taken += len(piece)
             if taken > LARGEST_TRACK_BYTES:
-                raise ParameterError(
-                    "a track of more than {most} MB is not accepted",
-                    code="too_large",
-                    most=LARGEST_TRACK_BYTES // 1_000_000,
+                raise ParameterError("a track of more than {most} MB is not accepted").tag(
+                    "too_large", most=LARGEST_TRACK_BYTES // 1_000_000
                 )
             file.write(piece)
 
@@ -230,7 +215,7 @@ def _read_named(place: Path, placing: Placing) -> Track:
     try:
         return replace(read_track(place), name=placing.called)
     except FieldDataError as error:
-        raise ParameterError(_with_name(joined(error.sentences), place, placing.called), code=error.code) from error
+        raise ParameterError(_with_name(joined(error.sentences), place, placing.called)).tag(error.code) from error
 
 
 def _with_name(message: str, place: Path, name: str) -> str:
@@ -244,16 +229,12 @@ def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None)
     if azimuth is None:
         if track.axes == "east_north_up":
             raise ParameterError(
-                "{track} is in latitude and longitude: add it again with the direction of the fall line",
-                code="no_direction",
-                track=placing.called,
-            )
+                "{track} is in latitude and longitude: add it again with the direction of the fall line"
+            ).tag("no_direction", track=placing.called)
         return track
     if track.axes == "slope":
-        raise ParameterError(
-            "{track} is already in the axes of the slope: remove the direction",
-            code="needless_direction",
-            track=placing.called,
+        raise ParameterError("{track} is already in the axes of the slope: remove the direction").tag(
+            "needless_direction", track=placing.called
         )
     return in_slope_frame(track, fall_line_azimuth=azimuth * DEGREE, slope_angle=slope_angle, missing_height="on_slope")
 
@@ -296,8 +277,8 @@ class LabCourses:
         if name in course_names():
             return "course.name", name
         if name not in self.kept():
-            raise ParameterError(
-                "the lab has no course named {name!r}. Choose one from the list", code="unknown_course", name=name
+            raise ParameterError("the lab has no course named {name!r}. Choose one from the list").tag(
+                "unknown_course", name=name
             )
         return "course.file", str((self._folder / name).absolute())
 
@@ -309,22 +290,17 @@ class LabCourses:
         """
         suffix = PurePosixPath(called.lower()).suffix
         if suffix not in COURSE_SUFFIXES:
-            raise ParameterError(
-                "{file} is not a course: choose a .csv or .gpx file", code="unknown_ending", file=called
+            raise ParameterError("{file} is not a course: choose a .csv or .gpx file").tag(
+                "unknown_ending", file=called
             )
         if len(self.kept()) >= MOST_COURSES:
             raise ParameterError(
-                "{most} courses are stored already; remove some from the folder {folder} of the lab",
-                code="too_many_files",
-                most=MOST_COURSES,
-                folder=COURSES_FOLDER,
-            )
+                "{most} courses are stored already; remove some from the folder {folder} of the lab"
+            ).tag("too_many_files", most=MOST_COURSES, folder=COURSES_FOLDER)
         data = content.read(LARGEST_COURSE_BYTES + 1)
         if len(data) > LARGEST_COURSE_BYTES:
-            raise ParameterError(
-                "a course of more than {most} MB is not accepted",
-                code="too_large",
-                most=LARGEST_COURSE_BYTES // 1_000_000,
+            raise ParameterError("a course of more than {most} MB is not accepted").tag(
+                "too_large", most=LARGEST_COURSE_BYTES // 1_000_000
             )
         place = self._folder / f"{plain_stem(called, 'course')}-{secrets.token_hex(2)}{suffix}"
         made = place.with_name(f".partial-{place.name}")
@@ -335,7 +311,7 @@ class LabCourses:
         except OSError as error:
             raise cannot_write(place, error) from error
         except ParameterError as error:
-            raise ParameterError(_with_name(error.message, made, called), code=error.code) from error
+            raise ParameterError(_with_name(error.message, made, called)).tag(error.code) from error
         finally:
             made.unlink(missing_ok=True)
         return place.name

@@ -196,7 +196,7 @@ def required_id(text: str) -> str:
     Raises StoreError: the text is not an id.
     """
     if not _ID.fullmatch(text):
-        raise StoreError("This address names no campaign; the list of campaigns names all.", code="no_campaign")
+        raise StoreError("This address names no campaign; the list of campaigns names all.").tag("no_campaign")
     return text
 
 
@@ -240,7 +240,7 @@ def uploaded_files(form: FormData, key: str, missing: str) -> list[UploadFile]:
     """Uploaded files of a field; ParameterError with the text `missing` without any."""
     files = [file for file in form.getlist(key) if isinstance(file, UploadFile) and file.filename]
     if not files:
-        raise ParameterError(missing, code="no_file")
+        raise ParameterError(missing).tag("no_file")
     return files
 
 

@@ -77,8 +77,8 @@ class RunFolders:
         Raises ParameterError: the lab has no such run.
         """
         if name not in self.names():
-            raise ParameterError(
-                "there is no run {name!r} here. Choose one from the list", code="unknown_run", name=name
+            raise ParameterError("there is no run {name!r} here. Choose one from the list").tag(
+                "unknown_run", name=name
             )
         return self.folder / name
 

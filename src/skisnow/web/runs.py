@@ -181,9 +181,9 @@ class Runs:
         title = " ".join(title.split())
         job = self._job(name)
         if not 0 < len(title) <= LONGEST_TITLE:
-            raise ParameterError("Give the run a name of 1 to {most} characters.", code="bad_title", most=LONGEST_TITLE)
+            raise ParameterError("Give the run a name of 1 to {most} characters.").tag("bad_title", most=LONGEST_TITLE)
         if job is None:
-            raise ParameterError("There is no run {name}.", code="unknown_run", name=name)
+            raise ParameterError("There is no run {name}.").tag("unknown_run", name=name)
         self._keep(replace(job, title=title))
 
     def _job(self, name: str) -> Job | None:
@@ -202,7 +202,7 @@ class Runs:
             if self._process is not None:
                 self._process.terminate()
         else:
-            raise ParameterError("this run is over already; it cannot be cancelled", code="run_is_over")
+            raise ParameterError("this run is over already; it cannot be cancelled").tag("run_is_over")
 
     async def work(self) -> None:
         """Run the jobs of the queue until `end`."""

@@ -125,12 +125,8 @@ class ScenarioField:
         self.refuse("")
         try:
             if not self.text:
-                raise ParameterError(
-                    "{key} is empty; {file} has {before}",
-                    code="empty",
-                    key=self.key.name,
-                    file=self.where,
-                    before=self.before,
+                raise ParameterError("{key} is empty; {file} has {before}").tag(
+                    "empty", key=self.key.name, file=self.where, before=self.before
                 )
             return self.key.in_range(self.typed_value())
         except ParameterError as error:

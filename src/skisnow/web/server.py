@@ -52,14 +52,12 @@ def require_allowed(host: str, token: str | None) -> None:
     Raises ParameterError: the host is not this machine's loopback address and there is no token, or the token is blank.
     """
     if token is not None and not token.strip():
-        raise ParameterError("the token is blank; use one that is hard to guess, or remove --token", code="blank_token")
+        raise ParameterError("the token is blank; use one that is hard to guess, or remove --token").tag("blank_token")
     if token is None and not is_loopback(host):
         raise ParameterError(
             "on {host} other machines could open the lab; add --token with a word that is hard to guess, or remove "
-            "--host",
-            code="no_token",
-            host=host,
-        )
+            "--host"
+        ).tag("no_token", host=host)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +73,8 @@ class Certificate:
         except (OSError, ssl.SSLError, ValueError) as error:
             raise ParameterError(
                 "{file}: no certificate with its private key can be read ({error}); give a PEM file with both, or "
-                "the key's file with --certificate-key",
-                code="cannot_read",
-                file=self.file,
-                error=error,
-            ) from error
+                "the key's file with --certificate-key"
+            ).tag("cannot_read", file=self.file, error=error) from error
 
 
 def serve(

@@ -104,8 +104,8 @@ class SkiEditor:
     def require_drawn(self) -> None:
         """Reject an edit while the text of the file differs from the drawn one."""
         if self._typed_texts() != self._base:
-            raise ParameterError(
-                "the file below was changed since it was drawn; press Draw the file first", code="file_changed"
+            raise ParameterError("the file below was changed since it was drawn; press Draw the file first").tag(
+                "file_changed"
             )
 
     async def begin(self, name: str) -> None:

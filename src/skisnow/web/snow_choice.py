@@ -88,7 +88,7 @@ class SnowChoice:
             return None
         if self._found is None:
             waiting = Message("the campaign is being analysed; wait a moment")
-            raise ParameterError(self._refused or waiting, code="no_snow")
+            raise ParameterError(self._refused or waiting).tag("no_snow")
         return self._found
 
     async def _choose_campaign_or_snow(self) -> None:
@@ -183,7 +183,7 @@ def campaign_snow(lab: Lab, key: str) -> Analysis:
     kind, id_ = key.split("-", 1)
     numbers = analyse_files((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
     if isinstance(numbers, Refusal):
-        raise ParameterError("this campaign gives no snow yet. {said}", code="no_snow", said=numbers.said)
+        raise ParameterError("this campaign gives no snow yet. {said}").tag("no_snow", said=numbers.said)
     return numbers.analysis
 
 

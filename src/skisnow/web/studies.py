@@ -96,7 +96,7 @@ class Studies(Runs):
                 points = len(read_study(made / STUDY).points)
                 require_few_points(points)
             except ParameterError as error:
-                raise ParameterError(_without_folder(made, error.message), code=error.code) from error
+                raise ParameterError(_without_folder(made, error.message)).tag(error.code) from error
             made.chmod(0o755)
             made.rename(self.folder / name)  # it becomes a study with its job.json
         finally:
@@ -125,7 +125,7 @@ class Studies(Runs):
         """
         job = next((job for job in self.study_jobs() if job.name == name), None)
         if job is None or job.state not in ("cancelled", "failed"):
-            raise ParameterError("this study waits, is running or is done; it cannot be continued", code="not_stopped")
+            raise ParameterError("this study waits, is running or is done; it cannot be continued").tag("not_stopped")
         self._keep(replace(job, state="waiting", said="", workers=self.workers))
 
     def file(self, name: str, file: str) -> Path:
@@ -135,11 +135,8 @@ class Studies(Runs):
         """
         names = {job.name for job in self.jobs()}
         if name not in names or file not in (STUDY, TABLE, FIGURE) or not (self.folder / name / file).is_file():
-            raise ParameterError(
-                "there is no {file!r} of a study {study!r} here. Choose one from the list",
-                code="unknown_file",
-                file=file,
-                study=name,
+            raise ParameterError("there is no {file!r} of a study {study!r} here. Choose one from the list").tag(
+                "unknown_file", file=file, study=name
             )
         return self.folder / name / file
 

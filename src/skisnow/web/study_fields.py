@@ -137,11 +137,8 @@ def require_few_points(points: int) -> None:
     if points > MOST_POINTS:
         raise ParameterError(
             "the study has {points} points; the lab accepts at most {most}. Use fewer values, or the command skisnow "
-            "study, which accepts a million",
-            code="too_many_points",
-            points=points,
-            most=MOST_POINTS,
-        )
+            "study, which accepts a million"
+        ).tag("too_many_points", points=points, most=MOST_POINTS)
 
 
 def _key(name: str) -> str:
@@ -270,7 +267,7 @@ class AxisFields:
         key = self._keys[self.name]
         words = called(key)
         if not all(str(field_.value or "").strip() for field_ in self._ends):
-            raise ParameterError("{input}: type both ends of its range", code="missing", input=words)
+            raise ParameterError("{input}: type both ends of its range").tag("missing", input=words)
         low, high = (
             typed_number(Message(end, input=words), str(field_.value or ""))
             for field_, end in zip(self._ends, (_LOWER_END, _UPPER_END), strict=True)
@@ -280,21 +277,14 @@ class AxisFields:
                 key.in_range(round(end) if key.kind == "whole number" and end == round(end) else end)
             except ParameterError as error:
                 message = reworded(error.message, lambda text: text.replace(key.name, said(words)))
-                raise ParameterError(message, code=error.code) from error
+                raise ParameterError(message).tag(error.code) from error
         if not low < high:
             raise ParameterError(
-                "{input}: it goes from {low:g} to {high:g}; the first end must be the smaller one",
-                code="not_rising",
-                input=words,
-                low=low,
-                high=high,
-            )
+                "{input}: it goes from {low:g} to {high:g}; the first end must be the smaller one"
+            ).tag("not_rising", input=words, low=low, high=high)
         if self._log.value and low <= 0.0:
-            raise ParameterError(
-                "{input}: even in the logarithm, it must begin above 0; it begins at {low:g}",
-                code="not_positive",
-                input=words,
-                low=low,
+            raise ParameterError("{input}: even in the logarithm, it must begin above 0; it begins at {low:g}").tag(
+                "not_positive", input=words, low=low
             )
         return Range(low, high, self.count(), bool(self._log.value))
 
@@ -308,11 +298,7 @@ class AxisFields:
         text = with_point(str(self._n.value or "").strip())
         number = natural_number(text)
         if number is None or not 2 <= number <= MOST_POINTS:
-            raise ParameterError(
-                "{input}: the number of values is {value!r}; it must be from 2 to {most}",
-                code="out_of_range",
-                input=called(self._keys[self.name]),
-                value=text,
-                most=MOST_POINTS,
+            raise ParameterError("{input}: the number of values is {value!r}; it must be from 2 to {most}").tag(
+                "out_of_range", input=called(self._keys[self.name]), value=text, most=MOST_POINTS
             )
         return number

@@ -52,10 +52,8 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
     tells.close()
     try:
         if not hears.poll(bounds.seconds):
-            raise ParameterError(
-                "it was not read within {seconds:g} s; give less of it, or check the file",
-                code="too_slow",
-                seconds=bounds.seconds,
+            raise ParameterError("it was not read within {seconds:g} s; give less of it, or check the file").tag(
+                "too_slow", seconds=bounds.seconds
             )
         answer, trace = hears.recv()
     except EOFError as end:
@@ -75,11 +73,8 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
 def _failure(bounds: Bounds) -> ParameterError:
     return ParameterError(
         "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
-        "check the file",
-        code="cannot_read",
-        seconds=bounds.seconds,
-        megabytes=bounds.memory_bytes // 1_000_000,
-    )
+        "check the file"
+    ).tag("cannot_read", seconds=bounds.seconds, megabytes=bounds.memory_bytes // 1_000_000)
 
 
 def _run_confined(tells: Connection, bounds: Bounds, work: Callable[..., object], args: tuple[object, ...]) -> None:
@@ -92,7 +87,7 @@ def _run_confined(tells: Connection, bounds: Bounds, work: Callable[..., object]
     except (FieldDataError, StoreError, OutputError) as error:
         answer = (error, "")
     except SkisnowError as error:
-        answer = (ParameterError(error.message, code=error.code), "")
+        answer = (ParameterError(error.message).tag(error.code), "")
     except Exception:  # logged by the server
         answer = (_failure(bounds), traceback.format_exc()[-_LAST_WORDS:])
     tells.send(answer)

@@ -183,7 +183,7 @@ class FileImports:
         """
         place = self._folder / required_id(id_) / "name"
         if not place.is_file():
-            raise ParameterError("This upload was imported already. Choose the file again.", code="no_upload")
+            raise ParameterError("This upload was imported already. Choose the file again.").tag("no_upload")
         return place.read_text(encoding="utf-8")
 
     def content(self, id_: str) -> tuple[str, bytes]:

@@ -62,8 +62,8 @@ class Unpacking:
         with archive:
             members = [member for member in archive.infolist() if not member.filename.endswith("/")]
             if len(members) > self.limits.files:
-                raise ParameterError(
-                    "more than {most} files at once are not accepted", code="too_many_files", most=self.limits.files
+                raise ParameterError("more than {most} files at once are not accepted").tag(
+                    "too_many_files", most=self.limits.files
                 )
             for member in members:
                 _require_plain(member)
@@ -79,16 +79,16 @@ class Unpacking:
             at = tail.rindex(b"PK\5\6")
             *_, listed, _start, _comment = _END_RECORD.unpack_from(tail, at)
         if listed > self.limits.files * _BYTES_PER_NAME:
-            raise ParameterError(
-                "more than {most} files at once are not accepted", code="too_many_files", most=self.limits.files
+            raise ParameterError("more than {most} files at once are not accepted").tag(
+                "too_many_files", most=self.limits.files
             )
 
     def _write(self, name: str, pieces: Iterable[bytes]) -> None:
         place = self._place(name)
         self._files += 1
         if self._files > self.limits.files:
-            raise ParameterError(
-                "more than {most} files at once are not accepted", code="too_many_files", most=self.limits.files
+            raise ParameterError("more than {most} files at once are not accepted").tag(
+                "too_many_files", most=self.limits.files
             )
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -96,35 +96,30 @@ class Unpacking:
                 for piece in pieces:
                     self._bytes += len(piece)
                     if self._bytes > self.limits.unpacked_bytes:
-                        raise ParameterError(
-                            "more than {most} bytes at once are not accepted",
-                            code="too_large",
-                            most=self.limits.unpacked_bytes,
+                        raise ParameterError("more than {most} bytes at once are not accepted").tag(
+                            "too_large", most=self.limits.unpacked_bytes
                         )
                     file.write(piece)
         except (FileExistsError, NotADirectoryError) as error:
-            raise ParameterError(
-                "two files of the upload are called {file}", code="same_name", file=shown(name)
+            raise ParameterError("two files of the upload are called {file}").tag(
+                "same_name", file=shown(name)
             ) from error
         except OSError as error:
             if error.errno != errno.ENAMETOOLONG:
                 raise
-            raise ParameterError(
-                "the file {file} is not accepted: its name is too long", code="name_too_long", file=shown(name)
+            raise ParameterError("the file {file} is not accepted: its name is too long").tag(
+                "name_too_long", file=shown(name)
             ) from error
 
     def _place(self, name: str) -> Path:
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
-            raise ParameterError(
-                "the file {file} is not accepted: {why}", code="not_taken_in", file=shown(name), why=why
+            raise ParameterError("the file {file} is not accepted: {why}").tag(
+                "not_taken_in", file=shown(name), why=why
             )
         if path.count("/") > DEEPEST:
-            raise ParameterError(
-                "the file {file} is not accepted: it is in more than {most} folders",
-                code="too_deep",
-                file=shown(name),
-                most=DEEPEST,
+            raise ParameterError("the file {file} is not accepted: it is in more than {most} folders").tag(
+                "too_deep", file=shown(name), most=DEEPEST
             )
         return self.folder.joinpath(*PurePosixPath(path).parts)
 
@@ -132,22 +127,16 @@ class Unpacking:
 def _require_plain(member: zipfile.ZipInfo) -> None:
     kind = stat.S_IFMT(member.external_attr >> 16)
     if kind not in (0, stat.S_IFREG):
-        raise ParameterError(
-            "{file} in the zip file is a link or the like, not a plain file",
-            code="not_a_plain_file",
-            file=shown(member.filename),
+        raise ParameterError("{file} in the zip file is a link or the like, not a plain file").tag(
+            "not_a_plain_file", file=shown(member.filename)
         )
     if member.flag_bits & 1:
-        raise ParameterError(
-            "{file} in the zip file is encrypted; pack it without a password",
-            code="encrypted",
-            file=shown(member.filename),
+        raise ParameterError("{file} in the zip file is encrypted; pack it without a password").tag(
+            "encrypted", file=shown(member.filename)
         )
     if member.compress_type not in _METHODS:
-        raise ParameterError(
-            "{file} in the zip file is packed in an unusual way; choose Deflate",
-            code="unknown_compression",
-            file=shown(member.filename),
+        raise ParameterError("{file} in the zip file is packed in an unusual way; choose Deflate").tag(
+            "unknown_compression", file=shown(member.filename)
         )
 
 
@@ -169,7 +158,7 @@ def _damage_errors() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        raise ParameterError(_DAMAGED, code="damaged") from error
+        raise ParameterError(_DAMAGED).tag("damaged") from error
 
 
 def shown(name: str) -> str:
@@ -223,8 +212,8 @@ def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Li
     files = unfolded(FilesOfFolder(folder))
     if CAMPAIGN_FILE not in files.names():
         problems = files.problems
-        raise ParameterError(
-            joined([problems[0].value, problems[0].action], ". ") if problems else UNDESCRIBED, code="no_campaign"
+        raise ParameterError(joined([problems[0].value, problems[0].action], ". ") if problems else UNDESCRIBED).tag(
+            "no_campaign"
         )
     with Store.open(store) as opened:
         return opened.add(folder).id

@@ -156,8 +156,8 @@ def typed_number(what: str, text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ParameterError(
-            "{field}: {value!r} is not a number. Correct it", code="not_a_number", field=what, value=text.strip()
+        raise ParameterError("{field}: {value!r} is not a number. Correct it").tag(
+            "not_a_number", field=what, value=text.strip()
         )
     return value
 

@@ -140,7 +140,7 @@ def test_advice_is_for_what_was_lost_and_not_for_what_the_function_rejects(raise
     class Refusing(Here):
         def submit(self, *_: Any, **__: Any) -> Future[Any]:
             future: Future[Any] = Future()
-            future.set_exception(SkisnowError("no snow", code=raised))
+            future.set_exception(SkisnowError("no snow").tag(raised))
             return future
 
     with raises(SkisnowError, code):

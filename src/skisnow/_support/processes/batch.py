@@ -137,7 +137,7 @@ class Pool:
             return ([(number, row_text(self._function(point)))] for number, point in points)
         if count is None:
             if not isinstance(points, Collection):
-                raise ParameterError("count, the number of points, is missing.", code="count_missing")
+                raise ParameterError("count, the number of points, is missing.").tag("count_missing")
             count = len(points)
         if count == 0:
             return iter(())
@@ -188,9 +188,7 @@ class Pool:
             )
             if message is None:
                 raise
-            raise SkisnowError(
-                "{problem} {advice}", code="pool_failed", problem=message, advice=self._advice
-            ) from error
+            raise SkisnowError("{problem} {advice}").tag("pool_failed", problem=message, advice=self._advice) from error
 
 
 def workers_in_force(workers: int | None) -> int:
@@ -198,7 +196,7 @@ def workers_in_force(workers: int | None) -> int:
     if workers is None:
         return available_cores()
     if workers < 1:
-        raise ParameterError("workers is {workers}; at least 1 is needed.", code="too_few_workers", workers=workers)
+        raise ParameterError("workers is {workers}; at least 1 is needed.").tag("too_few_workers", workers=workers)
     return workers
 
 
@@ -235,11 +233,8 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
         return crew_of_client(executor, function)
     raise ParameterError(
         "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a Dask client, or "
-        "the address of a Dask scheduler",
-        code="unknown_executor",
-        executor=executor,
-        names=list(LOCAL),
-    )
+        "the address of a Dask scheduler"
+    ).tag("unknown_executor", executor=executor, names=list(LOCAL))
 
 
 def require_executor(executor: ExecutorLike | None) -> None:

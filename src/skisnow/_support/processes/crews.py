@@ -189,7 +189,7 @@ def _begin(function: PointFunction, alive: Connection) -> None:
 
 def _in_worker(points: list[Numbered]) -> Done:
     if _Worker.function is None:
-        raise SkisnowError("A worker was not started by a Pool.", code="no_pool")
+        raise SkisnowError("A worker was not started by a Pool.").tag("no_pool")
     return compute_rows(_Worker.function, points)
 
 
@@ -276,12 +276,8 @@ def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: S
     """
     if identity != own_identity():
         raise SkisnowError(
-            "The worker on {node} has {installed}, this computer has {expected}. Install the same on both.",
-            code="different_versions",
-            node=platform.node(),
-            installed=own_identity(),
-            expected=identity,
-        )
+            "The worker on {node} has {installed}, this computer has {expected}. Install the same on both."
+        ).tag("different_versions", node=platform.node(), installed=own_identity(), expected=identity)
     return compute_rows(_unpacked(packed, folder), points)
 
 

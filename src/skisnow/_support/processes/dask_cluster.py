@@ -29,10 +29,8 @@ def require_scheduler(address: str) -> None:
     """Reject an address without ``://``, and a missing Dask, before the work begins; nothing is connected."""
     if "://" not in address:
         raise ParameterError(
-            "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, threads or processes.",
-            code="unknown_executor",
-            scheduler=address,
-        )
+            "The scheduler is {scheduler!r}. It must be an address such as tcp://host:8786, threads or processes."
+        ).tag("unknown_executor", scheduler=address)
     _distributed()
 
 
@@ -47,7 +45,7 @@ def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
     try:
         client = _distributed().Client(address, timeout=WAIT_S, name="skisnow")
     except (OSError, ValueError, TypeError) as error:
-        raise SkisnowError(_unanswered(address, error), code="no_scheduler") from error
+        raise SkisnowError(_unanswered(address, error)).tag("no_scheduler") from error
     return crew_of_client(client, function, close=client.close)
 
 
@@ -94,7 +92,7 @@ class _DaskCrew(GivenCrew):
         if self._client.status == "running":
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
-            raise SkisnowError(lost_workers_message(), code=LOST)
+            raise SkisnowError(lost_workers_message()).tag(LOST)
 
     def told(self, error: Exception) -> Message | None:
         """Explanation of an error of Dask."""

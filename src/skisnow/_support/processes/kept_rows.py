@@ -80,8 +80,8 @@ class KeptRows:
     def read(cls, path: Path) -> Self:
         """Open the file of a batch as it is, whatever its fingerprint."""
         if not path.is_file():
-            raise ParameterError(
-                "{path} cannot be read: the file does not exist. Check the path.", code="cannot_read", path=path
+            raise ParameterError("{path} cannot be read: the file does not exist. Check the path.").tag(
+                "cannot_read", path=path
             )
         with _errors(path):
             rows = cls(path)
@@ -244,10 +244,8 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
         yield
     except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
         if primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
-            raise OutputError(
-                "{path} is being written by another run of this study. Wait for it or stop it.",
-                code="in_use",
-                path=path,
+            raise OutputError("{path} is being written by another run of this study. Wait for it or stop it.").tag(
+                "in_use", path=path
             ) from None
         if place_reason(error) is not None:
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
@@ -258,17 +256,12 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
 def _another(path: Path) -> ParameterError:
     return ParameterError(
         "{path} contains the finished points of another study, or of this one before its inputs, one of its files or "
-        "skisnow changed. Undo the change to continue them, or remove that file to start again.",
-        code="another_study",
-        path=path,
-    )
+        "skisnow changed. Undo the change to continue them, or remove that file to start again."
+    ).tag("another_study", path=path)
 
 
 def _damaged(path: Path | None, why: str) -> ParameterError:
     return ParameterError(
         "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute its points again, "
-        "or move it away.",
-        code="damaged",
-        path=path,
-        reason=why,
-    )
+        "or move it away."
+    ).tag("damaged", path=path, reason=why)

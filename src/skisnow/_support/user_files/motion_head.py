@@ -30,11 +30,8 @@ def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
     if word is None:
         return None
     if word.lower() not in _WORDS:
-        raise ParameterError(
-            "{path}: the header states inDegrees={word}. Allowed: yes, no. Correct the line.",
-            code="head_says_indegrees",
-            path=path,
-            word=word,
+        raise ParameterError("{path}: the header states inDegrees={word}. Allowed: yes, no. Correct the line.").tag(
+            "head_says_indegrees", path=path, word=word
         )
     return _WORDS[word.lower()]
 
@@ -49,10 +46,8 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
     if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
         raise ParameterError(
             "{path}: the header states neither the unit of angles nor a version. Add the line inDegrees=yes or "
-            "inDegrees=no before endheader.",
-            code="head_says_neither_whether",
-            path=path,
-        )
+            "inDegrees=no before endheader."
+        ).tag("head_says_neither_whether", path=path)
     return stated is True
 
 
@@ -64,13 +59,8 @@ def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, colum
         if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
             raise ParameterError(
                 "{path}: the header states {key}={word}, but the file has {there}; it is truncated or joined, or its "
-                "header is wrong",
-                code="head_says",
-                path=path,
-                key=key,
-                word=word[:_LONGEST_SHOWN],
-                there=there,
-            )
+                "header is wrong"
+            ).tag("head_says", path=path, key=key, word=word[:_LONGEST_SHOWN], there=there)
 
 
 def _said(head: Mapping[str, str]) -> dict[str, str]:

@@ -81,8 +81,8 @@ def _pair(kind: str, text: str) -> tuple[str, str]:
     if kind == "ignore":
         return text, "yes"
     if not equals and kind not in {"tool", "plate"}:
-        raise ParameterError(
-            "--{option} {text}: write a name, an equals sign and a value.", code="no_pair", option=kind, text=text
+        raise ParameterError("--{option} {text}: write a name, an equals sign and a value.").tag(
+            "no_pair", option=kind, text=text
         )
     return key.strip(), value.strip()
 
@@ -97,11 +97,8 @@ def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
     saved = saved_templates(named)
     path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else saved.get(str(place), Path(place))
     if not path.exists():
-        raise ParameterError(
-            "{name} is no saved template and no campaign. Saved: {saved}.",
-            code="no_template",
-            name=str(place),
-            saved=list(saved) or Message("none"),
+        raise ParameterError("{name} is no saved template and no campaign. Saved: {saved}.").tag(
+            "no_template", name=str(place), saved=list(saved) or Message("none")
         )
     return _template(read_toml(path), str(path))
 
@@ -123,18 +120,13 @@ def save_template(name: str, campaign: bytes, *, folder: Path | None = None) -> 
     if not _NAME.fullmatch(name):
         raise ParameterError(
             "{name!r} is not a name of a template. Allowed: up to 60 letters, digits, spaces and -_.(), beginning with "
-            "a letter or digit.",
-            code="bad_name",
-            name=name,
-        )
+            "a letter or digit."
+        ).tag("bad_name", name=name)
     text = "\n".join(parse_template(campaign.decode(), name).toml_lines()).lstrip() + "\n"
     path = (own_templates() if folder is None else folder) / f"{name}.toml"
     if path.exists() and path.read_text(encoding="utf-8") != text:
-        raise ParameterError(
-            "A template {name} with other answers exists. Take another name, or remove {file}.",
-            code="name_in_use",
-            name=name,
-            file=path,
+        raise ParameterError("A template {name} with other answers exists. Take another name, or remove {file}.").tag(
+            "name_in_use", name=name, file=path
         )
     path.parent.mkdir(parents=True, exist_ok=True)
     write_file(path, text)
@@ -161,10 +153,8 @@ def _template(values: Mapping[str, Any], name: str) -> Answers:
         for pairs in answers.values()
     )
     if not answers or not texts:
-        raise ParameterError(
-            "{file} has no [import] with texts. Choose a campaign that skisnow import wrote.",
-            code="no_template",
-            file=name,
+        raise ParameterError("{file} has no [import] with texts. Choose a campaign that skisnow import wrote.").tag(
+            "no_template", file=name
         )
     return Answers(**answers)
 

@@ -77,8 +77,8 @@ def write_import(files: Mapping[str, bytes], folder: str | Path) -> None:
     """
     folder = Path(folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise OutputError(
-            "{folder} is not an empty folder; nothing was written. Choose another one.", code="not_empty", folder=folder
+        raise OutputError("{folder} is not an empty folder; nothing was written. Choose another one.").tag(
+            "not_empty", folder=folder
         )
     prepare_folder(folder)
     with staged(folder, last=CAMPAIGN_FILE) as stage:
@@ -99,15 +99,13 @@ def undo_import(folder: str | Path) -> list[str]:
             raise ValueError(RECORD)
         changed = [path for path, digest in hashes.items() if _sha256(folder / path) != digest]
     except (OSError, ValueError) as failure:
-        raise OutputError(
-            "{folder} has no {record}; nothing was removed.", code="no_import", folder=folder, record=RECORD
+        raise OutputError("{folder} has no {record}; nothing was removed.").tag(
+            "no_import", folder=folder, record=RECORD
         ) from failure
     if changed:
         raise OutputError(
-            "Changed since the import: {files}. Nothing was removed. Keep these files, and delete the folder.",
-            code="changed_since",
-            files=changed,
-        )
+            "Changed since the import: {files}. Nothing was removed. Keep these files, and delete the folder."
+        ).tag("changed_since", files=changed)
     removed = [*hashes, RECORD]
     for path in removed:
         (folder / path).unlink(missing_ok=True)

@@ -119,12 +119,8 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
             for mark in separators
         ]
     except UnreadableTextError as failure:
-        raise ParameterError(
-            "{file}: allowed: {allowed}. {action}",
-            code="unreadable_file",
-            file=name,
-            allowed=failure.allowed,
-            action=failure.action,
+        raise ParameterError("{file}: allowed: {allowed}. {action}").tag(
+            "unreadable_file", file=name, allowed=failure.allowed, action=failure.action
         ) from failure
     return max(candidates, key=lambda candidate: max(map(count, candidate[0][:_HEADING_ROWS]), default=0))
 

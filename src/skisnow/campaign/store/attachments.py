@@ -40,10 +40,8 @@ class Position:
         if not is_place or self.accuracy_m < 0.0:
             raise ParameterError(
                 "{position} is not a position. Allowed: latitude up to ±90°, longitude up to ±180°, accuracy of 0 m or "
-                "more.",
-                code="no_position",
-                position=list(numbers),
-            )
+                "more."
+            ).tag("no_position", position=list(numbers))
 
 
 def photo_entry(file: str, test: str, photo: str, *, who: str = "") -> NewEntry:
@@ -69,11 +67,8 @@ def photo_entry(file: str, test: str, photo: str, *, who: str = "") -> NewEntry:
         data = b""
     if not data.startswith(_JPEG) or len(data) > MOST_PHOTO_BYTES:
         raise ParameterError(
-            "The photo is not stored: {size} bytes. Allowed: a JPEG file of at most {most} bytes.",
-            code="no_photo",
-            size=len(data),
-            most=MOST_PHOTO_BYTES,
-        )
+            "The photo is not stored: {size} bytes. Allowed: a JPEG file of at most {most} bytes."
+        ).tag("no_photo", size=len(data), most=MOST_PHOTO_BYTES)
     pieces = (photo[at : at + _PIECE] for at in range(0, len(photo), _PIECE))
     return _entry(file, test, {f"photo_{number:02d}": piece for number, piece in enumerate(pieces)}, who)
 
@@ -151,11 +146,8 @@ def _records(data: bytes, file: str) -> list[list[str]]:
     except UnreadableTextError as error:
         raise StoreError(
             "The file {file} of the campaign cannot be read, so that no rows can be appended: {allowed} is required. "
-            "`skisnow store export --as-added` exports the files without later corrections.",
-            code="unreadable_corrections",
-            file=file,
-            allowed=error.allowed,
-        ) from error
+            "`skisnow store export --as-added` exports the files without later corrections."
+        ).tag("unreadable_corrections", file=file, allowed=error.allowed) from error
 
 
 def exported_files(campaign: ReplayedCampaign) -> dict[str, bytes]:

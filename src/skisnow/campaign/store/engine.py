@@ -59,7 +59,7 @@ _FAILURES: Final = {
 
 def _failure(doing: str, place: object, reason: str) -> StoreError:
     text, code = _FAILURES[doing]
-    return StoreError(Message(text, place=place, reason=reason), code=code)
+    return StoreError(Message(text, place=place, reason=reason)).tag(code)
 
 
 @contextmanager
@@ -184,8 +184,8 @@ def _require_tables(engine: Engine, path: Path) -> None:
         except sqlite3.DatabaseError as error:
             if place_reason(error) is not None:
                 raise
-            raise StoreError(
-                "{path} is damaged: {error}. Put a backup in its place.", code="damaged", path=path, error=error
+            raise StoreError("{path} is damaged: {error}. Put a backup in its place.").tag(
+                "damaged", path=path, error=error
             ) from error
 
 
@@ -237,18 +237,12 @@ def _revision(connection: Connection, path: Path) -> str | None:
     if not tables - {"alembic_version"}:
         return None
     if connection.exec_driver_sql("PRAGMA application_id").scalar_one() != APPLICATION_ID:
-        raise StoreError(
-            "{path} is an SQLite database of another program, not a store; name another file.",
-            code="other_database",
-            path=path,
+        raise StoreError("{path} is an SQLite database of another program, not a store; name another file.").tag(
+            "other_database", path=path
         )
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1 or not isinstance(versions[0], str):
-        raise StoreError(
-            "{path} is damaged: its version is missing. Restore a backup.",
-            code="damaged",
-            path=path,
-        )
+        raise StoreError("{path} is damaged: its version is missing. Restore a backup.").tag("damaged", path=path)
     return versions[0]
 
 
@@ -271,10 +265,8 @@ def _bring_up_to_date(engine: Engine, path: Path, busy_timeout_s: float) -> None
             upgrade(connection)
             if connection.exec_driver_sql("PRAGMA foreign_key_check").first() is not None:
                 raise StoreError(
-                    "{path} contains rows with invalid references; it was not changed. Restore a backup.",
-                    code="damaged",
-                    path=path,
-                )
+                    "{path} contains rows with invalid references; it was not changed. Restore a backup."
+                ).tag("damaged", path=path)
 
 
 def _use_write_ahead_log(engine: Engine, busy_timeout_s: float) -> None:

@@ -96,11 +96,8 @@ def list_files(folder: Path) -> dict[str, FileState]:
     if refused:
         raise StoreError(
             "{folder} contains links, pipes or other special files: {paths}; replace them by the files themselves, "
-            "or remove them.",
-            code="not_a_file",
-            folder=folder,
-            paths=list(map(_printable, refused)),
-        )
+            "or remove them."
+        ).tag("not_a_file", folder=folder, paths=list(map(_printable, refused)))
     return files
 
 
@@ -162,11 +159,8 @@ def unsafe_because(path: str, *, for_windows: bool) -> Message | None:
 
 def _require_safe(path: str, *, for_windows: bool) -> None:
     if (why := unsafe_because(path, for_windows=for_windows)) is not None:
-        raise StoreError(
-            "The file {path} cannot be imported or exported: {why}; rename it.",
-            code="unsafe_name",
-            path=_printable(path),
-            why=why,
+        raise StoreError("The file {path} cannot be imported or exported: {why}; rename it.").tag(
+            "unsafe_name", path=_printable(path), why=why
         )
 
 
@@ -183,10 +177,8 @@ def new_folder(out: Path) -> Iterator[Path]:
     """
     out = out.resolve()
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise StoreError(
-            "{out} exists and is not an empty folder; name a folder that does not exist yet.",
-            code="not_empty",
-            out=out,
+        raise StoreError("{out} exists and is not an empty folder; name a folder that does not exist yet.").tag(
+            "not_empty", out=out
         )
     out.parent.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(dir=out.parent, prefix=f".{out.name[:40]}-") as hidden:
@@ -221,15 +213,11 @@ def write_file(folder: Path, file: StoredFile, pieces: Iterable[bytes]) -> None:
     except FileExistsError as error:
         raise StoreError(
             "{path} and another file of the campaign have the same name on this file system; export to one that "
-            "distinguishes upper and lower case.",
-            code="same_name",
-            path=file.path,
-        ) from error
+            "distinguishes upper and lower case."
+        ).tag("same_name", path=file.path) from error
     if digest.hexdigest() != file.sha256:
-        raise StoreError(
-            "{path} is damaged in the store and was not written; `skisnow store verify` lists all.",
-            code="damaged",
-            path=file.path,
+        raise StoreError("{path} is damaged in the store and was not written; `skisnow store verify` lists all.").tag(
+            "damaged", path=file.path
         )
 
 
@@ -240,10 +228,8 @@ def checked_bytes(file: StoredFile, pieces: Iterable[bytes]) -> bytes:
     """
     data = b"".join(pieces)
     if hashlib.sha256(data).hexdigest() != file.sha256:
-        raise StoreError(
-            "{path} is damaged in the store and was not read; `skisnow store verify` lists all.",
-            code="damaged",
-            path=file.path,
+        raise StoreError("{path} is damaged in the store and was not read; `skisnow store verify` lists all.").tag(
+            "damaged", path=file.path
         )
     return data
 

@@ -192,19 +192,15 @@ def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, l
 
 def _require(connection: Connection, id_: str) -> None:
     if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
-        raise StoreError(
-            "The store has no campaign in entry with the id {id!r}; the list of campaigns names all.",
-            code="unknown_id",
-            id=id_,
+        raise StoreError("The store has no campaign in entry with the id {id!r}; the list of campaigns names all.").tag(
+            "unknown_id", id=id_
         )
 
 
 def _require_stored(connection: Connection, id_: str) -> None:
     if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
-        raise StoreError(
-            "The store keeps no campaign with the id {id!r}; the list of campaigns names all.",
-            code="unknown_id",
-            id=id_,
+        raise StoreError("The store keeps no campaign with the id {id!r}; the list of campaigns names all.").tag(
+            "unknown_id", id=id_
         )
 
 
@@ -240,12 +236,8 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
         subject = f"{entry.file}, {entry.test}" if entry.test else entry.file
         raise OvertakenError(
             "Nothing was stored: {who} changed {subject} meanwhile ({at}). Check its present state, then enter the "
-            "missing values again.",
-            code="overtaken",
-            who=row["who"] or Message("somebody"),
-            subject=subject,
-            at=row["at"],
-        )
+            "missing values again."
+        ).tag("overtaken", who=row["who"] or Message("somebody"), subject=subject, at=row["at"])
 
 
 def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
@@ -253,11 +245,8 @@ def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
         return
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)
     if connection.execute(query).first() is None:
-        raise StoreError(
-            "{test} has no entry {about} that could be corrected or undone.",
-            code="no_entry",
-            test=entry.test,
-            about=entry.about,
+        raise StoreError("{test} has no entry {about} that could be corrected or undone.").tag(
+            "no_entry", test=entry.test, about=entry.about
         )
 
 

@@ -96,12 +96,8 @@ def required_digits(beginning: str) -> str:
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
         raise StoreError(
             "{digits!r} is not the id of a campaign: give its {most} hexadecimal digits or the first "
-            "{fewest} or more of them.",
-            code="not_an_id",
-            digits=digits,
-            most=ID_DIGITS,
-            fewest=_SHORTEST_PREFIX,
-        )
+            "{fewest} or more of them."
+        ).tag("not_an_id", digits=digits, most=ID_DIGITS, fewest=_SHORTEST_PREFIX)
     return digits
 
 
@@ -114,17 +110,11 @@ def campaign_ids(connection: Connection) -> list[NamedId]:
 def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
     """Error for an unknown or ambiguous beginning of an id, with candidates."""
     if matching:
-        return StoreError(
-            "Several campaigns begin with {beginning}: {candidates}; give more digits.",
-            code="ambiguous_id",
-            beginning=beginning,
-            candidates=_candidates(matching),
+        return StoreError("Several campaigns begin with {beginning}: {candidates}; give more digits.").tag(
+            "ambiguous_id", beginning=beginning, candidates=_candidates(matching)
         )
-    return StoreError(
-        "No campaign begins with {beginning}; the store contains {candidates}.",
-        code="unknown_id",
-        beginning=beginning,
-        candidates=_candidates(stored),
+    return StoreError("No campaign begins with {beginning}; the store contains {candidates}.").tag(
+        "unknown_id", beginning=beginning, candidates=_candidates(stored)
     )
 
 
@@ -144,10 +134,8 @@ def stored_hashes(connection: Connection) -> set[str]:
 
 def damage_error(what: str) -> StoreError:
     """Error for damaged rows."""
-    return StoreError(
-        "{what} is damaged in the store; `skisnow store verify` lists all damage. Restore a backup.",
-        code="damaged",
-        what=what,
+    return StoreError("{what} is damaged in the store; `skisnow store verify` lists all damage. Restore a backup.").tag(
+        "damaged", what=what
     )
 
 
@@ -265,10 +253,8 @@ def remove_campaign(connection: Connection, stored: StoredCampaign) -> None:
     Raises StoreError: the campaign has corrections.
     """
     if connection.execute(select(journal_entry.c.sequence).where(journal_entry.c.journal_id == stored.id)).first():
-        raise StoreError(
-            "The campaign {id} has corrections and was not removed. Export it instead.",
-            code="has_corrections",
-            id=stored.id,
+        raise StoreError("The campaign {id} has corrections and was not removed. Export it instead.").tag(
+            "has_corrections", id=stored.id
         )
     connection.execute(delete(campaign_file).where(campaign_file.c.campaign_id == stored.id))
     connection.execute(delete(campaign).where(campaign.c.id == stored.id))
@@ -293,10 +279,8 @@ def refuse_changed(paths: Sequence[str]) -> None:
     if paths:
         raise StoreError(
             "Changed while being read: {paths}; nothing was stored. Close the program that writes "
-            "there and add the folder again.",
-            code="changed_meanwhile",
-            paths=list(paths),
-        )
+            "there and add the folder again."
+        ).tag("changed_meanwhile", paths=list(paths))
 
 
 def store_campaign(
@@ -318,10 +302,8 @@ def store_campaign(
         return False
     if present is not None:
         raise StoreError(
-            "Another campaign in the store has the id {id} by chance; keep this one in another store.",
-            code="same_id",
-            id=id_,
-        )
+            "Another campaign in the store has the id {id} by chance; keep this one in another store."
+        ).tag("same_id", id=id_)
     connection.execute(
         insert(campaign).values(
             id=id_,

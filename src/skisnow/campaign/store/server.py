@@ -104,10 +104,8 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
             _require_unicode(connection, address)
             revision = _revision(connection, address)
         if revision is None and not create:
-            raise StoreError(
-                "There is no store at {address}; add a campaign first, or name another place.",
-                code="no_store",
-                address=address,
+            raise StoreError("There is no store at {address}; add a campaign first, or name another place.").tag(
+                "no_store", address=address
             )
         if needs_migration(revision, address):
             _bring_up_to_date(engine, address)
@@ -144,10 +142,8 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
     try:
         engine = create_engine(address.url, connect_args=defaults, pool_pre_ping=True, hide_parameters=True)
     except ModuleNotFoundError as missing:
-        raise StoreError(
-            "A store on a server needs {name}; install it with: pip install 'skisnow[postgresql]'",
-            code="not_installed",
-            name=missing.name,
+        raise StoreError("A store on a server needs {name}; install it with: pip install 'skisnow[postgresql]'").tag(
+            "not_installed", name=missing.name
         ) from None
 
     def set_up(connection: Any, _: object) -> None:
@@ -173,11 +169,8 @@ def _require_unicode(connection: Connection, address: ServerAddress) -> None:
     if encoding != "UTF8":
         raise StoreError(
             "The database {address} stores texts as {encoding}, which lacks letters; create one with: createdb "
-            "--encoding=UTF8 --template=template0 NAME",
-            code="wrong_encoding",
-            address=address,
-            encoding=encoding,
-        )
+            "--encoding=UTF8 --template=template0 NAME"
+        ).tag("wrong_encoding", address=address, encoding=encoding)
 
 
 def _revision(connection: Connection, address: ServerAddress) -> str | None:
@@ -191,16 +184,12 @@ def _revision(connection: Connection, address: ServerAddress) -> str | None:
         return None
     if tables.get("campaign") != MARK or "alembic_version" not in tables:
         raise StoreError(
-            "{address} contains tables of another program, not a store; create a separate database for the store.",
-            code="other_database",
-            address=address,
-        )
+            "{address} contains tables of another program, not a store; create a separate database for the store."
+        ).tag("other_database", address=address)
     versions = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
     if len(versions) != 1:
-        raise StoreError(
-            "{address} is damaged: its version is missing. Restore a backup.",
-            code="damaged",
-            address=address,
+        raise StoreError("{address} is damaged: its version is missing. Restore a backup.").tag(
+            "damaged", address=address
         )
     return str(versions[0])
 
@@ -217,12 +206,8 @@ def needs_migration(revision: str | None, place: object) -> bool:
     if revision is not None and not is_known(revision):
         raise StoreError(
             "{place} has schema {revision}, which is unknown to this version of skisnow; it reads {known}. Update "
-            "skisnow, or name another store.",
-            code="unknown_schema",
-            place=place,
-            revision=revision,
-            known=REVISION,
-        )
+            "skisnow, or name another store."
+        ).tag("unknown_schema", place=place, revision=revision, known=REVISION)
     return True
 
 
@@ -272,15 +257,15 @@ def store_place(place: Path | str | ServerAddress) -> StorePlace:
         return place
     if isinstance(place, Path):
         if re.match(r"postgres(ql)?:/", str(place), re.IGNORECASE):
-            raise StoreError(
-                "The address of a server is a text, not a path: give it as {form!r}.", code="not_an_address", form=_FORM
+            raise StoreError("The address of a server is a text, not a path: give it as {form!r}.").tag(
+                "not_an_address", form=_FORM
             )
         return place.absolute()
     if _SERVER.match(place):
         return ServerAddress(_server_url(place))
     if _SCHEME.match(place):
-        raise StoreError(
-            "A store is a file or {form}; another kind of address was given.", code="not_an_address", form=_FORM
+        raise StoreError("A store is a file or {form}; another kind of address was given.").tag(
+            "not_an_address", form=_FORM
         )
     return Path(place).absolute()
 
@@ -292,13 +277,11 @@ def _server_url(text: str) -> URL:
         raise StoreError(
             "The address of the server cannot be read; it has the form {form}, and any other character than "
             "A–Z, 0–9, - . _ ~ in a user's name or a password is written as % and two hexadecimal "
-            "digits.",
-            code="not_an_address",
-            form=_FORM,
-        ) from None
+            "digits."
+        ).tag("not_an_address", form=_FORM) from None
     if not url.database:
-        raise StoreError(
-            "The address of the server names no database; it has the form {form}.", code="no_database", form=_FORM
+        raise StoreError("The address of the server names no database; it has the form {form}.").tag(
+            "no_database", form=_FORM
         )
     return url
 

@@ -121,13 +121,11 @@ class Store(Shown):
             return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
         with file_errors(place, "cannot be used as a store"):
             if place.is_dir():
-                raise StoreError("{place} is a folder, not a store; name a file.", code="not_a_file", place=place)
+                raise StoreError("{place} is a folder, not a store; name a file.").tag("not_a_file", place=place)
             if not place.exists():
                 if not create:
-                    raise StoreError(
-                        "There is no store at {place}; add a campaign first, or name another file.",
-                        code="no_store",
-                        place=place,
+                    raise StoreError("There is no store at {place}; add a campaign first, or name another file.").tag(
+                        "no_store", place=place
                     )
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
@@ -188,24 +186,17 @@ class Store(Shown):
 
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
-            raise StoreError(
-                "{folder} is not a folder; name the folder with the campaign's files.",
-                code="no_folder",
-                folder=folder,
+            raise StoreError("{folder} is not a folder; name the folder with the campaign's files.").tag(
+                "no_folder", folder=folder
             )
         if isinstance(self.path, Path) and self.path.resolve().is_relative_to(folder.resolve()):
-            raise StoreError(
-                "The store {path} is in {folder} itself; keep it somewhere else.",
-                code="inside_folder",
-                path=self.path,
-                folder=folder,
+            raise StoreError("The store {path} is in {folder} itself; keep it somewhere else.").tag(
+                "inside_folder", path=self.path, folder=folder
             )
         files = list_files(folder)
         if not files:
-            raise StoreError(
-                "{folder} contains no file; name the folder with the campaign's files.",
-                code="no_files",
-                folder=folder,
+            raise StoreError("{folder} contains no file; name the folder with the campaign's files.").tag(
+                "no_files", folder=folder
             )
         return files
 

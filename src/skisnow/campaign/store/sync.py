@@ -107,8 +107,8 @@ def sync(
         transfers stay; another run continues.
     """
     if here.path == there.path:
-        raise StoreError(
-            "{path} cannot be synchronised with itself; name the group's store.", code="same_store", path=here.path
+        raise StoreError("{path} cannot be synchronised with itself; name the group's store.").tag(
+            "same_store", path=here.path
         )
     return _Sync(here, there).run(keep or {}, who, progress)
 
@@ -179,10 +179,8 @@ class _Sync:
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
                 raise StoreError(
                     "There is no open conflict {names}: one of its sides may have changed. Nothing was settled; "
-                    "synchronise without a choice to list the open conflicts.",
-                    code="unknown_conflict",
-                    names=list(unknown),
-                )
+                    "synchronise without a choice to list the open conflicts."
+                ).tag("unknown_conflict", names=list(unknown))
             sides = {id_: chosen.get(id_, chosen.get(ALL)) for id_ in open_}
             choices = [(open_[id_], side) for id_, side in sides.items() if side is not None]
             for divergence, side in choices:
@@ -325,12 +323,8 @@ def settle(here: Connection, there: Connection, divergence: Divergence, side: Si
     Raises StoreError: both cannot be kept.
     """
     if side not in divergence.choices:
-        raise StoreError(
-            "The conflict {id} cannot be settled by keeping {side}: {choices}.",
-            code="unknown_side",
-            id=divergence.id,
-            side=side,
-            choices=list(divergence.choices),
+        raise StoreError("The conflict {id} cannot be settled by keeping {side}: {choices}.").tag(
+            "unknown_side", id=divergence.id, side=side, choices=list(divergence.choices)
         )
     numbers = take_entries(there, here, divergence.journal_id, [entry.uid for entry in divergence.there])
     if divergence.subject[0] == DESCRIPTION:

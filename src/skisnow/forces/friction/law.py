@@ -47,20 +47,16 @@ class FrictionLaw(abc.ABC):
         """
         v = np.asarray(speed, float)
         if np.any(v < 0):
-            raise ParameterError(
-                "speed is {speed!r} m/s; a sliding speed is at least 0", code="out_of_range", speed=float(v.min())
+            raise ParameterError("speed is {speed!r} m/s; a sliding speed is at least 0").tag(
+                "out_of_range", speed=float(v.min())
             )
         mu = self._coefficient(v)
         if np.any(mu < 0):
             fastest = float(v.flat[int(np.argmin(mu))])
             raise ParameterError(
                 "{kind}: the coefficient of friction is negative at {fastest:g} m/s: {law!r} would push the ski; use "
-                "other parameters or lower speeds",
-                code="negative_friction",
-                kind=type(self).__name__,
-                fastest=fastest,
-                law=self,
-            )
+                "other parameters or lower speeds"
+            ).tag("negative_friction", kind=type(self).__name__, fastest=fastest, law=self)
         return mu
 
     def friction_force(self, normal_force: npt.ArrayLike, sliding_velocity: npt.ArrayLike) -> FloatArray:

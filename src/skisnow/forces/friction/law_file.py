@@ -48,11 +48,8 @@ class SnowState:
         require_declared(self)
         if self.liquid_water > 0.0 and self.temperature != 0.0:
             raise ParameterError(
-                "liquid_water_percent is {water:g} at a temperature_C of {temperature}; wet snow has 0 °C. Change one",
-                code="contradiction",
-                water=self.liquid_water,
-                temperature=self.temperature,
-            )
+                "liquid_water_percent is {water:g} at a temperature_C of {temperature}; wet snow has 0 °C. Change one"
+            ).tag("contradiction", water=self.liquid_water, temperature=self.temperature)
 
     @property
     def wetness(self) -> float:
@@ -86,20 +83,16 @@ class FrictionFile:
 
     def __post_init__(self) -> None:
         if len(self.speeds) != 2 or self.speeds[0] >= self.speeds[1]:
-            raise ParameterError(
-                "speed_m_per_s is {speeds}; allowed are two numbers, the slower one first",
-                code="out_of_range",
-                speeds=list(self.speeds),
+            raise ParameterError("speed_m_per_s is {speeds}; allowed are two numbers, the slower one first").tag(
+                "out_of_range", speeds=list(self.speeds)
             )
         places = [state.wetness for state in self.states]
         unknown = len(places) > 1 and any(state.temperature is None for state in self.states)
         if not places or unknown or any(second <= first for first, second in pairwise(places)):
             raise ParameterError(
                 "the states are at {places} from cold to wet (°C, then % of water); write one or more, each with a "
-                "temperature_C and warmer or wetter than the one before",
-                code="out_of_order",
-                places=places,
-            )
+                "temperature_C and warmer or wetter than the one before"
+            ).tag("out_of_order", places=places)
 
     def at(self, temperature: float | None, liquid_water: float = 0.0) -> WaterFilmFriction:
         """Law on a snow; beyond the states that of the nearest one.
@@ -120,10 +113,8 @@ class FrictionFile:
         if first.temperature is None:
             place = 0.0
         elif temperature is None:
-            raise ParameterError(
-                "{path} has states of the snow by temperature; give friction.temperature_C",
-                code="missing",
-                path=self.path,
+            raise ParameterError("{path} has states of the snow by temperature; give friction.temperature_C").tag(
+                "missing", path=self.path
             )
         else:
             place = SnowState(lubricated_friction=0.0, temperature=temperature, liquid_water=liquid_water).wetness
@@ -165,10 +156,8 @@ def read_friction_file(path: str | Path) -> FrictionFile:
     values = read_toml(path)
     tables = values.get("state", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise ParameterError(
-            "{path}: state is no list of tables. Write [[state]] above the keys of each state",
-            code="wrong_kind",
-            path=path,
+        raise ParameterError("{path}: state is no list of tables. Write [[state]] above the keys of each state").tag(
+            "wrong_kind", path=path
         )
     head = checked_table(FrictionFile, values, str(path), further=("state",))
     try:

@@ -216,10 +216,8 @@ class MeanPressurePoint(PointLaw):
         if not 1.0 <= self.unloading_ratio < np.inf:
             raise ParameterError(
                 "MeanPressurePoint: unloading_ratio is {unloading_ratio!r}; it must be finite and at least 1: "
-                "unloading softer than loading would give energy away",
-                code="not_a_number",
-                unloading_ratio=self.unloading_ratio,
-            )
+                "unloading softer than loading would give energy away"
+            ).tag("not_a_number", unloading_ratio=self.unloading_ratio)
         PRESSURE_SLOPE.warn_outside(self.pressure_slope, "MeanPressurePoint", stacklevel=3)
         PRESSURE_OFFSET.warn_outside(self.pressure_offset, "MeanPressurePoint", stacklevel=3)
 

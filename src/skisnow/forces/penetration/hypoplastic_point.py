@@ -66,10 +66,8 @@ class HypoplasticPoint(PointLaw):
         if not self.unloading_ratio >= 1.0:
             raise ParameterError(
                 "HypoplasticPoint: unloading_ratio k_u/H_V is {unloading_ratio!r}; it must be at least 1 (1 is "
-                "elastic, math.inf rigid-plastic): unloading softer than loading would give energy away",
-                code="out_of_range",
-                unloading_ratio=self.unloading_ratio,
-            )
+                "elastic, math.inf rigid-plastic): unloading softer than loading would give energy away"
+            ).tag("out_of_range", unloading_ratio=self.unloading_ratio)
         SNOW_HARDNESS.warn_outside(self.snow_hardness, "HypoplasticPoint", stacklevel=3)
 
     @property

@@ -30,11 +30,8 @@ class DeepeningPoint(PointLaw):
     def _require_unloading(self) -> None:
         if not 1.0 <= self.unloading_ratio < np.inf:
             raise ParameterError(
-                "{kind}: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite",
-                code="out_of_range",
-                kind=type(self).__name__,
-                unloading_ratio=self.unloading_ratio,
-            )
+                "{kind}: unloading_ratio is {unloading_ratio!r}; it must be at least 1 and finite"
+            ).tag("out_of_range", kind=type(self).__name__, unloading_ratio=self.unloading_ratio)
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stress`."""
@@ -183,11 +180,8 @@ class ProfilePoint(DeepeningPoint):
         self._require_unloading()
         if len(self.tops) != len(self.shares) or self.tops[0] != 0.0 or np.any(np.diff(self.tops) <= 0.0):
             raise ParameterError(
-                "ProfilePoint: tops are {tops}; they must rise from 0, one for each of {count} shares",
-                code="out_of_order",
-                tops=self.tops,
-                count=len(self.shares),
-            )
+                "ProfilePoint: tops are {tops}; they must rise from 0, one for each of {count} shares"
+            ).tag("out_of_order", tops=self.tops, count=len(self.shares))
 
     @property
     def bends(self) -> tuple[float, ...]:

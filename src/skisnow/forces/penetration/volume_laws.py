@@ -175,11 +175,6 @@ class BilinearLaw(PenetrationLaw):
             worst = float(angle.flat[int(np.argmin(value))])
             raise ParameterError(
                 "BilinearLaw: {name} = {at_zero:g} + {slope:g} ϑ is negative at ϑ = {worst:.4g} rad: the snow would "
-                "pull. Use the law where {name} ≥ 0, or coefficients that were fitted with that bound",
-                code="out_of_range",
-                name=name,
-                at_zero=at_zero,
-                slope=slope,
-                worst=worst,
-            )
+                "pull. Use the law where {name} ≥ 0, or coefficients that were fitted with that bound"
+            ).tag("out_of_range", name=name, at_zero=at_zero, slope=slope, worst=worst)
         return value

@@ -75,10 +75,8 @@ class MachiningShear(ShearLaw):
         require_not_below_zero(self, transverse_friction=self.transverse_friction)
         if not 0.0 <= self.least_shear_plane <= RIGHT_ANGLE / 2.0:
             raise ParameterError(
-                "MachiningShear: least_shear_plane is {least_shear_plane!r} rad; it must lie between 0 and π/4",
-                code="out_of_range",
-                least_shear_plane=self.least_shear_plane,
-            )
+                "MachiningShear: least_shear_plane is {least_shear_plane!r} rad; it must lie between 0 and π/4"
+            ).tag("out_of_range", least_shear_plane=self.least_shear_plane)
         FAILURE_SHEAR_STRESS.warn_outside(2.0 * self.dynamic_shear_strength, "MachiningShear, 2 S", stacklevel=3)
 
     @property
@@ -157,10 +155,8 @@ class IceCuttingShear(ShearLaw):
         if len({len(row) for row in rows}) != 1 or not rows[0] or not np.all(np.isfinite(rows)):
             raise ParameterError(
                 "IceCuttingShear: ice_coefficients are {rows!r}; they must be rows of finite numbers, equally long, "
-                "a row for each power of the depth from 1, a column for each power of the rake angle from 0",
-                code="not_a_number",
-                rows=rows,
-            )
+                "a row for each power of the depth from 1, a column for each power of the rake angle from 0"
+            ).tag("not_a_number", rows=rows)
 
     def thrust_force(
         self, edge_depth: npt.ArrayLike, edge_length: npt.ArrayLike, edge_angle: npt.ArrayLike
@@ -180,9 +176,6 @@ class IceCuttingShear(ShearLaw):
             worst = int(np.argmin(stress))
             raise ParameterError(
                 "IceCuttingShear: the coefficients give a negative force at {depth:.4g} m depth and an edge angle of "
-                "{edge_angle:.4g} rad: use them where the ice was measured",
-                code="negative_force",
-                depth=depth.flat[worst],
-                edge_angle=angle.flat[worst],
-            )
+                "{edge_angle:.4g} rad: use them where the ice was measured"
+            ).tag("negative_force", depth=depth.flat[worst], edge_angle=angle.flat[worst])
         return stress

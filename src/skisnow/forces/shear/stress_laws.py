@@ -114,10 +114,8 @@ class AngleShear(ShearLaw):
         if self.relative_decrease * RIGHT_ANGLE > 1.0:
             raise ParameterError(
                 "AngleShear: with a relative_decrease of {relative_decrease!r} per rad the stress is negative on an "
-                "upright edge; it must be at most 2/π = 0.637 per rad (Eqn 13: 0.266)",
-                code="out_of_range",
-                relative_decrease=self.relative_decrease,
-            )
+                "upright edge; it must be at most 2/π = 0.637 per rad (Eqn 13: 0.266)"
+            ).tag("out_of_range", relative_decrease=self.relative_decrease)
         FAILURE_SHEAR_STRESS.warn_outside(self.flat_shear_stress, "AngleShear", stacklevel=3)
 
     @classmethod
@@ -170,8 +168,9 @@ class DensityShear(ShearLaw):
             raise ParameterError(
                 "DensityShear: snow_density is {snow_density!r} kg/m³; Eqn 14 gives no strength at or below "
                 "{minimum:.1f} kg/m³, and ice has {ice_density:g} kg/m³; the equation was measured for {lowest:g} to "
-                "{highest:g} kg/m³",
-                code="out_of_range",
+                "{highest:g} kg/m³"
+            ).tag(
+                "out_of_range",
                 snow_density=self.snow_density,
                 minimum=minimum,
                 ice_density=ICE_DENSITY,
@@ -230,12 +229,8 @@ class NaturalDensityShear(ShearLaw):
             raise ParameterError(
                 "NaturalDensityShear: snow_density is {snow_density!r} kg/m³; the square (0.1027 ρ - 11.5323)² is 0 "
                 "at {least_density:.1f} kg/m³ and rises again below it, and no snow is denser than {ice_density:g} "
-                "kg/m³; give a density between them",
-                code="out_of_range",
-                snow_density=self.snow_density,
-                least_density=LEAST_DENSITY,
-                ice_density=ICE_DENSITY,
-            )
+                "kg/m³; give a density between them"
+            ).tag("out_of_range", snow_density=self.snow_density, least_density=LEAST_DENSITY, ice_density=ICE_DENSITY)
         NATURAL_SNOW_DENSITY.warn_outside(self.snow_density, "NaturalDensityShear", stacklevel=3)
 
     @property

@@ -73,12 +73,12 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
 def sledge_model(scenario: Scenario, *, step: float) -> Model:
     """The sledge of a scenario on its flexible skis."""
     if scenario.boots is not None:
-        raise ParameterError(
-            "boots.file: the boots of an FMU are fixed to the sledge; remove boots.file", code="not_supported"
+        raise ParameterError("boots.file: the boots of an FMU are fixed to the sledge; remove boots.file").tag(
+            "not_supported"
         )
     if scenario.skier is not None:
-        raise ParameterError(
-            "skier: an FMU contains a sledge with fixed boots; use a scenario without a skier", code="not_supported"
+        raise ParameterError("skier: an FMU contains a sledge with fixed boots; use a scenario without a skier").tag(
+            "not_supported"
         )
     setup = laid_out(scenario)
     _require_own_laws(setup.snow)
@@ -114,8 +114,8 @@ def _starts(variables: tuple[Variable, ...]) -> FloatArray:
 
 def _require_own_laws(snow: SnowField) -> None:
     if snow.penetration is not None or snow.friction_in_python is not None or snow.shear_in_python is not None:
-        raise ParameterError(
-            "an FMU contains no Python: it accepts the built-in laws, not a user-defined one", code="no_data"
+        raise ParameterError("an FMU contains no Python: it accepts the built-in laws, not a user-defined one").tag(
+            "no_data"
         )
 
 

@@ -60,7 +60,7 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     """
     _require(path, fmi)
     if skis not in (1, 2):
-        raise ParameterError("skis is {skis!r}; an FMU of the contact has 1 or 2", code="out_of_range", skis=skis)
+        raise ParameterError("skis is {skis!r}; an FMU of the contact has 1 or 2").tag("out_of_range", skis=skis)
     return _write(contact_model(scenario, skis=skis, step=STEP["contact"]), Path(path), fmi)
 
 
@@ -100,12 +100,12 @@ def _require(path: str | Path, fmi: int) -> None:
     """Raise errors of the inputs before the work."""
     require_ending(path, ENDING)
     if fmi not in FOLDERS:
-        raise ParameterError(
-            "fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard", code="unknown_name", fmi=fmi
+        raise ParameterError("fmi is {fmi!r}; FMUs are written for version 2 or 3 of the standard").tag(
+            "unknown_name", fmi=fmi
         )
     if not sys.platform.startswith("linux") or platform.machine() != "x86_64":
-        raise ParameterError(
-            "FMUs are written on Linux on x86-64, the only platform of their library", code="not_supported"
+        raise ParameterError("FMUs are written on Linux on x86-64, the only platform of their library").tag(
+            "not_supported"
         )
 
 

@@ -56,8 +56,8 @@ def read_c3d(path: str | Path) -> Markers:
     except GivenError:
         raise
     except ParameterError as error:
-        raise ParameterError(
-            "{path} cannot be read as .c3d: {error}. Export it again", code="cannot_read", path=path, error=error
+        raise ParameterError("{path} cannot be read as .c3d: {error}. Export it again").tag(
+            "cannot_read", path=path, error=error
         ) from error
     about = {name: values for (group, name), values in content.parameters.items() if group == "POINT"}
     rate, first, points = content.rate, content.first_frame, content.points
@@ -66,27 +66,17 @@ def read_c3d(path: str | Path) -> Markers:
     names = labels[: points.shape[1]]
     columns = [i for i, name in enumerate(names) if not _is_quantity(name, quantities)]
     if not columns:
-        raise ParameterError(
-            "{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.",
-            code="out_of_range",
-            path=path,
+        raise ParameterError("{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.").tag(
+            "out_of_range", path=path
         )
     unknown = next((i for i in columns if units[i] not in METRES), None)
     if unknown is not None:
         raise ParameterError(
-            "{path}: marker {name} is in {unit!r}. Allowed: {metres}. Export the markers in one of these units.",
-            code="out_of_range",
-            path=path,
-            name=names[unknown],
-            unit=units[unknown],
-            metres=list(METRES),
-        )
+            "{path}: marker {name} is in {unit!r}. Allowed: {metres}. Export the markers in one of these units."
+        ).tag("out_of_range", path=path, name=names[unknown], unit=units[unknown], metres=list(METRES))
     if not (np.isfinite(rate) and rate > 0.0):
-        raise ParameterError(
-            "{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.",
-            code="out_of_range",
-            path=path,
-            rate=rate,
+        raise ParameterError("{path}: its rate is {rate:g} Hz. Allowed: above 0. Export the file again.").tag(
+            "out_of_range", path=path, rate=rate
         )
     sizes = np.array([METRES[units[i]] for i in columns])
     place = points[:, columns] * sizes[:, None]
@@ -96,7 +86,7 @@ def read_c3d(path: str | Path) -> Markers:
     try:
         return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
     except ParameterError as error:
-        raise ParameterError("{path}: {problem}", code="damaged", path=path, problem=error) from error
+        raise ParameterError("{path}: {problem}").tag("damaged", path=path, problem=error) from error
 
 
 def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]]:
@@ -146,13 +136,8 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     if first < 0 or first + n > MOST_FRAMES:
         raise ParameterError(
             "{path}: the markers' frames are {first} to {last}; .c3d counts frames from 0 to {most_frames}: shift "
-            "the times, or write a shorter stretch",
-            code="out_of_range",
-            path=path,
-            first=first,
-            last=first + n - 1,
-            most_frames=MOST_FRAMES - 1,
-        )
+            "the times, or write a shorter stretch"
+        ).tag("out_of_range", path=path, first=first, last=first + n - 1, most_frames=MOST_FRAMES - 1)
     made: Any = ezc3d.c3d()
     point = made["parameters"]["POINT"]
     point["RATE"]["value"], point["UNITS"]["value"] = [rate], [WRITTEN]
@@ -170,8 +155,8 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
             made.write(str(place))
             content = place.read_bytes()
     except (OSError, RuntimeError, ValueError) as error:
-        raise OutputError(
-            "{path} cannot be written as .c3d: {error}", code="cannot_write", path=path, error=error
+        raise OutputError("{path} cannot be written as .c3d: {error}").tag(
+            "cannot_write", path=path, error=error
         ) from error
     write_file(path, content)
 
@@ -182,12 +167,8 @@ def _put_forces(made: Any, path: Path, markers: Markers, forces: MotionTable, st
     often, rest = divmod(len(forces.time), n)
     if rest or not often:
         raise ParameterError(
-            "{path}: forces have {n_time} rows for {n} frames; there must be a whole number for each frame",
-            code="wrong_kind",
-            path=path,
-            n_time=len(forces.time),
-            n=n,
-        )
+            "{path}: forces have {n_time} rows for {n} frames; there must be a whole number for each frame"
+        ).tag("wrong_kind", path=path, n_time=len(forces.time), n=n)
     rate = often * markers.rate
     _require_frames(path, "forces", forces.time, start, rate)
     _require_names(path, "forces", tuple(forces.columns))
@@ -205,25 +186,14 @@ def _require_frames(path: Path, what: str, time: FloatArray, start: float, rate:
         worst = int(np.argmax(off > OFF_FRAME))
         raise ParameterError(
             "{path}: {field} at {time!r} s are not at a frame of {rate:g} Hz from {start:g} s on; .c3d has one rate: "
-            "bring them to it first",
-            code="wrong_rate",
-            path=path,
-            field=what,
-            time=float(time[worst]),
-            rate=rate,
-            start=start,
-        )
+            "bring them to it first"
+        ).tag("wrong_rate", path=path, field=what, time=float(time[worst]), rate=rate, start=start)
 
 
 def _require_names(path: Path, what: str, names: tuple[str, ...]) -> None:
     if not 0 < len(names) <= MOST_NAMES:
-        raise ParameterError(
-            "{path}: {field} has {count} names; .c3d allows 1 to {limit}",
-            code="too_many",
-            path=path,
-            count=len(names),
-            field=what,
-            limit=MOST_NAMES,
+        raise ParameterError("{path}: {field} has {count} names; .c3d allows 1 to {limit}").tag(
+            "too_many", path=path, count=len(names), field=what, limit=MOST_NAMES
         )
 
 
@@ -266,19 +236,17 @@ def c3d_content(data: bytes) -> C3dContent:
     try:
         return _content(data)
     except (struct.error, IndexError) as error:
-        raise ParameterError("the file is cut off within its head", code="damaged") from error
+        raise ParameterError("the file is cut off within its head").tag("damaged") from error
 
 
 def _content(data: bytes) -> C3dContent:
     start = BLOCK * (data[0] - 1)
     if data[1] != _KEY or start < BLOCK:
-        raise ParameterError("the file does not begin as a .c3d file does", code="wrong_kind")
+        raise ParameterError("the file does not begin as a .c3d file does").tag("wrong_kind")
     processor = data[start + 3]
     if processor not in _ORDERS:
-        raise ParameterError(
-            "the processor has the number {processor}; it must be 84, 85 or 86",
-            code="out_of_range",
-            processor=processor,
+        raise ParameterError("the processor has the number {processor}; it must be 84, 85 or 86").tag(
+            "out_of_range", processor=processor
         )
     parameters = dict(_parameters(data, start + 4, processor))
     order = _ORDERS[processor]
@@ -308,7 +276,7 @@ def _parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[st
         name = data[at + 2 : ends].decode("latin-1").upper()
         (distance,) = struct.unpack_from(f"{_ORDERS[processor]}h", data, ends)
         if group == 0 or distance < 0 or ends + distance > len(data):
-            raise ParameterError("the entry {name!r} of the parameters is damaged", code="damaged", name=name[:20])
+            raise ParameterError("the entry {name!r} of the parameters is damaged").tag("damaged", name=name[:20])
         if group < 0:
             groups[-group] = name
         else:
@@ -323,20 +291,16 @@ def _values(data: bytes, name: str, at: int, processor: int) -> Values:
     """The values of a parameter; characters as texts along its first dimension."""
     kind, count = struct.unpack_from("bB", data, at)
     if kind not in _CODES or count > _MOST_DIMENSIONS:
-        raise ParameterError(
-            "the parameter {name!r} is damaged (type {kind}, {count} dimensions)",
-            code="damaged",
-            name=name[:20],
-            kind=kind,
-            count=count,
+        raise ParameterError("the parameter {name!r} is damaged (type {kind}, {count} dimensions)").tag(
+            "damaged", name=name[:20], kind=kind, count=count
         )
     dimensions = struct.unpack_from(f"{count}B", data, at + 2)
     begin, code = at + 2 + count, _ORDERS[processor] + _CODES[kind]
     size = np.dtype(code).itemsize * math.prod(dimensions)
     content = data[begin : begin + size]
     if len(content) < size:
-        raise ParameterError(
-            "the parameter {name!r} has {size} bytes, more than there are", code="damaged", name=name[:20], size=size
+        raise ParameterError("the parameter {name!r} has {size} bytes, more than there are").tag(
+            "damaged", name=name[:20], size=size
         )
     if kind == -1:
         width = dimensions[0] if dimensions else 1
@@ -362,12 +326,8 @@ def _points(data: bytes, begin: int, counts: tuple[int, int, int], scale: float,
     width = _COORDINATES * count + analogs
     size = bytes_each * width * frames
     if frames < 1 or begin < BLOCK or begin + size > len(data):
-        raise ParameterError(
-            "{frames} frames of {width} numbers need {size} bytes, more than there are",
-            code="damaged",
-            frames=frames,
-            width=width,
-            size=size,
+        raise ParameterError("{frames} frames of {width} numbers need {size} bytes, more than there are").tag(
+            "damaged", frames=frames, width=width, size=size
         )
     content = data[begin : begin + size]
     with np.errstate(invalid="ignore"):  # a damaged number may be a signalling NaN

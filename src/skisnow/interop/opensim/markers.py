@@ -46,14 +46,11 @@ class Markers(Shown):
     def __post_init__(self) -> None:
         require_rising("markers", self.time)
         if np.shape(self.place) != (len(self.time), len(self.names), 3):
-            raise ParameterError(
-                "markers: place has shape {shape}; it must be {needed}",
-                code="wrong_shape",
-                shape=str(np.shape(self.place)),
-                needed=str((len(self.time), len(self.names), 3)),
+            raise ParameterError("markers: place has shape {shape}; it must be {needed}").tag(
+                "wrong_shape", shape=str(np.shape(self.place)), needed=str((len(self.time), len(self.names), 3))
             )
         if len(set(self.names)) < len(self.names):
-            raise ParameterError("markers: a name is there twice; each marker needs a separate name", code="repeated")
+            raise ParameterError("markers: a name is there twice; each marker needs a separate name").tag("repeated")
         require_range("rate", self.rate, 0.0, np.inf, above=True, below=True)
 
     def _facts(self) -> Facts:
@@ -66,8 +63,8 @@ class Markers(Shown):
         Raises ParameterError: unknown name.
         """
         if name not in self.names:
-            raise ParameterError(
-                "unknown marker {name}; the markers are {names}", code="unknown_name", name=name, names=list(self.names)
+            raise ParameterError("unknown marker {name}; the markers are {names}").tag(
+                "unknown_name", name=name, names=list(self.names)
             )
         return self.place[:, self.names.index(name)]
 
@@ -81,19 +78,13 @@ def read_trc(path: str | Path) -> Markers:
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     if len(lines) < _HEAD or not lines[0].startswith("PathFileType"):
         raise ParameterError(
-            "{path} does not begin with PathFileType and a head of five lines, as a .trc file does",
-            code="wrong_kind",
-            path=path,
-        )
+            "{path} does not begin with PathFileType and a head of five lines, as a .trc file does"
+        ).tag("wrong_kind", path=path)
     head = dict(zip(lines[1].split(), lines[2].split(), strict=False))
     unit = head.get("Units", "")
     if unit not in METRES:
-        raise ParameterError(
-            "{path}, line 3: Units is {unit!r}; it must be one of {metres}",
-            code="wrong_kind",
-            path=path,
-            unit=unit,
-            metres=list(METRES),
+        raise ParameterError("{path}, line 3: Units is {unit!r}; it must be one of {metres}").tag(
+            "wrong_kind", path=path, unit=unit, metres=list(METRES)
         )
     names = tuple(word.strip() for word in lines[3].split("\t")[2:] if word.strip())
     rows = [(i + 1, line) for i, line in enumerate(lines[_HEAD:], start=_HEAD) if line.strip()]
@@ -105,7 +96,7 @@ def read_trc(path: str | Path) -> Markers:
     except ParameterError as error:
         raise error.at(path) from error
     except ValueError as error:
-        raise ParameterError("{path}: {reason}", code="not_a_number", path=path, reason=error) from error
+        raise ParameterError("{path}: {reason}").tag("not_a_number", path=path, reason=error) from error
 
 
 def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> list[float]:
@@ -114,12 +105,8 @@ def _row(path: str | Path, number: int, line: str, names: tuple[str, ...]) -> li
     wanted = 2 + 3 * len(names)
     cells += [""] * (wanted - len(cells))
     if any(cells[wanted:]):
-        raise ParameterError(
-            "{path}, line {number}: more cells than {n_names} markers have",
-            code="wrong_number_of_cells",
-            path=path,
-            number=number,
-            n_names=len(names),
+        raise ParameterError("{path}, line {number}: more cells than {n_names} markers have").tag(
+            "wrong_number_of_cells", path=path, number=number, n_names=len(names)
         )
     values = []
     for place, cell in enumerate(cells[1:wanted]):
@@ -212,24 +199,15 @@ def _seen(markers: Markers, name: str) -> FloatArray:
     if unseen.any():
         first = float(markers.time[int(np.argmax(unseen))])
         raise ParameterError(
-            "marker {name} was not seen in {count} frames, first at {first:g} s; fill the gaps before",
-            code="gap",
-            name=name,
-            count=int(unseen.sum()),
-            first=first,
-        )
+            "marker {name} was not seen in {count} frames, first at {first:g} s; fill the gaps before"
+        ).tag("gap", name=name, count=int(unseen.sum()), first=first)
     far = ~(np.abs(place) <= LARGEST).all(axis=1)
     if far.any():
         first = float(markers.time[int(np.argmax(far))])
         raise ParameterError(
             "marker {name} is beyond ±{largest:g} m in {count} frames, first at {first:g} s. Correct the numbers, or "
-            "the unit of the file.",
-            code="out_of_range",
-            name=name,
-            largest=LARGEST,
-            count=int(far.sum()),
-            first=first,
-        )
+            "the unit of the file."
+        ).tag("out_of_range", name=name, largest=LARGEST, count=int(far.sum()), first=first)
     return place
 
 
@@ -237,12 +215,8 @@ def _unit(vectors: FloatArray, of: BootMarkers) -> FloatArray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not np.all(length > 1e-9):
         raise ParameterError(
-            "markers {heel}, {toe} and {left} lie on one line; three that span a plane are needed",
-            code="out_of_range",
-            heel=of.heel,
-            toe=of.toe,
-            left=of.left,
-        )
+            "markers {heel}, {toe} and {left} lie on one line; three that span a plane are needed"
+        ).tag("out_of_range", heel=of.heel, toe=of.toe, left=of.left)
     return np.asarray(vectors / length)
 
 

@@ -44,12 +44,8 @@ class MotionTable(Shown):
         require_rising("table", self.time)
         for name, values in self.columns.items():
             if np.shape(values) != np.shape(self.time):
-                raise ParameterError(
-                    "column {name} has shape {shape}, time {shape_2}",
-                    code="wrong_shape",
-                    name=name,
-                    shape=str(np.shape(values)),
-                    shape_2=str(np.shape(self.time)),
+                raise ParameterError("column {name} has shape {shape}, time {shape_2}").tag(
+                    "wrong_shape", name=name, shape=str(np.shape(values)), shape_2=str(np.shape(self.time))
                 )
 
     def _facts(self) -> Facts:
@@ -59,20 +55,13 @@ class MotionTable(Shown):
 def require_rising(what: str, time: FloatArray) -> None:
     """ParameterError if the time is missing or does not rise."""
     if np.ndim(time) != 1 or not len(time):
-        raise ParameterError(
-            "{field}: time has shape {shape}; there must be one row or more",
-            code="wrong_shape",
-            field=what,
-            shape=str(np.shape(time)),
+        raise ParameterError("{field}: time has shape {shape}; there must be one row or more").tag(
+            "wrong_shape", field=what, shape=str(np.shape(time))
         )
     if not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
         row = int(np.argmin(np.append(True, np.diff(time) > 0.0)))
-        raise ParameterError(
-            "{field}: time of row {row} is {time:g} s; it must be finite and rise",
-            code="not_a_number",
-            field=what,
-            row=row + 1,
-            time=time[row],
+        raise ParameterError("{field}: time of row {row} is {time:g} s; it must be finite and rise").tag(
+            "not_a_number", field=what, row=row + 1, time=time[row]
         )
 
 
@@ -85,22 +74,15 @@ def read_motion(path: str | Path) -> MotionTable:
     lines = plain_text(path, most_bytes=MOST_BYTES).splitlines()
     ends = next((i for i, line in enumerate(lines) if line.strip().lower() == HEAD_END), None)
     if ends is None or ends + 1 >= len(lines):
-        raise ParameterError(
-            "{path} has no line {head_end} with a table behind it; a .mot or .sto file has one",
-            code="no_data",
-            path=path,
-            head_end=HEAD_END,
+        raise ParameterError("{path} has no line {head_end} with a table behind it; a .mot or .sto file has one").tag(
+            "no_data", path=path, head_end=HEAD_END
         )
     head = head_of_motion(lines[:ends])
     name = "" if "=" in lines[0] else lines[0].strip()
     names = lines[ends + 1].split()
     if not names or names[0].lower() != _CLOCK or len(set(names)) < len(names):
-        raise ParameterError(
-            "{path}, line {line}: the columns must begin with {clock}, each name once",
-            code="out_of_range",
-            path=path,
-            line=ends + 2,
-            clock=_CLOCK,
+        raise ParameterError("{path}, line {line}: the columns must begin with {clock}, each name once").tag(
+            "out_of_range", path=path, line=ends + 2, clock=_CLOCK
         )
     first = ends + 2
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
@@ -117,13 +99,8 @@ def read_motion(path: str | Path) -> MotionTable:
 
 def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
     if len(cells) != len(names):
-        raise ParameterError(
-            "{path}, line {number}: {n_cells} cells for {n_names} names of columns",
-            code="wrong_number_of_cells",
-            path=path,
-            number=number,
-            n_cells=len(cells),
-            n_names=len(names),
+        raise ParameterError("{path}, line {number}: {n_cells} cells for {n_names} names of columns").tag(
+            "wrong_number_of_cells", path=path, number=number, n_cells=len(cells), n_names=len(names)
         )
     return [number_of(cell, f"{path}, line {number}, column {name}") for name, cell in zip(names, cells, strict=True)]
 
@@ -133,8 +110,8 @@ def number_of(cell: str, where: str) -> float:
     try:
         return float(cell)
     except ValueError:
-        raise ParameterError(
-            "{where}: {cell!r} is not a number; write one", code="not_a_number", where=where, cell=cell
+        raise ParameterError("{where}: {cell!r} is not a number; write one").tag(
+            "not_a_number", where=where, cell=cell
         ) from None
 
 

@@ -110,10 +110,8 @@ def write_report(
     if not isinstance(analysis, Analysis):
         raise ParameterError(
             "a report is written of an analysis, into a folder: write_report(analyse(campaign), folder); given is a "
-            "{kind}",
-            code="wrong_type",
-            kind=type(analysis).__name__,
-        )
+            "{kind}"
+        ).tag("wrong_type", kind=type(analysis).__name__)
     require_language(language)
     report = progress or silent
     out = Path(out)

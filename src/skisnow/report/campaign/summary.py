@@ -231,17 +231,14 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
 
     drawers = {drawer.__name__: drawer for drawer in drawers_of(analysis.campaign)}
     if what not in drawers:
-        raise ParameterError(
-            "Unknown figure {what!r} of an analysis. {names}",
-            code="unknown_figure",
-            what=what,
-            names=nearest(what, drawers),
+        raise ParameterError("Unknown figure {what!r} of an analysis. {names}").tag(
+            "unknown_figure", what=what, names=nearest(what, drawers)
         )
     data = ReportData(analysis)
     with journal_style():
         drawing = drawers[what](data, site_styles(data))
     if not isinstance(drawing, Drawing):
-        raise ParameterError("The campaign has no data for the figure {what}.", code="no_data", what=what)
+        raise ParameterError("The campaign has no data for the figure {what}.").tag("no_data", what=what)
     return drawing.figure
 
 
@@ -249,8 +246,8 @@ def analysis_dataframe(analysis: Analysis, kind: str) -> DataFrame:
     """One row per experiment; see `Analysis.to_dataframe`."""
     pandas = needed("pandas", extra="pandas", what=Message("An analysis as a DataFrame"))
     if kind not in KINDS:
-        raise ParameterError(
-            "No experiments {kind!r}. {names}", code="unknown_kind", kind=kind, names=nearest(kind, KINDS)
+        raise ParameterError("No experiments {kind!r}. {names}").tag(
+            "unknown_kind", kind=kind, names=nearest(kind, KINDS)
         )
     return pandas.DataFrame(_rows(analysis, kind))
 

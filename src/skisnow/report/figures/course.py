@@ -129,8 +129,8 @@ def run_course(run: Run) -> Figure:
     result = run_gates(run)
     if result is None:
         raise ParameterError(
-            "the run has no course, or ended before its first step; give the scenario course.file", code="no_course"
-        )
+            "the run has no course, or ended before its first step; give the scenario course.file"
+        ).tag("no_course")
     level = isinstance(run.scenario.slope, Plane)
     words = Message("distance down the fall line $x$ (m)") if level else Message("horizontal distance $x$ (m)")
     label = Message("edge angle (°)")

@@ -96,11 +96,8 @@ def require_drawable(path: Path) -> None:
     Raises OutputError: the folder cannot be created or written.
     """
     if path.suffix.lower() not in SUFFIXES:
-        raise ParameterError(
-            "{path}: a figure is a file that ends in {suffixes}. Change its ending",
-            code="unknown_ending",
-            path=path,
-            suffixes=list(SUFFIXES),
+        raise ParameterError("{path}: a figure is a file that ends in {suffixes}. Change its ending").tag(
+            "unknown_ending", path=path, suffixes=list(SUFFIXES)
         )
     require_writable(path.parent)
 

@@ -164,17 +164,12 @@ _FIGURES: Final = {
 def run_figure(run: Run, what: str) -> Figure:
     """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
     if what not in _FIGURES:
-        raise ParameterError(
-            "unknown figure {figure!r} of a run. {nearest}",
-            code="unknown_figure",
-            figure=what,
-            nearest=nearest(what, _FIGURES),
+        raise ParameterError("unknown figure {figure!r} of a run. {nearest}").tag(
+            "unknown_figure", figure=what, nearest=nearest(what, _FIGURES)
         )
     if len(run.time) < 2:
-        raise ParameterError(
-            "the run ended before its first step ({outcome}); no figure can be drawn",
-            code="nothing_to_draw",
-            outcome=run.outcome,
+        raise ParameterError("the run ended before its first step ({outcome}); no figure can be drawn").tag(
+            "nothing_to_draw", outcome=run.outcome
         )
     with journal_style():
         return _FIGURES[what].draw(run)

@@ -87,11 +87,8 @@ def link_replay(folder: str | Path) -> Path | None:
     try:
         page = plain_text(path, most_bytes=MOST_BYTES)
     except GivenError as error:
-        raise OutputError(
-            "{path} cannot be read: {error}. The replay is written; the report has no link",
-            code="cannot_read",
-            path=path,
-            error=error,
+        raise OutputError("{path} cannot be read: {error}. The replay is written; the report has no link").tag(
+            "cannot_read", path=path, error=error
         ) from error
     linked = with_link(page)
     if linked == page:

@@ -74,7 +74,7 @@ def file_of_track(path: Path, name: str, file: str) -> str:
     summary = track_summary(replace(read_track(path), name=name))
     text = {TURNS_FILE: turns_csv, GPX_FILE: track_gpx}[file](summary)
     if text is None:
-        raise ParameterError(
-            "{track} has no latitude and longitude, which GPX requires. Use its CSV", code="no_origin", track=name
+        raise ParameterError("{track} has no latitude and longitude, which GPX requires. Use its CSV").tag(
+            "no_origin", track=name
         )
     return text

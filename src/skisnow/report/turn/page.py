@@ -53,12 +53,8 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     """
     if len(chain.runs) < 2 or len(chain.ensemble) < FEWEST:
         raise ParameterError(
-            "there are {contacts} contacts and {runs} runs of the ensemble; the report needs 2 and {fewest} at least",
-            code="too_few_runs",
-            contacts=len(chain.runs),
-            runs=len(chain.ensemble),
-            fewest=FEWEST,
-        )
+            "there are {contacts} contacts and {runs} runs of the ensemble; the report needs 2 and {fewest} at least"
+        ).tag("too_few_runs", contacts=len(chain.runs), runs=len(chain.ensemble), fewest=FEWEST)
     require_language(language)
     folder = Path(folder)
     require_writable(folder)

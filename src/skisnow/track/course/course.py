@@ -141,37 +141,27 @@ class Course(Shown):
         require_choice("axes", self.axes, get_args(CourseAxes))
         if len(self.gates) < FEWEST_GATES:
             raise ParameterError(
-                "a course needs {fewest} gates or more, it has {count}: its direction comes from them",
-                code="too_few_gates",
-                fewest=FEWEST_GATES,
-                count=len(self.gates),
-            )
+                "a course needs {fewest} gates or more, it has {count}: its direction comes from them"
+            ).tag("too_few_gates", fewest=FEWEST_GATES, count=len(self.gates))
         for before, gate in zip(self.gates, self.gates[1:], strict=False):
             if before.turning == gate.turning:
-                raise ParameterError(
-                    "the gates {first} and {second} are at one place; move one, or drop it",
-                    code="same_place",
-                    first=before.name,
-                    second=gate.name,
+                raise ParameterError("the gates {first} and {second} are at one place; move one, or drop it").tag(
+                    "same_place", first=before.name, second=gate.name
                 )
         name, count = Counter(gate.name for gate in self.gates).most_common(1)[0]
         if count > 1:
-            raise ParameterError(
-                "two gates are called {name!r}; give each a different name or number", code="repeated_name", name=name
+            raise ParameterError("two gates are called {name!r}; give each a different name or number").tag(
+                "repeated_name", name=name
             )
         for gate in self.gates:
             if not max(map(abs, (*gate.turning, *(gate.outer or ())))) <= FARTHEST:
                 raise ParameterError(
                     "gate {name} is at {place}. Allowed: coordinates of finite numbers, at most {farthest:g} m. "
-                    "Correct them, or their unit",
-                    code="not_a_number",
-                    name=gate.name,
-                    place=gate.turning,
-                    farthest=FARTHEST,
-                )
+                    "Correct them, or their unit"
+                ).tag("not_a_number", name=gate.name, place=gate.turning, farthest=FARTHEST)
         for gate, line, along in zip(self.gates, self.lines, self._chords(), strict=True):
             if float(line.along @ along) < AGAINST:
-                raise ParameterError(_WRONG_SIDE[gate.side], code="wrong_side", name=gate.name)
+                raise ParameterError(_WRONG_SIDE[gate.side]).tag("wrong_side", name=gate.name)
 
     @property
     def lines(self) -> tuple[GateLine, ...]:
@@ -185,10 +175,8 @@ class Course(Shown):
         size = np.linalg.norm(chord, axis=1)
         if not size.min() > 0.0:
             at = int(np.argmin(size))
-            raise ParameterError(
-                "the gates before and behind {name} are at one place; move one",
-                code="same_place",
-                name=self.gates[at].name,
+            raise ParameterError("the gates before and behind {name} are at one place; move one").tag(
+                "same_place", name=self.gates[at].name
             )
         return np.asarray(chord / size[:, None])
 
@@ -292,13 +280,10 @@ class Gate(ShownFields):
         require_choice(f"gate {self.name}: side", self.side, get_args(Side))
         for pole, place in (("turning", self.turning), ("outer", self.outer)):
             if place is not None and not all(math.isfinite(coordinate) for coordinate in place):
-                raise ParameterError(_NOT_FINITE[pole], code="not_a_number", name=self.name, place=place)
+                raise ParameterError(_NOT_FINITE[pole]).tag("not_a_number", name=self.name, place=place)
         if self.outer is not None and not self.width > 0.0:
-            raise ParameterError(
-                "gate {name}: both poles are at {turning}; move one, or remove the outer pole",
-                code="same_place",
-                name=self.name,
-                turning=self.turning,
+            raise ParameterError("gate {name}: both poles are at {turning}; move one, or remove the outer pole").tag(
+                "same_place", name=self.name, turning=self.turning
             )
 
     @property

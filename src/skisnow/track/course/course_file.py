@@ -78,10 +78,8 @@ def read_course(
         "source": name, "discipline": discipline, "fall_line_azimuth_deg": fall_line_azimuth_deg,
     }  # fmt: skip
     if (latitude_deg is None) != (longitude_deg is None):
-        raise ParameterError(
-            "{path}: latitude and longitude of the origin go together; give both, or neither",
-            code="half_place",
-            path=path,
+        raise ParameterError("{path}: latitude and longitude of the origin go together; give both, or neither").tag(
+            "half_place", path=path
         )
     try:
         if path.suffix.lower() != ".gpx":
@@ -128,7 +126,7 @@ def _geodetic_course(
     waypoints: list[Waypoint], latitude_deg: float | None, longitude_deg: float | None, options: dict[str, Any]
 ) -> Course:
     if not waypoints:
-        raise ParameterError("there is no waypoint; write one for each gate, in order", code="no_waypoint")
+        raise ParameterError("there is no waypoint; write one for each gate, in order").tag("no_waypoint")
     first = waypoints[0]
     latitude = first.latitude_deg if latitude_deg is None else latitude_deg
     longitude = first.longitude_deg if longitude_deg is None else longitude_deg
@@ -142,11 +140,8 @@ def _geodetic_course(
         if side is None:
             raise ParameterError(
                 "waypoint {row}, {name!r}, states no side, and the gates are so straight there that their line does "
-                "not determine it either. Write left or right into its type",
-                code="no_side",
-                row=waypoint.row,
-                name=waypoint.name,
-            )
+                "not determine it either. Write left or right into its type"
+            ).tag("no_side", row=waypoint.row, name=waypoint.name)
         sides.append(side)
         if waypoint.side is None:
             assumed.append(waypoint.name)
@@ -196,10 +191,8 @@ def on_slope(course: Course, *, slope_angle: float | None) -> Course:
     if course.fall_line_azimuth_deg is None:
         raise ParameterError(
             "{source}: its gates are in degrees; give course.fall_line_azimuth_deg, the compass direction in which x "
-            "points, and course.latitude_deg and course.longitude_deg of x = y = 0",
-            code="no_azimuth",
-            source=course.source,
-        )
+            "points, and course.latitude_deg and course.longitude_deg of x = y = 0"
+        ).tag("no_azimuth", source=course.source)
     angle = slope_angle or 0.0
     axes = slope_axes(course.fall_line_azimuth_deg * DEGREE, angle)
 
@@ -241,8 +234,8 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
     try:
         root = xml_tree(data.lstrip())
     except GivenError as error:
-        raise ParameterError(
-            "{path} is not a readable GPX file ({error}); export it again", code="not_gpx", path=path, error=error
+        raise ParameterError("{path} is not a readable GPX file ({error}); export it again").tag(
+            "not_gpx", path=path, error=error
         ) from error
     points = root.every("wpt") if root.name == "gpx" else ()
     return [_waypoint(path, row, point) for row, point in enumerate(points, start=1)]
@@ -266,15 +259,8 @@ def _number(path: str | Path, row: int, what: str, text: str | None, limit: floa
     if (math.isnan(value) and what == "ele") or abs(value) <= limit:
         return value
     raise ParameterError(
-        "{path}, waypoint {row}, {what}: {text!r} is not a number from {lowest:g} to {limit:g}; correct it",
-        code="not_a_number",
-        path=path,
-        row=row,
-        what=what,
-        text=text,
-        lowest=-limit,
-        limit=limit,
-    )
+        "{path}, waypoint {row}, {what}: {text!r} is not a number from {lowest:g} to {limit:g}; correct it"
+    ).tag("not_a_number", path=path, row=row, what=what, text=text, lowest=-limit, limit=limit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

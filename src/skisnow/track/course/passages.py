@@ -230,7 +230,7 @@ class MovingPoint:
     def __init__(self, time: FloatArray, place: FloatArray, velocity: FloatArray | None = None) -> None:
         self.time, self.place = np.asarray(time, float), np.asarray(place, float)
         if len(self.time) < 2 or not np.all(np.diff(self.time) > 0.0):
-            raise ParameterError("gates need two places or more at rising times; this track has fewer", code="no_times")
+            raise ParameterError("gates need two places or more at rising times; this track has fewer").tag("no_times")
         order: Literal[1, 2] = 2 if len(self.time) > 2 else 1
         differences = np.gradient(self.place, self.time, axis=0, edge_order=order)
         self.velocity = differences if velocity is None else np.where(np.isfinite(velocity), velocity, differences)
@@ -301,7 +301,7 @@ def track_point(track: Track, course: Course) -> MovingPoint:
     """
     degrees = track.axes == "east_north_up"
     if degrees != (course.axes == "east_north_up"):
-        raise ParameterError(_OTHER_UNIT[degrees], code="different_units", name=track.name, source=course.source)
+        raise ParameterError(_OTHER_UNIT[degrees]).tag("different_units", name=track.name, source=course.source)
     if course.latitude_deg is not None and course.longitude_deg is not None and degrees:
         track = track.at_origin(GeodeticPoint(course.latitude_deg, course.longitude_deg))
     good = track.usable & np.isfinite(track.place[:, :2]).all(axis=1)

@@ -213,18 +213,18 @@ def _stored(session: EditSession, record: Any, once: str) -> str:
     """Store a reading; returns the name of its series."""
     said = _sent_cells(record)
     if not once or not said:
-        raise ParameterError("this is not a reading", code="not_a_reading")
+        raise ParameterError("this is not a reading").tag("not_a_reading")
     cells = {column: checked_cell(FORMS[FILE], column, text) for column, text in said.items()}
     if cells["tool"] not in session.described.tools:
-        raise ParameterError("the campaign has no tool {tool!r}", code="unknown_name", tool=cells["tool"])
+        raise ParameterError("the campaign has no tool {tool!r}").tag("unknown_name", tool=cells["tool"])
     test = session.test(FILE, cells["experiment"])
     there = test.row_under(cells["load_N"], cells.get(BRANCH, ""))
     if there is not None and there.entered.once != once:
-        raise ParameterError(
-            "a reading of {depth_mm} mm is there already", code="already_there", depth_mm=there.cells["depth_mm"]
+        raise ParameterError("a reading of {depth_mm} mm is there already").tag(
+            "already_there", depth_mm=there.cells["depth_mm"]
         )
     if test.rows and test.rows[0].cells["site"] != cells["site"]:
-        raise ParameterError("that series is at the site {site}", code="other_site", site=test.rows[0].cells["site"])
+        raise ParameterError("that series is at the site {site}").tag("other_site", site=test.rows[0].cells["site"])
     who = str(record.get("who") or "")[:LONGEST]
     place = test.next_position
     entry = NewEntry(action="add", file=FILE, test=test.name, cells=cells, position=place, who=who, once=once)

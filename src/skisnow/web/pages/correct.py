@@ -45,7 +45,7 @@ def add_page(lab: Lab) -> None:
         file = table or next(iter(session.tables), "")
         if file not in session.tables:
             missing = Message("this campaign has no such table")
-            raise ParameterError(missing if session.tables else UNREAD, code="no_table")
+            raise ParameterError(missing if session.tables else UNREAD).tag("no_table")
         with framed(session.stored.name or Message("Campaign"), here=HERE, keeps=True):
             sentence(
                 Message("Imported: its files stay unchanged. Corrections made here are stored with them."), "quiet"

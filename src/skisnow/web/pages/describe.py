@@ -128,7 +128,7 @@ def _require_used_names(session: EditSession, described: dict[str, Any]) -> None
             missing = {row.cells[kind] for row in test.rows if kind in row.cells} - names
             if missing:
                 message = Message(_IN_USE[kind], test=test.name, name=min(missing))
-                raise ParameterError(message, code="name_in_use")
+                raise ParameterError(message).tag("name_in_use")
 
 
 class DescriptionForm:
@@ -171,7 +171,7 @@ class DescriptionForm:
         ]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
         if not values["name"]:
-            raise ParameterError("the campaign has no name", code="no_name")
+            raise ParameterError("the campaign has no name").tag("no_name")
         values |= {"observers": observers or None, "load_steps_N": loads or None}
         values |= {
             key: typed_number(NUMBERS[key], number.value or "") for key, number in self._numbers.items() if number.value
@@ -234,7 +234,7 @@ class EntryRows:
         for number, (name, shape, lengths) in enumerate(self._rows, start=1):
             if not (name.value or "").strip():
                 if any((length.value or "").strip() for length in lengths.values()):
-                    raise ParameterError(_NO_NAME[self.kind], code="no_name", number=number)
+                    raise ParameterError(_NO_NAME[self.kind]).tag("no_name", number=number)
                 continue
             entry: dict[str, Any] = {"name": name.value.strip()}
             if shape is not None:

@@ -36,7 +36,7 @@ def add_page(lab: Lab) -> None:
         row: str = "",
     ) -> None:
         if table not in TABLES:
-            raise ParameterError("this address names no table of a campaign", code="no_table")
+            raise ParameterError("this address names no table of a campaign").tag("no_table")
         session = EditSession(lab, required_id(id_))
         with framed(session.described.name or Message("Campaign"), here=HERE, ahead=True):
             further = {Message("Analysis"): analysis("entry", id_), Message("Campaign"): f"/describe?entry={id_}"}

@@ -185,7 +185,7 @@ class _Import:
 
     def _ready_files(self) -> Mapping[str, bytes]:
         if self.tried is None or self.tried.proposal.problems:
-            raise ParameterError("Answer the questions first.", code="not_ready")
+            raise ParameterError("Answer the questions first.").tag("not_ready")
         return self.tried.proposal.files
 
     async def _keep(self) -> None:

@@ -260,7 +260,7 @@ class _Form:
         assert snow.analysis is not None
         results = await run.io_bound(results_and_snow_words, snow.analysis, scenario, changes)
         if results is None:
-            raise ParameterError("the lab is about to end", code="lab_ends")
+            raise ParameterError("the lab is about to end").tag("lab_ends")
         return results
 
 

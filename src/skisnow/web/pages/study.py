@@ -217,16 +217,14 @@ class _Form:
     def _question(self) -> StudyQuestion:
         axes = [axis for axis in self._axes if axis.name]
         if len({axis.name for axis in axes}) < len(axes):
-            raise ParameterError("the first and the second input are the same; choose another one", code="same_input")
+            raise ParameterError("the first and the second input are the same; choose another one").tag("same_input")
         varied = {axis.name: axis.range() for axis in axes}
         from_snow = self._numbers_from_snow()
         for name in varied:
             if from_snow.get(name):
                 raise ParameterError(
-                    "{input} varies, but the chosen snow fixes it; choose the numbers below as the snow",
-                    code="given_by_snow",
-                    input=called(study_keys(str(self._of.value))[name]),
-                )
+                    "{input} varies, but the chosen snow fixes it; choose the numbers below as the snow"
+                ).tag("given_by_snow", input=called(study_keys(str(self._of.value))[name]))
         fixed = {name: field.check() for name, field in self._fields.items() if self._counts(name, field)}
         files, named_words = dict[str, bytes](), list[str]()
         for values, further_files, words in (self._chosen_skis(), self._chosen_snow()):

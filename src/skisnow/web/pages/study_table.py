@@ -69,7 +69,7 @@ def add_page(lab: Lab) -> None:
     async def study_table(name: str) -> None:
         result = await run.io_bound(studies.table, name)
         if result is None:
-            raise ParameterError("the lab is about to end", code="lab_ends")
+            raise ParameterError("the lab is about to end").tag("lab_ends")
         with framed(Message("Study"), here=HERE):
             job = next((job for job in studies.jobs() if job.name == name), None)
             _show_inputs(job)
