@@ -12,6 +12,7 @@ import pytest
 from scipy.integrate import solve_bvp
 
 from skisnow._support.errors import ParameterError
+from skisnow.carving.edge_line import circle_radius
 from skisnow.carving.equilibrium import GrooveForm, MomentBalance, carve
 from skisnow.carving.result import Equilibrium, _warnings
 from skisnow.ski import Ski, read_ski
@@ -278,3 +279,17 @@ def test_a_spread_that_is_none_is_refused() -> None:
             unloading_ratio=1.0,
             side_force_spread=cast(Any, "even"),
         )
+
+
+@pytest.mark.parametrize(("name", "angle_deg"), [("slalom", 20.0), ("giant-slalom", 45.0), ("carver", 60.0)])
+def test_the_median_radius_is_that_of_many_circles(name: str, angle_deg: float) -> None:
+    """Half of the contact has tighter circles through its edge, 0.1 m to either side; by the answer's edge line."""
+    found = carve(read_ski(name), snow(0.2), edge_angle=math.radians(angle_deg), load=800.0, unloading_ratio=10.0)
+    line, depth, rising = given(found.edge_line)[::-1], given(found.edge_depth), found.station[::-1]
+    before = np.flatnonzero(np.diff(np.sign(depth)))
+    share = depth[before] / (depth[before] - depth[before + 1])
+    front, rear = found.station[before] + share * (found.station[before + 1] - found.station[before])
+    x = np.linspace(rear + 0.1, front - 0.1, 4001) + np.array([[0.1], [0.0], [-0.1]])
+    y = np.interp(x, rising, line)
+    radii = [circle_radius(*zip(a, b, strict=True)) for a, b in zip(x.T.tolist(), y.T.tolist(), strict=True)]
+    assert found.turn_radius_median == pytest.approx(np.median(np.array(radii, float)), rel=3e-3)

@@ -28,8 +28,8 @@ from tests.coded import raises
 from .synthetic import FloatArray, rigid_ski, snow
 
 OUTPUTS = (
-    "turn_radius_boot_m", "turn_radius_chord_m", "edge_depth_mm", "grip_utilisation", "deflection_mm",
-    "force_per_length_N_per_m", "contact_length_m",
+    "turn_radius_boot_m", "turn_radius_chord_m", "turn_radius_median_m", "edge_depth_mm", "grip_utilisation",
+    "deflection_mm", "force_per_length_N_per_m", "contact_length_m",
 )  # fmt: skip
 STEPS = 0.01 / 3.0 ** np.arange(6)
 """Of a parameter. A difference counts with its error, that against the step before."""

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from skisnow._support.messages import Message
-from skisnow.report.pair_verdicts import run_verdict, ski_verdict
+from skisnow.report.pair_verdicts import RADII, run_verdict, ski_verdict
 from skisnow.track.track import Track
 
 NAMES = ("wide", "tight")
 
 
 def answer(radius: float | None, changes: list[float] | None = None, chord: float | None = None) -> dict[str, Any]:
-    other = {"turn_radius_boot_other_spread_m": radius, "turn_radius_chord_m": radius if chord is None else chord}
+    other = dict.fromkeys(RADII[1:], radius) | ({} if chord is None else {"turn_radius_chord_m": chord})
     return {"turn_radius_boot_m": radius, **other, **({} if changes is None else {"radius_changes_by_snow_m": changes})}
 
 

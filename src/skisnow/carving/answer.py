@@ -206,6 +206,7 @@ def scalars_dict(equilibrium: Equilibrium) -> dict[str, Any]:
         "turn_radius_boot_m": json_number(equilibrium.turn_radius_boot),
         "turn_radius_boot_other_spread_m": json_number(equilibrium.turn_radius_boot_other_spread),
         "turn_radius_chord_m": json_number(equilibrium.turn_radius_chord),
+        "turn_radius_median_m": json_number(equilibrium.turn_radius_median),
         "contact_length_m": json_number(equilibrium.contact_length),
         "bearing_length_m": json_number(equilibrium.bearing_length),
         "afterbody_depth_ratio": json_number(equilibrium.afterbody_depth_ratio),

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import bisect
 import functools
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,23 @@ from .solve import Solution
 
 BOOT_REACH: Final = 0.40
 """Distance (m) before and behind the boot at which the circle of the boot's turn radius meets the edge line."""
+MEDIAN_REACH: Final = 0.10
+"""Distance (m) before and behind a place at which the circles of the median turn radius meet the edge line."""
+_STEP: Final = 0.002  # m, between circles of the median turn radius
+_BLUR: Final = 0.03  # relative distance from the median below which a radius counts in part, so that it is smooth
+_STRAIGHTEST: Final = 20.0  # logarithm of a radius (m) that stands for edges that are straight or curve outwards
+_NEWTON: Final = 6  # iterations from the nearest circle's radius to the last digits of the median
 _STRAIGHT: Final = 1e-9  # m, sagitta below which a line has no radius
+
+
+class MedianCircles(NamedTuple):
+    """Median radius (m), places (3, k) of the circles near it, its growth with their radii and both stations."""
+
+    radius: float
+    places: FloatArray
+    weight: FloatArray
+    by_front: float
+    by_rear: float
 
 
 class EdgeLine:
@@ -81,6 +98,49 @@ class EdgeLine:
         """Radius (m) of the circle through the edge at the boot and 0.4 m before and behind it."""
         return self.radius_over(BOOT_REACH, -BOOT_REACH)
 
+    def median_circles(self, front: float, rear: float) -> MedianCircles | None:
+        """Median radius of circles through the edge at a place and 0.1 m on both sides, between two stations (m).
+
+        None where these are too near, or no median curves inwards.
+        """
+        inner, outer = rear + MEDIAN_REACH, front - MEDIAN_REACH
+        apart = round(MEDIAN_REACH / _STEP)
+        first, last = math.ceil(inner / _STEP - 0.5), math.floor(outer / _STEP + 0.5)
+        if last <= first:
+            return None
+        grid = _STEP * np.arange(first - apart, last + apart + 1)
+        middle, away = np.arange(apart, len(grid) - apart), apart * np.array([[1], [0], [-1]])
+        x, y = grid[middle + away], self.at(grid)[middle + away]
+        # a circle counts for one step of the edge, those at the ends for their part of it
+        length = np.clip((outer - x[1]) / _STEP + 0.5, 0.0, 1.0) * np.clip((x[1] - inner) / _STEP + 0.5, 0.0, 1.0)
+        curvature = circle_curvature(x, y)
+        level = -np.log(np.where(curvature > 0.0, curvature, math.exp(-_STRAIGHTEST)))
+
+        def balance(median: float) -> tuple[float, FloatArray, FloatArray]:
+            z = np.clip((level - median) / _BLUR, -1.0, 1.0)
+            side, growth = z * (15.0 - 10.0 * z**2 + 3.0 * z**4) / 8.0, length * 1.875 * (1.0 - z**2) ** 2
+            return float(length @ side), side, growth
+
+        order = np.sort(level).tolist()
+        median = order[bisect.bisect_left(range(len(order) - 1), 0.0, key=lambda n: -balance(order[n])[0])]
+        for _ in range(_NEWTON):
+            total, side, growth = balance(median)
+            near = float(growth.sum())
+            if near == 0.0:
+                return None
+            median += _BLUR * total / near
+        if median > _STRAIGHTEST / 2.0:
+            return None
+        used, by_end = growth > 0.0, math.exp(median) * _BLUR / near / _STEP
+        weight = growth[used] / near * np.exp(median - level[used])
+        by_front, by_rear = by_end * side[-1] * (length[-1] < 1.0), -by_end * side[0] * (length[0] < 1.0)
+        return MedianCircles(math.exp(median), x[:, used], weight, float(by_front), float(by_rear))
+
+    def radius_median(self, front: float, rear: float) -> float | None:
+        """Radius (m) of `median_circles`, if it exists."""
+        circles = self.median_circles(front, rear)
+        return None if circles is None else circles.radius
+
     def offset_from_circle(self) -> FloatArray:
         """Distance of the edge from the circle of `radius_at_boot` at each station (m), positive inside."""
         radius = self.radius_at_boot()
@@ -123,6 +183,13 @@ def sections_at(
     ski = model.ski
     width, height = (np.interp(stations, ski.station[::-1], table[::-1]) for table in (ski.width, ski.base_height))
     return width, height, beam_rows(model, stations)
+
+
+def circle_curvature(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Curvature (1/m) of circles through three points each, (3, k), positive if the middle is below the chord."""
+    twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
+    sides = [np.hypot(x[i] - x[j], y[i] - y[j]) for i, j in ((1, 0), (1, 2), (0, 2))]
+    return np.asarray(-2.0 * twice_area / (sides[0] * sides[1] * sides[2]))
 
 
 def circle_radius(front: tuple[float, float], middle: tuple[float, float], rear: tuple[float, float]) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .solve import Conditions, Solution
 
 
-AT_BOOT: Final = np.array([BOOT_REACH, 0.0, -BOOT_REACH])
+AT_BOOT: Final = np.array([[BOOT_REACH], [0.0], [-BOOT_REACH]])
 """Places (m) of the circle of the boot's turn radius."""
 _NEAR: Final = 1e-7  # m, over which the slope of the edge line is taken
 
@@ -89,42 +89,46 @@ class OutputGrowth:
         return out
 
 
-def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-    """Radius of the circle through front, boot and rear (m), and its growth with their x and y.
+def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Radii of circles through front, boot and rear (m), and their growth with these x and y, all (3, k).
 
     It is -a b c/(2 T), of the sides a, b, c and twice the area T: each factor adds its relative growth.
     """
     twice_area = (x[0] - x[2]) * (y[1] - y[2]) - (x[1] - x[2]) * (y[0] - y[2])
     by_x = -np.array([y[1] - y[2], y[2] - y[0], y[0] - y[1]]) / twice_area
     by_y = -np.array([x[2] - x[1], x[0] - x[2], x[1] - x[0]]) / twice_area
-    sides = 1.0
+    sides = np.ones(x.shape[1])
     for i, j in ((1, 0), (1, 2), (0, 2)):
         along, across = x[i] - x[j], y[i] - y[j]
         square = along**2 + across**2
-        sides *= math.sqrt(square)
+        sides *= np.sqrt(square)
         by_x[[i, j]] += along / square, -along / square
         by_y[[i, j]] += across / square, -across / square
     radius = -sides / (2.0 * twice_area)
-    return float(radius), radius * by_x, radius * by_y
+    return radius, radius * by_x, radius * by_y
 
 
-def _radius_over(at: At, x: FloatArray, *, moves: bool = False) -> tuple[OutputGrowth, FloatArray] | None:
-    """The circle through the edge at three places, and its growth with these where they move."""
-    line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
-    width, height, deflection, twist = sections = line.sections(x)
-    y = line.across(*sections)
-    if circle_radius((x[0], y[0]), (x[1], y[1]), (x[2], y[2])) is None:
-        return None
-    value, by_x, by_y = _circle_gradient(x, y)
+def _radius_over(
+    at: At, x: FloatArray, weight: float | FloatArray = 1.0, *, moves: bool = False
+) -> tuple[OutputGrowth, FloatArray] | None:
+    """Growth of the radii of circles through the edge at (3, k) places, each times its weight, and that with places."""
     angle = at.conditions.edge_angle
+    line = EdgeLine(at.model, angle, at.solution)
+    width, height, deflection, twist = sections = line.sections(x.ravel())
+    y = line.across(*sections).reshape(x.shape)
+    if any(circle_radius(*zip(a, b, strict=True)) is None for a, b in zip(x.T, y.T, strict=True)):
+        return None
+    radius, by_x, by_y = _circle_gradient(x, y)
+    by_x, by_y = weight * by_x, (weight * by_y).ravel()
     turned = angle + twist
     if moves:
-        by_x += by_y * (line.at(x + _NEAR) - line.at(x - _NEAR)) / (2.0 * _NEAR)
+        slope = (line.at(x.ravel() + _NEAR) - line.at(x.ravel() - _NEAR)) / (2.0 * _NEAR)
+        by_x += (by_y * slope).reshape(x.shape)
     by_twist = -by_y * width / 2.0 * np.sin(turned)
     growth = OutputGrowth(
-        value=value,
+        value=float(radius[0]),
         edge_angle=float(by_twist.sum() + (by_y * (height + deflection)).sum() * math.cos(angle)),
-        edge=x,
+        edge=x.ravel(),
         edge_by=np.array([by_y * np.cos(turned) / 2.0, by_y * math.sin(angle), by_y * math.sin(angle), by_twist]),
     )
     return growth, by_x
@@ -139,18 +143,29 @@ def _radius_of_chord(at: At) -> OutputGrowth | None:
     ends = _contact_ends(at)
     if ends is None:
         return None
-    x = np.array([ends[0].value, 0.0, ends[1].value])
+    x = np.array([[ends[0].value], [0.0], [ends[1].value]])
     circle = _radius_over(at, x, moves=True) if x[0] > 0.0 > x[2] else None
-    if circle is None:
+    return None if circle is None else _with_ends(circle[0], ends, float(circle[1][0, 0]), float(circle[1][2, 0]))
+
+
+def _radius_median(at: At) -> OutputGrowth | None:
+    ends = _contact_ends(at)
+    line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
+    circles = None if ends is None else line.median_circles(ends[0].value, ends[1].value)
+    circle = None if circles is None else _radius_over(at, circles.places, circles.weight)
+    if ends is None or circles is None or circle is None:
         return None
-    growth, by_x = circle
-    columns = [
-        np.asarray(by_x[0] * getattr(ends[0], name) + by_x[2] * getattr(ends[1], name)) for name in ("depth", "place")
-    ]
-    return OutputGrowth(
-        value=growth.value, depth=columns[0], place=columns[1], edge_angle=growth.edge_angle, edge=x,
-        edge_by=growth.edge_by,
-    )  # fmt: skip
+    return replace(_with_ends(circle[0], ends, circles.by_front, circles.by_rear), value=circles.radius)
+
+
+def _with_ends(
+    growth: OutputGrowth, ends: tuple[OutputGrowth, OutputGrowth], by_front: float, by_rear: float
+) -> OutputGrowth:
+    """The growth, together with that by the moving ends of the contact."""
+    depth, place = (
+        np.asarray(by_front * getattr(ends[0], name) + by_rear * getattr(ends[1], name)) for name in ("depth", "place")
+    )
+    return replace(growth, depth=depth, place=place)
 
 
 def _contact_ends(at: At) -> tuple[OutputGrowth, OutputGrowth] | None:
@@ -221,6 +236,7 @@ def _grip_utilisation(at: At) -> OutputGrowth | None:
 OUTPUTS: Final[dict[str, tuple[Callable[[At], OutputGrowth | None], float, str]]] = {
     "turn_radius_boot_m": (_radius_at_boot, 1.0, "circle through the edge at the boot and 0.4 m before and behind"),
     "turn_radius_chord_m": (_radius_of_chord, 1.0, "circle through the edge at the boot and both ends of the contact"),
+    "turn_radius_median_m": (_radius_median, 1.0, "median over the contact of circles through 0.2 m of the edge"),
     "edge_depth_mm": (_depth, MM, "greatest depth of the edge"),
     "grip_utilisation": (_grip_utilisation, 1.0, "side force over its limit"),
     "deflection_mm": (_deflection, MM, "deflection of the base 0.4 m before the boot"),

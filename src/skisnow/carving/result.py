@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import Final, Literal, TypeAlias
 
 import numpy as np
@@ -107,6 +108,8 @@ class Equilibrium(Shown):
         Of Newton's method.
     request
         Ski, snow and load of the question, for `sensitivity`; None if the answer has no derivatives.
+    median_radius
+        Computes `turn_radius_median`.
 
     See Also
     --------
@@ -139,6 +142,7 @@ class Equilibrium(Shown):
     warnings: tuple[str, ...]
     iterations: int
     request: CarveRequest | None = None
+    median_radius: Callable[[], float | None] | None = None
 
     def derivatives(self) -> CarveDerivatives:
         """Exact derivatives of outputs by parameters, at this equilibrium.
@@ -190,6 +194,14 @@ class Equilibrium(Shown):
         Shows how much depends on that choice. A second equilibrium, computed on demand; None if it is not found.
         """
         return self.other_radius() if callable(self.other_radius) else self.other_radius
+
+    @property
+    def turn_radius_median(self) -> float | None:
+        """Median over the contact of the radius of circles through the edge line at a place and 0.1 m on both sides.
+
+        By length, and of the curvature (m). None for a ski that is flat or at rest.
+        """
+        return None if self.median_radius is None else self.median_radius()
 
     @property
     def total_force(self) -> float | None:
@@ -297,6 +309,7 @@ def equilibrium_of(
         request=None
         if elements is None
         else CarveRequest(model, conditions, snow.failure_shear_stress, solution, elements),
+        median_radius=partial(line.radius_median, *ends) if turns else None,
     )
 
 

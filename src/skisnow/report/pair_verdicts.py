@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..track.track import Track
 
 Json = dict[str, Any]
-RADII: Final = ("turn_radius_boot_m", "turn_radius_boot_other_spread_m", "turn_radius_chord_m")
+RADII: Final = ("turn_radius_boot_m", "turn_radius_boot_other_spread_m", "turn_radius_chord_m", "turn_radius_median_m")
 """Definitions of the radius of a carved turn, that of the verdict first."""
 _SAME: Final = 5e-4
 """Relative difference below which two numbers count as equal: they are computed no better."""

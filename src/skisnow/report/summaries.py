@@ -119,6 +119,7 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
     ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
     ("the same, side force spread the other way (m)", _number("turn_radius_boot_other_spread_m")),
     ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
+    ("turn radius, median over the contact (m)", _number("turn_radius_median_m")),
     ("sidecut radius of three widths (m)", _ski_number("sidecut_radius_of_three_widths_m")),
     ("sidecut radius of the whole edge line (m)", _ski_number("sidecut_radius_of_edge_line_m")),
     ("contact length (m)", _number("contact_length_m")),

@@ -36,6 +36,7 @@ CARVE_RESULTS: Final = (
     "turn_radius_boot_m",
     "turn_radius_boot_other_spread_m",
     "turn_radius_chord_m",
+    "turn_radius_median_m",
     "contact_length_m",
     "afterbody_depth_ratio",
     "greatest_edge_depth_mm",
