@@ -13,7 +13,7 @@ async function place() {
 
 async function start() {
   const [root, { startReplay }, answer] = await Promise.all([place(), import(`${FILES}/replay.js`), fetch("/replay/first")]);
-  const player = startReplay(root, { run: await answer.arrayBuffer(), words: JSON.parse(script.dataset.words) });
+  const player = startReplay(root, { run: await answer.arrayBuffer(), words: JSON.parse(script.dataset.words), isCalm: true });
   window.skisnowReplay = player;
   root.setAttribute("data-plays", "");
   const rest = window.matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -192,3 +192,27 @@ def test_both_begin_together(seen: Watched, replay: Replay) -> None:
     own, ghost = seen.does(script)
     assert own == pytest.approx(ghost, abs=1e-3)
     assert seen.value("end") == pytest.approx(float(replay.time[-1]), abs=1e-3)
+
+
+def test_the_first_page_s_replay_leaves_time_for_other_things(served: Any, page: Any) -> None:
+    page.goto(served.address)
+    page.wait_for_function("window.skisnowReplay && skisnowReplay.frames > 0")
+    gaps = page.evaluate(
+        """async () => {
+            const times = [];
+            const { draw } = Object.getPrototypeOf(skisnowReplay);
+            skisnowReplay.draw = () => { times.push(performance.now()); draw.call(skisnowReplay); };
+            skisnowReplay.stage.drawn = () => new Promise((done) => setTimeout(done, 40));
+            while (times.length < 5) await new Promise(requestAnimationFrame);
+            return times.slice(2).map((time, i) => time - times[i + 1]);
+        }"""
+    )
+    assert min(gaps) > 100  # a third of the time for drawing, less the rounding of timers
+    root = "document.getElementById('first-replay').style.marginTop"
+    page.evaluate(f"{root} = '9000px'")
+    page.wait_for_timeout(1000)
+    frames = page.evaluate("skisnowReplay.frames")
+    page.wait_for_timeout(500)
+    assert page.evaluate("skisnowReplay.frames") == frames
+    page.evaluate(f"{root} = ''")
+    page.wait_for_function(f"skisnowReplay.frames > {frames}")

@@ -15,6 +15,7 @@ import { decimal, said, speak } from "./words.js";
 const STEP = 0.05; // s that an arrow key goes
 const LARGE_STEP = 0.5;
 const RELIEF = 8; // times that the groove is deeper and wider than it is, at first
+const LIGHT = 8; // ms of drawing after which a calm replay does not rest
 const LONGEST = 1000; // ms of play in one picture: a page that was hidden meanwhile goes on from where it was
 
 /**
@@ -22,15 +23,16 @@ const LONGEST = 1000; // ms of play in one picture: a page that was hidden meanw
  *
  * `run` and, for a second one laid over it, `ghost` are the bytes of replays. Where there is a server,
  * `modelAddress(time, exaggeration)` gives the address of a glTF model of a moment, `movingModelAddress(exaggeration)`
- * that of one that moves. `words` are translations, by the English texts.
+ * that of one that moves. `words` are translations, by the English texts. A calm replay leaves a machine without a
+ * graphics card time for other things, and plays only in view.
  */
-export function startReplay(root, { run, ghost = null, modelAddress = null, movingModelAddress = null, words = null }) {
+export function startReplay(root, { run, ghost = null, modelAddress = null, movingModelAddress = null, words = null, isCalm = false }) {
   speak(words);
-  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, { modelAddress, movingModelAddress });
+  return new Player(root, decoded(run), ghost ? decoded(ghost) : null, { modelAddress, movingModelAddress }, isCalm);
 }
 
 class Player {
-  constructor(root, run, ghost, addresses) {
+  constructor(root, run, ghost, addresses, isCalm) {
     this.run = run;
     this.ghost = ghost;
     this.addresses = addresses;
@@ -44,6 +46,7 @@ class Player {
     this.shown = { groove: true, marks: true, forces: false, ghost: true, track: true };
     this.flat = document.createElement("canvas");
     this.sharpness = new Sharpness();
+    this.rest = isCalm ? () => this.#rest() : null;
     try {
       this.stage = new Stage(this.parts.canvas, run, ghost);
     } catch (error) {
@@ -150,10 +153,20 @@ class Player {
       if (gone > 0 && !this.film && this.sharpness.took(gone)) this.resize();
       else this.draw();
       if (this.time >= this.end) this.pause();
+      else if (this.rest) this.rest().then(() => requestAnimationFrame(next));
       else requestAnimationFrame(next);
     };
     this.next = next;
     this.stage.drawn().then(() => requestAnimationFrame(next));
+  }
+
+  /** Wait after a picture that took long, so that drawing takes at most a third of the time; and while out of view. */
+  async #rest() {
+    const begun = performance.now();
+    await this.stage.drawn();
+    const took = performance.now() - begun;
+    if (took > LIGHT) await new Promise((done) => setTimeout(done, 2 * took));
+    while (!inView(this.parts.canvas)) await new Promise((done) => setTimeout(done, 200));
   }
 
   pause() {
@@ -345,6 +358,11 @@ const duration = (run) => run.arrays.time.values.at(-1) - run.arrays.time.values
 function spread(down) {
   const [one, other] = [...down.values()];
   return other ? Math.hypot(one[0] - other[0], one[1] - other[1]) : 0;
+}
+
+function inView(element) {
+  const { top, bottom } = element.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
 }
 
 const fileName = (title) => title.replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "") || "replay";

@@ -137,7 +137,7 @@ export class Stage {
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     while (!gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
-      await new Promise(requestAnimationFrame);
+      await new Promise((done) => setTimeout(done, 4));
     }
     gl.deleteSync(fence);
   }
