@@ -272,6 +272,17 @@ def test_forces_grow_as_the_largest_does() -> None:
         assert exact.force_growth(name)[place] == pytest.approx(largest.derivative, rel=1e-8, abs=1e-9)
 
 
+def test_forces_at_places_grow_as_their_differences() -> None:
+    """Also where the stations move with the ski: the places do not."""
+    found = carve(read_ski("carver"), snow(0.21, 0.52), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    exact, places = derivatives(found), np.linspace(-0.6, 0.6, 13)
+    for name, step in (("ski.waist_width_mm", 1e-3), ("edge_angle_deg", 1e-4), ("ski.running_length_mm", 1e-2)):
+        sides = [exact._moved(name, side * step) for side in (1.0, -1.0)]
+        above, below = (side.force_at(places) for side in sides if side is not None)
+        growth = exact.force_growth_at(name, places)
+        assert (above - below) / (2.0 * step) == pytest.approx(growth, abs=2e-3 * np.abs(growth).max())
+
+
 def test_what_has_no_derivative_is_rejected() -> None:
     case: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0, "unloading_ratio": 10.0}
     found = carve(read_ski("slalom"), snow(0.21), **case)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import skisnow
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.design.evaluation import Evaluator
@@ -64,6 +65,40 @@ def test_two_targets_and_a_constraint(tmp_path: Path) -> None:
     assert found.values["tail_width_mm"] - found.values["waist_width_mm"] >= 32.0 - 1e-5
     ski = found.write(tmp_path)[0]
     assert carved(ski, edge_angle_deg=30.0).turn_radius_boot == pytest.approx(12.5, rel=1e-6)
+
+
+def force_at(ski: skisnow.Ski, places: FloatArray) -> FloatArray:
+    snow = skisnow.SnowProperties(0.21e9, 0.52e6, source="test")
+    found = skisnow.carve(ski, snow, edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0)
+    assert found.force_per_length is not None
+    return np.interp(places, found.station[::-1], found.force_per_length[::-1])
+
+
+def test_the_force_along_the_edge_of_another_ski() -> None:
+    start = dict(skisnow.read_ski("slalom").keys or {})
+    other = start | {"waist_width_mm": 66.5, "EI_N_m2": [1.2 * row for row in start["EI_N_m2"]], "camber_mm": 9.0}
+    bounds = {"waist_width_mm": [62, 74], "EI_factor": [0.6, 1.6], "camber_mm": [1, 15]}
+    places = np.linspace(-0.7, 0.7, 29)
+    goal = {
+        "output": "force_along_edge_N_per_m",
+        "target": 1.0,
+        "places_m": places.tolist(),
+        "curve": force_at(ski_of_keys(other), places).tolist(),
+    }
+    design = skisnow.design_ski(TWELVE | {"variables": bounds, "goals": [goal], "starts": 1})
+    assert design.reached
+    found = [design.values[name] for name in ("waist_width_mm", "EI_factor", "camber_mm")]
+    assert found == pytest.approx([66.5, 1.2, 9.0], rel=1e-4)
+
+
+def test_a_bound_of_the_force_along_the_edge() -> None:
+    places = np.linspace(-0.7, 0.7, 57)
+    bound = {"output": "force_along_edge_N_per_m", "at_most": 1700.0, "places_m": places.tolist()}
+    bounds = {"sidecut_mm": [-10, 10], "EI_factor": [0.6, 1.6], "camber_mm": [1, 15]}
+    design = skisnow.design_ski(TWELVE | {"variables": bounds, "goals": [*TWELVE["goals"], bound], "starts": 1})
+    assert design.reached
+    assert np.max(force_at(design.ski, places)) == pytest.approx(1700.0, rel=1e-6)
+    assert np.max(force_at(design.before, places)) > 1750.0
 
 
 def test_the_worst_of_three_snows(tmp_path: Path) -> None:
@@ -130,6 +165,8 @@ def test_growth_of_goals_is_that_of_differences() -> None:
         ({"goals": [{"output": "radius", "target": 12.0}]}, "unknown_name"),
         ({"goals": [{"output": "edge_depth_mm", "target": 12.0, "at_most": 13.0}]}, "contradiction"),
         ({"goals": [{"output": "edge_depth_mm", "at_most": 1.0, "conditions": [2]}]}, "out_of_range"),
+        ({"goals": [{"output": "force_along_edge_N_per_m", "at_most": 1000.0}]}, "contradiction"),
+        ({"goals": [{"output": "edge_depth_mm", "at_most": 1.0, "places_m": [0.1]}]}, "contradiction"),
         ({"conditions": [{"snow": 1}]}, "unknown_name"),
         ({"constraints": [{"terms": {}}]}, "out_of_range"),
         ({"monotone": ["width"]}, "unknown_name"),

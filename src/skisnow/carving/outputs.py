@@ -246,6 +246,10 @@ OUTPUTS: Final[dict[str, tuple[Callable[[At], OutputGrowth | None], float, str]]
 """By name: computation, unit, definition."""
 
 
+FORCE_ALONG_EDGE: Final = "force_along_edge_N_per_m"
+"""Goal for the force per length at several places."""
+
+
 def output_growth(name: str, at: At) -> OutputGrowth | None:
     """An output in the unit of its name; None where it does not exist."""
     compute, unit, _ = OUTPUTS[name]

@@ -263,6 +263,24 @@ class CarveDerivatives:
         """Growth of the force per length at each station (N/m) with a parameter, per its unit."""
         return self._growth(parameter)[3]
 
+    def force_at(self, place: FloatArray) -> FloatArray:
+        """Force per length (N/m) at places (m), linear between the stations."""
+        return np.interp(place, self._rising, self.at.solution.force_per_length[::-1])
+
+    def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
+        """Growth of `force_at` with a parameter, per its unit; stations may move with it."""
+        force, rising, shape = self.at.solution.force_per_length[::-1], self._rising, self._direction(parameter).shape
+        out = np.interp(place, rising, self.force_growth(parameter)[::-1])
+        if shape is None or not shape.moves:
+            return out
+        row = np.clip(np.searchsorted(rising, place) - 1, 0, len(rising) - 2)
+        slope = (np.diff(force) / np.diff(rising))[row]
+        return np.asarray(out - slope * np.interp(place, rising, shape.place[::-1]))
+
+    @property
+    def _rising(self) -> FloatArray:
+        return self.request.model.stations.station[::-1]
+
     def fields(self, output: str) -> dict[str, FloatArray]:
         """Growth of an output with the curves of the ski, per metre of ski.
 

@@ -17,6 +17,8 @@ from ..ski.ski_file import ski_of_keys
 from .variables import COMBINED, combined_names, designed_keys, start_value
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ..carving.question import CarveQuestion
     from ..carving.sensitivity import CarveDerivatives
     from ..carving.solve import Solution
@@ -86,24 +88,37 @@ class Evaluator:
         return derivatives
 
     def goal_values(self, goal: Goal, z: FloatArray) -> FloatArray:
-        """The goal's output at each of its conditions, or the ratio of two."""
-        values = np.array([_output(point, goal.output) for point in self._chosen(goal, z)])
+        """The goal's output at each of its conditions, and of its places, or the ratio of two."""
+        chosen = self._chosen(goal, z)
+        if goal.places_m is not None:
+            return np.concatenate([point.force_at(np.array(goal.places_m)) for point in chosen])
+        values = np.array([_output(point, goal.output) for point in chosen])
         return values[:1] / values[1:] if goal.ratio else values
 
     def goal_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Growth of these with the variables, shape (values, variables)."""
-        values = self.goal_values(goal, z)
-        rows = np.array([self.output_growth(point, goal.output, z) for point in self._chosen(goal, z)])
+        values, place = self.goal_values(goal, z), None if goal.places_m is None else np.array(goal.places_m)
+        rows = np.vstack([self.output_growth(point, goal.output, z, place).T for point in self._chosen(goal, z)])
         if goal.ratio:
             second = _output(self._chosen(goal, z)[1], goal.output)
             return np.asarray((rows[:1] - values[0] * rows[1:]) / second)
         return rows
 
-    def output_growth(self, point: CarveDerivatives, output: str, z: FloatArray) -> FloatArray:
-        """Growth of an output at a condition with each variable, from 0 to 1 of its bounds."""
+    def output_growth(
+        self, point: CarveDerivatives, output: str, z: FloatArray, place: FloatArray | None = None
+    ) -> FloatArray:
+        """Growth of an output at a condition, or of the force at places (m), with each variable, counted as `points`.
+
+        Shape (variables, ...).
+        """
         variables, values = self.task.variables, self.values(z).tolist()
         combined = [combined_names(variable.name) for variable in variables]
-        growths = iter(point.derivatives(output, tuple(name for names in combined for name in names)).tolist())
+        names = tuple(name for names in combined for name in names)
+        growths: Iterator[Any] = (
+            iter(point.derivatives(output, names).tolist())
+            if place is None
+            else (point.force_growth_at(name, place) for name in names)
+        )
         # factors of a list of stiffness multiply its rows
         factors = {
             COMBINED[variable.name][0]: value
@@ -118,6 +133,11 @@ class Evaluator:
                 growth /= factors.get(COMBINED[variable.name][0], 1.0)
             out.append(growth * factors.get(key, 1.0) if row else growth)
         return np.array(out)
+
+    def value_count(self, goal: Goal) -> int:
+        """Number of a goal's values."""
+        conditions = 1 if goal.ratio else len(goal.conditions or self.task.conditions)
+        return conditions * len(goal.factors)
 
     def _chosen(self, goal: Goal, z: FloatArray) -> list[CarveDerivatives]:
         """Equilibria at the conditions of a goal (default: all)."""

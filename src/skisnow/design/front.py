@@ -67,13 +67,13 @@ def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: i
 
 def _limit(goal: Goal, allowed: float, side: float) -> Goal:
     """The goal as a limit of its deviation on one side."""
-    limit = (goal.target or 1.0) * (1.0 + side * allowed)
-    most, least = (limit, None) if side > 0.0 else (None, limit)
-    return replace(goal, target=None, at_most=most, at_least=least)
+    curve = goal.factors + side * allowed * np.max(goal.factors)
+    most, least = (goal.target, None) if side > 0.0 else (None, goal.target)
+    return replace(goal, target=None, at_most=most, at_least=least, curve=tuple(curve.tolist()))
 
 
 def _deviation(evaluator: Evaluator, goal: Goal, z: FloatArray) -> float:
-    return float(np.max(np.abs(evaluator.goal_values(goal, z) / (goal.target or 1.0) - 1.0)))
+    return float(np.max(np.abs(goal.deviations(evaluator.goal_values(goal, z)))))
 
 
 def _best(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArray]) -> FloatArray:

@@ -44,21 +44,21 @@ class Search:
 
     def deviations(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Relative deviations from a target, times the root of the goal's weight."""
-        return np.asarray(np.sqrt(goal.weight) * (self.evaluator.goal_values(goal, z) / (goal.target or 1.0) - 1.0))
+        return np.asarray(np.sqrt(goal.weight) * goal.deviations(self.evaluator.goal_values(goal, z)))
 
     def deviation_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Growth of these, shape (values, variables)."""
-        return np.asarray(np.sqrt(goal.weight) * self.evaluator.goal_growth(goal, z) / (goal.target or 1.0))
+        return np.asarray(np.sqrt(goal.weight) * self.evaluator.goal_growth(goal, z) / goal.scale)
 
     def room(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Relative distance to a limit; negative where it is violated."""
-        limit, side = (goal.at_most, -1.0) if goal.at_most is not None else (goal.at_least or 1.0, 1.0)
-        return np.asarray(side * (self.evaluator.goal_values(goal, z) / limit - 1.0))
+        side = -1.0 if goal.at_most is not None else 1.0
+        return np.asarray(side * goal.deviations(self.evaluator.goal_values(goal, z)))
 
     def room_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Growth of that, shape (values, variables)."""
-        limit, side = (goal.at_most, -1.0) if goal.at_most is not None else (goal.at_least or 1.0, 1.0)
-        return np.asarray(side * self.evaluator.goal_growth(goal, z) / limit)
+        side = -1.0 if goal.at_most is not None else 1.0
+        return np.asarray(side * self.evaluator.goal_growth(goal, z) / goal.scale)
 
     def objective(self, x: FloatArray) -> float:
         """Sum over the targets of the mean square of their deviations, or of the square of their slack, in %²."""
@@ -114,7 +114,9 @@ class Search:
                 constraints=self.constraints(), options=options,
             )  # fmt: skip
             z = np.clip(solution.x[: self.count], 0.0, 1.0)
-            if self.worst_deviation(z) > 1e-3:
+            # SLSQP must not be given more equations than variables: it writes beyond its memory (SciPy 1.16)
+            equations = sum(self.evaluator.value_count(goal) for goal in self.targets)
+            if self.worst_deviation(z) > 1e-3 or equations > self.count:
                 return z
         home = self.evaluator.start
         nearest = minimize(
@@ -156,7 +158,7 @@ def _constraint(search: Search, value: Any, growth: Any, goal: Goal, *, kind: st
         try:
             return np.asarray(value(goal, x[: search.count]))
         except SolverError:
-            return np.full(len(goal.conditions or search.evaluator.task.conditions), -_NO_SKI)
+            return np.full(search.evaluator.value_count(goal), -_NO_SKI)
 
     return {"type": kind, "fun": fun, "jac": lambda x: search._padded(growth(goal, x[: search.count]))(x)}
 
@@ -168,7 +170,7 @@ def _slack(search: Search, goal: Goal, number: int) -> dict[str, Any]:
         try:
             deviations = search.deviations(goal, x[: search.count])
         except SolverError:
-            return np.full(2 * len(goal.conditions or search.evaluator.task.conditions), -_NO_SKI)
+            return np.full(2 * search.evaluator.value_count(goal), -_NO_SKI)
         return np.asarray(x[search.count + number] + np.concatenate([deviations, -deviations]))
 
     def jac(x: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ import io
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -20,10 +20,6 @@ from ..ski import Ski
 from ..ski.ski_file import keys_text, ski_of_keys
 from .evaluation import carve_at
 from .problem import Search, linear_constraints
-
-if TYPE_CHECKING:
-    from .task import Goal
-
 
 _AT_BOUND: Final = 1e-6  # of the distance of the bounds
 _SAME_RESULT: Final = 1e-3  # relative, of two starts that reached the same optimum
@@ -223,26 +219,21 @@ def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
     out = []
     for goal in search.evaluator.task.goals:
         values = search.evaluator.goal_values(goal, z)
-        missed = _miss(search, goal, z)
+        misses = np.abs(goal.deviations(values)) if goal.target is not None else -search.room(goal, z)
+        missed, values = float(np.max(misses)), values[[np.argmax(misses)]] if goal.places_m else values
         if missed > _MISSED:
             out.append(
                 Message(
                     "{output}: the goal {wanted:g} is not reached. The design has {values}, {missed:.2g} % off. "
                     "{reason}",
                     output=goal.output,
-                    wanted=goal.target or goal.at_most or goal.at_least,
+                    wanted=goal.wanted,
                     values=[float(f"{value:.6g}") for value in values],
                     missed=100.0 * missed,
                     reason=reason,
                 )
             )
     return out
-
-
-def _miss(search: Search, goal: Goal, z: FloatArray) -> float:
-    if goal.target is None:
-        return -float(np.min(search.room(goal, z)))
-    return float(np.max(np.abs(search.evaluator.goal_values(goal, z) / goal.target - 1.0)))
 
 
 def _active(search: Search, z: FloatArray) -> list[Message]:

@@ -9,12 +9,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
+import numpy as np
+
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
 from .._support.user_files import read_toml
 from ..carving.answer import asked_snow
-from ..carving.outputs import OUTPUTS
+from ..carving.outputs import FORCE_ALONG_EDGE, OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
 from ..parameters import Quantity, checked_table, made, nearest
 from ..ski import Ski
@@ -33,7 +36,7 @@ _WITHOUT: Final = ("ski", "groove", "footprint_stiffness_N_per_mm2", "at_rest", 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Goal:
-    """A goal for one output at some conditions: a target, or a limit on one side."""
+    """A goal for one output at some conditions, or the force at some places: a target, or a limit on one side."""
 
     output: Annotated[str, Quantity("output", "name of an output, such as turn_radius_boot_m")]
     target: Annotated[float | None, Quantity("target", "value to reach", lowest=0.0, above=True)] = None
@@ -47,9 +50,37 @@ class Goal:
     conditions: Annotated[
         tuple[float, ...] | None, Quantity("conditions", "numbers of the conditions, from 1", origin="all")
     ] = None
+    places_m: Annotated[
+        tuple[float, ...] | None,
+        Quantity("places_m", "places of the force along the edge, from the boot", origin="none"),
+    ] = None
+    curve: Annotated[
+        tuple[float, ...] | None,
+        Quantity("curve", "factors of the target or limit at these places", lowest=0.0, origin="1 everywhere"),
+    ] = None
     ratio: Annotated[bool, Quantity("ratio", "the output at the first of two conditions over that at the second")] = (
         False
     )
+
+    @property
+    def wanted(self) -> float:
+        """The target or limit."""
+        return self.target or self.at_most or self.at_least or 1.0
+
+    @property
+    def factors(self) -> FloatArray:
+        """Factors of it at the places; one without them."""
+        return np.array(self.curve or (1.0,) * len(self.places_m or (0.0,)))
+
+    @property
+    def scale(self) -> float:
+        """The value against which deviations are relative: the target or limit, the largest of a curve."""
+        return self.wanted * float(np.max(np.abs(self.factors)))
+
+    def deviations(self, values: FloatArray) -> FloatArray:
+        """Relative deviations of values, for each condition those at the places, from the target or limit."""
+        wanted = self.wanted * np.resize(self.factors, len(values))
+        return np.asarray((values - wanted) / self.scale)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -247,10 +278,16 @@ def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQues
 def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     place = f"goals, {number}"
     goal: Goal = made(Goal, checked_table(Goal, table, place))
-    if goal.output not in OUTPUTS:
+    if goal.output not in (*OUTPUTS, FORCE_ALONG_EDGE):
         raise ParameterError("{place}: unknown output {name}. {allowed}").tag(
-            "unknown_name", place=place, name=goal.output, allowed=nearest(goal.output, OUTPUTS)
+            "unknown_name", place=place, name=goal.output, allowed=nearest(goal.output, (*OUTPUTS, FORCE_ALONG_EDGE))
         )
+    along, places = goal.output == FORCE_ALONG_EDGE, goal.places_m or ()
+    if along != bool(places) or len(goal.curve or places) != len(places) or (along and goal.ratio):
+        raise ParameterError(
+            "{place}: places_m and curve are for {name}, which needs places. Give a factor for each place, or no "
+            "curve, and no ratio."
+        ).tag("contradiction", place=place, name=FORCE_ALONG_EDGE)
     if sum(limit is not None for limit in (goal.target, goal.at_most, goal.at_least)) != 1:
         raise ParameterError("{place}: give one of target, at_most and at_least.").tag("contradiction", place=place)
     chosen = goal.conditions or tuple(range(1, conditions + 1))
