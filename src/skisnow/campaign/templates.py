@@ -227,29 +227,19 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
         The folder has a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is written then.
     """
     folder = Path(folder)
-    there = _there(folder)
+    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    there = [name for name in names if name in CAMPAIGN_FILES or is_workbook(name)]
     if CAMPAIGN_FILE in there or (there and xlsx):
         raise OutputError(
             "{folder} already contains a campaign ({there}); nothing was written. Choose another folder."
         ).tag("holds_campaign_already", folder=folder, there=list(there))
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
-    contents = _workbook(name) if xlsx else _files(name, tables=not there)
+    contents = {WORKBOOK: workbook_bytes(name)} if xlsx else _files(name, tables=not there)
     prepare_folder(folder)
     with staged(folder, last=next(iter(contents))) as stage:
         for file, content in contents.items():
             write_file(stage.path / file, content)
     return tuple(folder / file for file in contents)
-
-
-def _workbook(name: str) -> Mapping[str, bytes | str]:
-
-    return {WORKBOOK: workbook_bytes(name)}
-
-
-def _there(folder: Path) -> list[str]:
-    """Names of tables and workbooks in a folder."""
-    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
-    return [name for name in names if name in CAMPAIGN_FILES or is_workbook(name)]
 
 
 def _files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:

@@ -19,7 +19,7 @@ from .options import (
     seed_number,
     whole_number,
 )
-from .output import Ending, Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
+from .output import Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
 
 MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 
@@ -87,7 +87,9 @@ def run(options: argparse.Namespace) -> int:
         result = _identified(options)
         with ending.finishing():
             _tell(options, result, scenario_input)
-    return _status(result, ending)
+    if ending.requested or ending.pressed or result.outcome == "interrupted":
+        return ending.status()
+    return 1 if result.outcome in ("too_few_points", "not_converged") else 0
 
 
 def _prepared(options: argparse.Namespace) -> ScenarioFile:
@@ -156,9 +158,3 @@ def _tell(options: argparse.Namespace, result: Identification, scenario_input: S
         print(f"Report: {page}", file=sys.stderr)
     if result.outcome == "interrupted" and options.out is not None:
         print("The same command with --resume goes on with the simulations that are kept.", file=sys.stderr)
-
-
-def _status(result: Identification, ending: Ending) -> int:
-    if ending.requested or ending.pressed or result.outcome == "interrupted":
-        return ending.status()
-    return 1 if result.outcome in ("too_few_points", "not_converged") else 0

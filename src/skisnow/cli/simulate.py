@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._support.errors import ModelLimitWarning
 from .options import add_changes, add_language, add_workers, changes_of, number, scenario_of, seed_number, whole_number
-from .output import Ending, Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
+from .output import Progress, announced, ending_is_an_interrupt, prepare_output, print_json, print_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -64,10 +64,6 @@ def simulate_scenario(options: argparse.Namespace) -> int:
         result, refinements = _computed(scenario_input, verify=options.verify)
         with ending.finishing():
             _tell(options, scenario_input, result, refinements)
-    return _status(result, ending)
-
-
-def _status(result: Run, ending: Ending) -> int:
     return ending.status() if ending.requested or ending.pressed or result.outcome == "interrupted" else 0
 
 

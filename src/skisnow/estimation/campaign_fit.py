@@ -266,14 +266,6 @@ class SeriesFit:
         C = np.stack((Chh, Chg, Chd, Chg, posterior.Cgg, posterior.Cgd, Chd, posterior.Cgd, posterior.Cdd), axis=-1)
         lost = ~(np.abs(step) < _LOST) | ~np.isfinite(C).all(axis=-1)
         C = C.reshape(-1, 3, 3)
-        of_series = (self._h, self._g, self._d, C, self._scatter_parts(line, C))
-        for values in of_series:
-            values[lost] = np.nan
-        misfit = self._readings.sums(line.weight * line.residual**2)
-        return FittedSeries(of_series, misfit, free, self._spreads, self._freedom(line, posterior, free))
-
-    def _scatter_parts(self, line: _Line, C: FloatArray) -> FloatArray:
-        """Σ_j w_j² (C J_j)² (dê/dln V)² s² of each of the three parameters."""
         sums = self._readings.sums
         J = (-line.slope, line.slope * self._share, np.ones_like(line.slope))
         scatter2 = line.weight**2 * line.slope**2 * self._per_reading(self._spreads.scatter2)
@@ -282,7 +274,11 @@ class SeriesFit:
         for i in range(3):
             for k in range(i, 3):
                 middle[:, i, k] = middle[:, k, i] = sums(scatter2 * J[i] * J[k])
-        return np.einsum("mik,mkl,mil->mi", C, middle, C)
+        of_series = (self._h, self._g, self._d, C, np.einsum("mik,mkl,mil->mi", C, middle, C))
+        for values in of_series:
+            values[lost] = np.nan
+        misfit = self._readings.sums(line.weight * line.residual**2)
+        return FittedSeries(of_series, misfit, free, self._spreads, self._freedom(line, posterior, free))
 
     def _freedom(self, line: _Line, posterior: _Posterior, free: FloatArray) -> Freedom:
         """Twice the Fisher information of the logarithm of each spread, of prior and data."""

@@ -12,7 +12,7 @@ from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
-from .._support.arrays import BoolArray, FloatArray, IntArray, index_names
+from .._support.arrays import BoolArray, FloatArray, index_names
 from .._support.errors import FitError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, ShownFields
@@ -200,16 +200,12 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
             n_values = len(np.unique(x[mine]))
             if mine.sum() >= FEWEST_TESTS and n_values >= FEWEST_ANGLES:
                 rows.append(Regression(plan, name, int(mine.sum()), n_values, _fit(y[mine], x[mine]), None))
-        rows.append(_pooled(plan, x, y, site_of))
+        fit = _fit(y, x)
+        by_site = None
+        if fit is not None and len(np.unique(site_of)) > 1:
+            by_site = cluster_intervals(y, x, site_of).intervals
+        rows.append(Regression(plan, "all", len(y), len(np.unique(x)), fit, by_site))
     return tuple(rows)
-
-
-def _pooled(plan: RegressionPlan, x: FloatArray, y: FloatArray, sites: IntArray) -> Regression:
-    fit = _fit(y, x)
-    by_site = None
-    if fit is not None and len(np.unique(sites)) > 1:
-        by_site = cluster_intervals(y, x, sites).intervals
-    return Regression(plan, "all", len(y), len(np.unique(x)), fit, by_site)
 
 
 def _fit(response: FloatArray, predictor: FloatArray) -> LinearFit | None:

@@ -120,22 +120,17 @@ def _draw_plan(axes: Axes, answers: list[Json]) -> None:
         station, line = np.asarray(answer["station_m"])[::-1], _with_nan(answer["edge_line_mm"])[::-1] * MM
         line -= np.interp(0.0, station, line)
         axes.plot(station, line / MM, color=_colour(place), linewidth=3.0, alpha=0.35, solid_capstyle="butt")
-        for style, (rear, front) in _arcs(answer):
+        circles = []
+        if answer["turn_radius_boot_m"] is not None:
+            circles.append((_BOOT_CIRCLE, (-BOOT_REACH, BOOT_REACH)))
+        if answer["turn_radius_chord_m"] is not None:
+            circles.append((_CHORD_CIRCLE, contact_ends(answer)))
+        for style, (rear, front) in circles:
             x, y = arc_through(station, line, rear, front)
             axes.plot(x, y / MM, color=_colour(place), linestyle=style, linewidth=0.9)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_xlabel(Message("position along the ski (m); boot = 0, tail left, tip right"))
     axes.set_ylabel(Message("edge towards the\ninside of the turn (mm)"))
-
-
-def _arcs(answer: Json) -> list[tuple[Any, tuple[float, float]]]:
-    """Line style, and rear and front station (m) on the edge, of each circle through three of its points."""
-    circles = []
-    if answer["turn_radius_boot_m"] is not None:
-        circles.append((_BOOT_CIRCLE, (-BOOT_REACH, BOOT_REACH)))
-    if answer["turn_radius_chord_m"] is not None:
-        circles.append((_CHORD_CIRCLE, contact_ends(answer)))
-    return circles
 
 
 def contact_ends(answer: Json) -> tuple[float, float]:

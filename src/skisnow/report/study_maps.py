@@ -10,7 +10,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.lines import Line2D
 
-from .._support.arrays import FloatArray
 from .._support.messages import Message
 from .._support.units import DEGREE
 from .figures.style import (
@@ -121,22 +120,16 @@ def share_of_limit(row: Json) -> float:
 
 
 def _draw_field(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:
-    x, y, share = _grid(rows, layout)
-    logarithm = np.log(np.clip(share, _LEAST, 1.0 / _LEAST))
-    bounds = np.log([_LEAST / 10.0, *LEVELS, 10.0 / _LEAST])
-    axes.contourf(x, y, logarithm, levels=bounds, colors=_COLOURS, zorder=0)
-    if np.nanmin(logarithm) < 0.0 < np.nanmax(logarithm):
-        axes.contour(x, y, logarithm, levels=[0.0], colors=[BLACK], linewidths=1.8, zorder=2)
-
-
-def _grid(rows: Sequence[Json], layout: MapLayout) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Values of both inputs, and the grip utilisations as an array (y, x); a grid has one row for each cell."""
     second = str(layout.second)
     x, y = (np.array(sorted({float(row[name]) for row in rows})) for name in (layout.x, second))
     share = np.full((len(y), len(x)), np.nan)
     for row in rows:
         share[np.searchsorted(y, row[second]), np.searchsorted(x, row[layout.x])] = share_of_limit(row)
-    return x, y, share
+    logarithm = np.log(np.clip(share, _LEAST, 1.0 / _LEAST))
+    bounds = np.log([_LEAST / 10.0, *LEVELS, 10.0 / _LEAST])
+    axes.contourf(x, y, logarithm, levels=bounds, colors=_COLOURS, zorder=0)
+    if np.nanmin(logarithm) < 0.0 < np.nanmax(logarithm):
+        axes.contour(x, y, logarithm, levels=[0.0], colors=[BLACK], linewidths=1.8, zorder=2)
 
 
 def _draw_points(axes: Axes, rows: Sequence[Json], layout: MapLayout) -> None:

@@ -272,7 +272,9 @@ def _run_rows(summary: Json) -> Iterator[tuple[str, str]]:
         yield "gates", _gates(summary)
     yield "energy residual", _residual(summary["energy_balance_error"])
     yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
-    yield "computed in", _computed(summary)
+    wall, simulated = summary["wall_s"], summary["simulated_s"]
+    rate = f", {plain(simulated / wall)} times real time" if wall and simulated else ""
+    yield "computed in", f"{plain(wall)} s{rate}"
 
 
 def _gates(summary: Json) -> str:
@@ -295,12 +297,6 @@ def _residual(error: float | None) -> str:
     if error is None:
         return "no energy was exchanged"
     return f"{plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= OPEN_SHARE else ', too large'}"
-
-
-def _computed(summary: Json) -> str:
-    wall, simulated = summary["wall_s"], summary["simulated_s"]
-    rate = f", {plain(simulated / wall)} times real time" if wall and simulated else ""
-    return f"{plain(wall)} s{rate}"
 
 
 def _verification(verification: Mapping[str, Json]) -> Iterator[str]:

@@ -112,7 +112,10 @@ _HEADER_BYTES: Final = 512
 def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes]]:
     """Name and content of each snow sample."""
     yield "pit.caaml", caaml_text(sample_pit())
-    yield "densities.csv", _densities(random)
+    rows = ["ID,TOP,BOTTOM,RHO,NOTES,TYPE"]
+    for pit in ("P1", "P2"):
+        rows += [f"{pit},{top},{top - 10},{random.normal(450.0, 20.0):.1f},-9999,N" for top in range(120, 80, -10)]
+    yield "densities.csv", "\n".join((*rows, ""))
     yield "weather.smet", smet_text(_weather(random))
     yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
 
@@ -135,14 +138,6 @@ def sample_pit() -> SnowPit:
         densities=(LayerDensity(0.0, 512.5, 0.1), LayerDensity(0.2, 430.0, 0.1)),
         temperatures=(DepthTemperature(0.0, -7.25), DepthTemperature(0.1, -5.5), DepthTemperature(0.4, -3.0)),
     )
-
-
-def _densities(random: np.random.Generator) -> str:
-    """CSV of density-cutter samples of two pits, with heights in cm above the ground."""
-    rows = ["ID,TOP,BOTTOM,RHO,NOTES,TYPE"]
-    for pit in ("P1", "P2"):
-        rows += [f"{pit},{top},{top - 10},{random.normal(450.0, 20.0):.1f},-9999,N" for top in range(120, 80, -10)]
-    return "\n".join((*rows, ""))
 
 
 def _weather(random: np.random.Generator) -> StationSeries:

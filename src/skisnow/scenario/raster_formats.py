@@ -143,7 +143,8 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     counts = int(header["ncols"]), int(header["nrows"])
     steps = _cell(path, header, "dx"), _cell(path, header, "dy")
     west, south = (_lower_left(path, header, axis, size) for axis, size in zip("xy", steps, strict=True))
-    system = _coordinates_of_prj(path)
+    file = Path(path).with_suffix(".prj")
+    system = map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM)) if is_file(file) else None
     raster = Raster(
         path=path,
         values=_values(path, text, first, counts, header.get("nodata_value", header.get("nodata"))),
@@ -248,11 +249,6 @@ def _where(text: str, first: int, cell: int) -> str:
             return f"line {line}, column {cell + 1}"
         cell -= len(words)
     raise AssertionError(cell)
-
-
-def _coordinates_of_prj(path: str | Path) -> MapSystem | None:
-    file = Path(path).with_suffix(".prj")
-    return map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM)) if is_file(file) else None
 
 
 ROUNDED: Final = 0.01

@@ -135,7 +135,9 @@ def sledge_body(
     inertia = sledge_inertia(sledge, ski, sides)
     axes = np.array([[1.0, 0.0, 0.0], base_lateral(sledge.edge_angle), base_normal(sledge.edge_angle)])
     mass, stiffness = _lower(ski.mass), _lower(ski.stiffness)
-    damping = 2.0 * damping_ratio / _first_bending_frequency(ski)
+    deflection = np.where(np.arange(ski.size) % 3 == 0, np.linspace(-1.0, 1.0, ski.size), 0.0)
+    start = np.stack([np.maximum(deflection, 0.0), np.minimum(deflection, 0.0)], axis=1)  # forebody and afterbody
+    damping = 2.0 * damping_ratio / float(np.sqrt(lowest_eigenvalue(ski.stiffness, ski.mass, start)))
     skis = tuple(
         FlexibleSki(
             boot=np.array([0.0, y, 0.0]), axes=axes, unknown=_first_unknowns(ski), mass=mass, stiffness=stiffness,
@@ -160,10 +162,3 @@ def _lower(matrix: FloatArray) -> FloatArray:
     for i in range(5):
         lower[i, i + 1 :] = 0.0
     return lower
-
-
-def _first_bending_frequency(ski: ClampedSki) -> float:
-    """Angular frequency (rad/s) of the softest bending mode of the clamped ski."""
-    deflection = np.where(np.arange(ski.size) % 3 == 0, np.linspace(-1.0, 1.0, ski.size), 0.0)
-    start = np.stack([np.maximum(deflection, 0.0), np.minimum(deflection, 0.0)], axis=1)  # forebody and afterbody
-    return float(np.sqrt(lowest_eigenvalue(ski.stiffness, ski.mass, start)))

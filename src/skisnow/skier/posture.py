@@ -159,7 +159,11 @@ class Posture:
     def step(self, command: Command, seen: Seen, dt: float) -> None:
         """Move by a period (s), as far as joints and legs allow."""
         self._step_aside(command, seen, dt)
-        self._step_rise(command, seen, dt)
+        rate = float(self.rates[RISE])
+        more = 0.0 if command.load is None else self._edged() * (command.load - seen.load) / (2.0 * DAMPING)
+        later = max(-FASTEST_RISE, min(FASTEST_RISE, more - SETTLING * float(self.numbers[RISE])))
+        self.numbers[RISE] += 0.5 * (rate + later) * dt
+        self.rates[RISE] = later
         self._step_ahead(command.ahead, dt)
         if command.hip_torque is not None:
             self._step_hips(command.hip_torque, seen, dt)
@@ -203,14 +207,6 @@ class Posture:
         least = self.skier.leg_yielding
         damped = 2.0 * self.centre[1] * (command.load or 0.0) / (DAMPING * self.stance**2)
         return least + self._edged() * max(0.0, damped - least)
-
-    def _step_rise(self, command: Command, seen: Seen, dt: float) -> None:
-        """Legs give way to a load that is not asked for."""
-        rate = float(self.rates[RISE])
-        more = 0.0 if command.load is None else self._edged() * (command.load - seen.load) / (2.0 * DAMPING)
-        later = max(-FASTEST_RISE, min(FASTEST_RISE, more - SETTLING * float(self.numbers[RISE])))
-        self.numbers[RISE] += 0.5 * (rate + later) * dt
-        self.rates[RISE] = later
 
     def _step_ahead(self, asked: float, dt: float) -> None:
         """Within the range and the rate of the skier's fore and aft."""

@@ -89,7 +89,10 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     computed = fitted if path is None else path.speed_at(np.maximum.accumulate(track.time))
     speed = np.where(np.isfinite(recorded), recorded, computed)
     arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source, path)
-    heading, heading_sd = _heading(smoothed, fitted)
+    moving = _moving(smoothed, fitted)
+    heading, heading_sd = np.full(len(fitted), np.nan), np.full(len(fitted), np.nan)
+    heading[moving] = np.unwrap(np.arctan2(smoothed.velocity[moving, 1], smoothed.velocity[moving, 0]))
+    heading_sd[moving] = np.sqrt(smoothed.covariance[moving, 1, 1]) / fitted[moving]
     curvature, curvature_sd = _curvature(smoothed, fitted)
     with np.errstate(divide="ignore", invalid="ignore"):
         radius = 1.0 / curvature
@@ -218,15 +221,6 @@ def _moving(smoothed: SmoothedTrack, fitted: FloatArray) -> BoolArray:
     error = np.sqrt(smoothed.covariance[:, 1, 1])
     with np.errstate(invalid="ignore"):
         return (fitted >= LEAST_SPEED) & (fitted >= CERTAIN * error)
-
-
-def _heading(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Direction of the velocity (n,) without jumps of 2π, and its standard error; NaN at rest."""
-    moving = _moving(smoothed, fitted)
-    heading, error = np.full(len(fitted), np.nan), np.full(len(fitted), np.nan)
-    heading[moving] = np.unwrap(np.arctan2(smoothed.velocity[moving, 1], smoothed.velocity[moving, 0]))
-    error[moving] = np.sqrt(smoothed.covariance[moving, 1, 1]) / fitted[moving]
-    return heading, error
 
 
 def _curvature(smoothed: SmoothedTrack, fitted: FloatArray) -> tuple[FloatArray, FloatArray]:

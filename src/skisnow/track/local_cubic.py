@@ -186,7 +186,9 @@ def _solve(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
     right_rate[:, 1:] = below[:, None] / half * np.moveaxis(sums.rate_values, 0, 1)
     enough = sums.place_count >= FEWEST_POINTS
     covariance = np.full_like(of_place, np.nan)
-    covariance[enough] = _inverse((of_place + of_rate)[enough])
+    normal = (of_place + of_rate)[enough]
+    ridge = _RIDGE * np.trace(normal, axis1=1, axis2=2)
+    covariance[enough] = np.linalg.inv(normal + ridge[:, None, None] * np.eye(TERMS))
     coefficients = covariance @ (right_place + right_rate)
     return (
         coefficients,
@@ -196,12 +198,6 @@ def _solve(sums: _Moments, half: float) -> tuple[npt.NDArray[np.generic], ...]:
         sums.place_count,
         sums.rate_count,
     )
-
-
-def _inverse(normal: FloatArray) -> FloatArray:
-    """Inverse of each matrix (n, 4, 4); a singular one gets huge variances instead of an error."""
-    ridge = _RIDGE * np.trace(normal, axis1=1, axis2=2)
-    return np.linalg.inv(normal + ridge[:, None, None] * np.eye(TERMS))
 
 
 def _misfit(squares: FloatArray, coefficients: FloatArray, normal: FloatArray, right: FloatArray) -> FloatArray:

@@ -56,21 +56,6 @@ class Unpacking:
         Raises ParameterError: as in `take`; or the file is not a zip file, is damaged, encrypted or not deflated, or
             contains links.
         """
-        self._require_small_directory(packed)
-        with _damage_errors():
-            archive = zipfile.ZipFile(packed)
-        with archive:
-            members = [member for member in archive.infolist() if not member.filename.endswith("/")]
-            if len(members) > self.limits.files:
-                raise ParameterError("more than {most} files at once are not accepted").tag(
-                    "too_many_files", most=self.limits.files
-                )
-            for member in members:
-                _require_plain(member)
-                self._write(member.filename, _unpacked(archive, member))
-
-    def _require_small_directory(self, packed: IO[bytes]) -> None:
-        """Reject a directory of files that would fill the memory."""
         with _damage_errors():
             packed.seek(0, 2)
             size = packed.tell()
@@ -82,6 +67,17 @@ class Unpacking:
             raise ParameterError("more than {most} files at once are not accepted").tag(
                 "too_many_files", most=self.limits.files
             )
+        with _damage_errors():
+            archive = zipfile.ZipFile(packed)
+        with archive:
+            members = [member for member in archive.infolist() if not member.filename.endswith("/")]
+            if len(members) > self.limits.files:
+                raise ParameterError("more than {most} files at once are not accepted").tag(
+                    "too_many_files", most=self.limits.files
+                )
+            for member in members:
+                _require_plain(member)
+                self._write(member.filename, _unpacked(archive, member))
 
     def _write(self, name: str, pieces: Iterable[bytes]) -> None:
         place = self._place(name)

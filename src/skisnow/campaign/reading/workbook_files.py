@@ -75,21 +75,16 @@ def unfolded(files: CampaignFiles) -> UnfoldedFiles:
         place, allowed = workbooks.places.pop(name), Message("one table of a kind")
         workbooks.problems.append(error("unreadable_file", place, value=name, allowed=allowed, action=action))
     for place, rows in workbooks.unread.items():
-        meant = _likely_table(rows)
+        headings = next((cells for cells in rows if len(cells) > 2), [])
+        shares = {
+            form: len(set(columns_by_synonym(form, headings).values()) & set(form.required)) / len(form.required)
+            for form in TABLES
+        }
+        form = max(shares, key=lambda form: shares[form])
+        meant = form.file.removesuffix(".csv") if shares[form] >= _LIKELY else None
         if meant and _FILES[meant] not in {*names, *workbooks.of_sheets}:
             workbooks.problems.append(_misnamed_sheet(place, meant))
     return workbooks
-
-
-def _likely_table(rows: Rows) -> str | None:
-    """Table with the most columns among the headings of a sheet; None if there are too few."""
-    headings = next((cells for cells in rows if len(cells) > 2), [])
-    shares = {
-        form: len(set(columns_by_synonym(form, headings).values()) & set(form.required)) / len(form.required)
-        for form in TABLES
-    }
-    form = max(shares, key=lambda form: shares[form])
-    return form.file.removesuffix(".csv") if shares[form] >= _LIKELY else None
 
 
 def _misnamed_sheet(place: str, table: str) -> Problem:

@@ -121,12 +121,17 @@ def _unloading_readings(there: BoolArray, depth: FloatArray) -> UnloadingReading
 
 def shear(generator: np.random.Generator, noise: ReferenceNoise) -> tuple[ShearTests, FloatArray]:
     """Draw the shear tests, and the true S_f (N/m²) of each."""
-    further = _further_density(generator)
+    beside = [site.snow_density for site in design.PENETRATION_SITES for _ in range(site.spots)]
+    alone = [site.snow_density for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
+    centre = np.array(beside + alone)
+    further = np.rint(_normal_within(generator, centre, design.SHEAR_DENSITY_SD, design.SHEAR_DENSITY_RANGE))
     count = design.HARD_TESTS + design.SOFT_TESTS + further.size
     place_in_range = generator.uniform(size=count)
     moment_error = noise.moment_sd * generator.standard_normal(count)
     lever_arm = design.LEVER_ARM + noise.lever_arm_sd * generator.standard_normal(count)
-    angle = _shear_angles(further.size)
+    angles = np.array(design.SHEAR_ANGLES_DEG)
+    in_turn = [np.resize(angles, count) for count in (design.HARD_TESTS, design.SOFT_TESTS)]
+    angle = np.concatenate([*in_turn, np.full(further.size, 90.0)]) * DEGREE
     stress = _shear_stress(generator, angle, further, noise)  # last: redrawing takes a varying count of numbers
     low, high = design.PLATE_DEPTHS
     reachable = design.MAXIMUM_MOMENT / (stress * design.PLATE_LENGTH * design.LEVER_ARM)
@@ -220,19 +225,6 @@ def _round_to_gauge(depth: FloatArray, noise: ReferenceNoise) -> FloatArray:
     steps = np.rint(depth / noise.gauge_resolution)
     # Rounded in mm, so that the number is the one that a file states, to the last bit.
     return np.round(steps * (noise.gauge_resolution / MM), 6) * MM
-
-
-def _further_density(generator: np.random.Generator) -> FloatArray:
-    beside = [site.snow_density for site in design.PENETRATION_SITES for _ in range(site.spots)]
-    alone = [site.snow_density for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
-    centre = np.array(beside + alone)
-    return np.rint(_normal_within(generator, centre, design.SHEAR_DENSITY_SD, design.SHEAR_DENSITY_RANGE))
-
-
-def _shear_angles(further: int) -> FloatArray:
-    angles = np.array(design.SHEAR_ANGLES_DEG)
-    in_turn = [np.resize(angles, count) for count in (design.HARD_TESTS, design.SOFT_TESTS)]
-    return np.concatenate([*in_turn, np.full(further, 90.0)]) * DEGREE
 
 
 def _shear_stress(

@@ -130,7 +130,13 @@ def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     rows: dict[int, Reading] = {}
     for entry in history:
         if entry.sequence not in test.undone:
-            _apply_entry(test, rows, entry)
+            if entry.action == "add":
+                rows[entry.sequence] = Reading(entry)
+                test.rows.append(rows[entry.sequence])
+            elif entry.action == "correct" and entry.about in rows:
+                rows[entry.about].corrections.append(entry)
+            elif entry.action == "cancel":
+                test.cancelling = entry
     test.rows.sort(key=_order)
     return test
 
@@ -142,16 +148,6 @@ def _order(row: Reading) -> tuple[bool, float, int, int]:
         return False, 0.0, position or 0, row.entered.sequence
     taken_off = is_unloading_cell(row.cells.get(BRANCH, ""))
     return taken_off, -float(load) if taken_off else float(load), position, row.entered.sequence
-
-
-def _apply_entry(test: ReplayedTest, rows: dict[int, Reading], entry: JournalEntry) -> None:
-    if entry.action == "add":
-        rows[entry.sequence] = Reading(entry)
-        test.rows.append(rows[entry.sequence])
-    elif entry.action == "correct" and entry.about in rows:
-        rows[entry.about].corrections.append(entry)
-    elif entry.action == "cancel":
-        test.cancelling = entry
 
 
 COLUMNS: Final = tuple(column.name for column in fields(AppliedCorrection))

@@ -154,27 +154,23 @@ def stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> Sto
     Raises StoreError: the row or one of its files is damaged.
     """
     try:
-        return _stored_campaign(connection, row)
+        rows = connection.execute(
+            select(campaign_file.c.path, content.c.size, content.c.sha256)
+            .join_from(campaign_file, content)
+            .where(campaign_file.c.campaign_id == row.id)
+        )
+        files = [StoredFile(text_of(file.path), require_integer(file.size), text_of(file.sha256)) for file in rows]
+        return StoredCampaign(
+            id=text_of(row.id),
+            name=text_of(row.name),
+            added_at=datetime.strptime(text_of(row.added_at), TIME).replace(tzinfo=UTC),
+            sha256=text_of(row.sha256),
+            n_errors=None if row.n_errors is None else require_integer(row.n_errors),
+            n_warnings=None if row.n_warnings is None else require_integer(row.n_warnings),
+            files=tuple(sorted(files, key=lambda file: file.path)),
+        )
     except (TypeError, ValueError) as error:
         raise damage_error(Message("The campaign {id}", id=row.id)) from error
-
-
-def _stored_campaign(connection: Connection, row: Row[tuple[object, ...]]) -> StoredCampaign:
-    rows = connection.execute(
-        select(campaign_file.c.path, content.c.size, content.c.sha256)
-        .join_from(campaign_file, content)
-        .where(campaign_file.c.campaign_id == row.id)
-    )
-    files = [StoredFile(text_of(file.path), require_integer(file.size), text_of(file.sha256)) for file in rows]
-    return StoredCampaign(
-        id=text_of(row.id),
-        name=text_of(row.name),
-        added_at=datetime.strptime(text_of(row.added_at), TIME).replace(tzinfo=UTC),
-        sha256=text_of(row.sha256),
-        n_errors=None if row.n_errors is None else require_integer(row.n_errors),
-        n_warnings=None if row.n_warnings is None else require_integer(row.n_warnings),
-        files=tuple(sorted(files, key=lambda file: file.path)),
-    )
 
 
 def text_of(value: object) -> str:

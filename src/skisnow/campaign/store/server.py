@@ -101,7 +101,12 @@ def open_server(address: ServerAddress, *, create: bool, busy_timeout_s: float) 
     engine = _engine(address, busy_timeout_s)
     try:
         with engine.connect() as connection:
-            _require_unicode(connection, address)
+            encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
+            if encoding != "UTF8":
+                raise StoreError(
+                    "The database {address} stores texts as {encoding}, which lacks letters; create one with: createdb "
+                    "--encoding=UTF8 --template=template0 NAME"
+                ).tag("wrong_encoding", address=address, encoding=encoding)
             revision = _revision(connection, address)
         if revision is None and not create:
             raise StoreError("There is no store at {address}; add a campaign first, or name another place.").tag(
@@ -162,15 +167,6 @@ def _engine(address: ServerAddress, busy_timeout_s: float) -> Engine:
 
     event.listen(engine, "connect", set_up)
     return engine
-
-
-def _require_unicode(connection: Connection, address: ServerAddress) -> None:
-    encoding = connection.exec_driver_sql("SHOW server_encoding").scalar_one()
-    if encoding != "UTF8":
-        raise StoreError(
-            "The database {address} stores texts as {encoding}, which lacks letters; create one with: createdb "
-            "--encoding=UTF8 --template=template0 NAME"
-        ).tag("wrong_encoding", address=address, encoding=encoding)
 
 
 def _revision(connection: Connection, address: ServerAddress) -> str | None:

@@ -234,30 +234,26 @@ def c3d_content(data: bytes) -> C3dContent:
     Raises ParameterError: the file is damaged, cut off, or not in this format; the message does not name it.
     """
     try:
-        return _content(data)
+        start = BLOCK * (data[0] - 1)
+        if data[1] != _KEY or start < BLOCK:
+            raise ParameterError("the file does not begin as a .c3d file does").tag("wrong_kind")
+        processor = data[start + 3]
+        if processor not in _ORDERS:
+            raise ParameterError("the processor has the number {processor}; it must be 84, 85 or 86").tag(
+                "out_of_range", processor=processor
+            )
+        parameters = dict(_parameters(data, start + 4, processor))
+        order = _ORDERS[processor]
+        count, analogs, first, last = struct.unpack_from(f"{order}4H", data, 2)
+        (begin,) = struct.unpack_from(f"{order}H", data, 16)
+        scale, rate = _floats(data[12:16] + data[20:24], processor).tolist()
+        frames = last - first + 1
+        if last == _LAST_COUNTED:  # a longer capture states its length in a parameter
+            frames = max(frames, int(_number(parameters, ("POINT", "FRAMES"), frames)))
+        points = _points(data, BLOCK * (begin - 1), (frames, count, analogs), scale, processor)
+        return C3dContent(parameters, rate, max(first - 1, 0), points)
     except (struct.error, IndexError) as error:
         raise ParameterError("the file is cut off within its head").tag("damaged") from error
-
-
-def _content(data: bytes) -> C3dContent:
-    start = BLOCK * (data[0] - 1)
-    if data[1] != _KEY or start < BLOCK:
-        raise ParameterError("the file does not begin as a .c3d file does").tag("wrong_kind")
-    processor = data[start + 3]
-    if processor not in _ORDERS:
-        raise ParameterError("the processor has the number {processor}; it must be 84, 85 or 86").tag(
-            "out_of_range", processor=processor
-        )
-    parameters = dict(_parameters(data, start + 4, processor))
-    order = _ORDERS[processor]
-    count, analogs, first, last = struct.unpack_from(f"{order}4H", data, 2)
-    (begin,) = struct.unpack_from(f"{order}H", data, 16)
-    scale, rate = _floats(data[12:16] + data[20:24], processor).tolist()
-    frames = last - first + 1
-    if last == _LAST_COUNTED:  # a longer capture states its length in a parameter
-        frames = max(frames, int(_number(parameters, ("POINT", "FRAMES"), frames)))
-    points = _points(data, BLOCK * (begin - 1), (frames, count, analogs), scale, processor)
-    return C3dContent(parameters, rate, max(first - 1, 0), points)
 
 
 def _number(parameters: Mapping[tuple[str, str], Values], key: tuple[str, str], default: float) -> float:

@@ -127,17 +127,12 @@ def _render_as(form: Form, drawing: Drawing) -> bytes:
     with warnings.catch_warnings():
         # a site's name in a script that the font lacks: boxes in the PNG, right in the SVG, whose text is text
         warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from font")
-        _lay_out(drawing.figure)
+        engine = drawing.figure.get_layout_engine()
+        if engine is not None:
+            engine.execute(drawing.figure)
+            _set_no_engine(drawing.figure)
         drawing.figure.savefig(content, format=form, metadata=UNDATED[form], **options)
     return content.getvalue()
-
-
-def _lay_out(figure: Figure) -> None:
-    """Place the axes once for all files: this takes as long as drawing them."""
-    engine = figure.get_layout_engine()
-    if engine is not None:
-        engine.execute(figure)
-        _set_no_engine(figure)
 
 
 def _set_no_engine(figure: Figure) -> None:

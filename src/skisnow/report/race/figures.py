@@ -155,12 +155,8 @@ def gate_gaps_figure(gaps: Sequence[GateGap], names: tuple[str, str]) -> Figure:
     below.bar(crossed, lost, width=0.7, color=np.where(lost > 0, VERMILLION, BLUE).tolist())
     below.set_ylabel(Message("lost since the\ngate before (s)"))
     below.set_xlabel(Message("gate"))
-    _name_gates(below, gaps)
+    every = range(0, len(gaps), 1 + (len(gaps) - 1) // MOST_NAMES)
+    below.set_xticks(list(every), [figure_text(gaps[i].gate, longest=8) for i in every])
+    below.set_xlim(-0.7, len(gaps) - 0.3)
     figure.align_ylabels()
     return figure
-
-
-def _name_gates(axes: Axes, gaps: Sequence[GateGap]) -> None:
-    every = range(0, len(gaps), 1 + (len(gaps) - 1) // MOST_NAMES)
-    axes.set_xticks(list(every), [figure_text(gaps[i].gate, longest=8) for i in every])
-    axes.set_xlim(-0.7, len(gaps) - 0.3)

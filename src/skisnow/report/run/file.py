@@ -52,7 +52,9 @@ def write_run_file(
     memory = io.BytesIO()
     file = netcdf_file(memory, "w", version=2)  # 64-bit offsets: long runs pass 2 GB
     _write_attributes(file, run, values, provenance or {"versions": {"skisnow": version("skisnow")}})
-    _create_dimensions(file, run)
+    sizes = {TIME: len(run.time), SKI: len(SKI_NAMES), STATION: len(run.skis.station), PIECE: len(run.groove.width)}
+    for name, size in (sizes | {"space_axis": 3, "sledge_axis": 3, "letter": _LETTERS}).items():
+        file.createDimension(name, size)
     _write_ski_names(file)
     for variable in variables_of(run):
         _write_variable(file, variable, run)
@@ -91,12 +93,6 @@ def _write_attributes(file: Any, run: Run, values: Mapping[str, Any], provenance
             setattr(file, name, np.float64(number))
     for name, count in (("steps", run.steps), ("rejected_steps", run.rejected_steps)):
         setattr(file, name, np.int32(count))
-
-
-def _create_dimensions(file: Any, run: Run) -> None:
-    sizes = {TIME: len(run.time), SKI: len(SKI_NAMES), STATION: len(run.skis.station), PIECE: len(run.groove.width)}
-    for name, size in (sizes | {"space_axis": 3, "sledge_axis": 3, "letter": _LETTERS}).items():
-        file.createDimension(name, size)
 
 
 def _write_ski_names(file: Any) -> None:

@@ -54,17 +54,13 @@ def write_run(
         stage.stale += [*_STALE, *(path.name for path in folder.glob(_MOMENTS))]
         write_file(stage.path / SUMMARY, f"{json_text(contents)}\n")
         write_track(run, stage.path / "track.csv")
-        _write_gates(run, stage.path)
+        result = run_gates(run)
+        if result is not None:
+            write_file(stage.path / GATES, gates_csv(result))
         if write_more is not None:
             write_more(stage.path)
         page = write_run_report(run, contents, stage.path, language=language, progress=report)
     return folder / page.name
-
-
-def _write_gates(run: Run, folder: Path) -> None:
-    result = run_gates(run)
-    if result is not None:
-        write_file(folder / GATES, gates_csv(result))
 
 
 MOST_BYTES: Final = 1 << 26

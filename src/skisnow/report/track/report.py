@@ -183,7 +183,9 @@ def track_comparison(comparison: Comparison) -> Figure:
     lines = [comparison.measured, comparison.simulated]
     if comparison.fitted is not None:
         lines.append(comparison.fitted.before.simulated)
-    limits = _plan_limits(np.concatenate([line.place[:, :2] for line in lines]))
+    points = np.concatenate([line.place[:, :2] for line in lines])
+    room = _MARGIN * float(np.ptp(points, axis=0).max())
+    limits = track_limits(np.concatenate([points - room, points + room]))
     height = plan_height_mm(limits)
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _DISTANCES_MM + _FRAME_MM)
     grid = figure.add_gridspec(2, 1, height_ratios=(height + 10.0, _DISTANCES_MM))
@@ -204,12 +206,6 @@ def comparison_drawing(comparison: Comparison) -> Drawing:
     caption = prose("{simulated} and {measured} from above, and the distance between them along the latter.", **names)
     alt = Message("{simulated} and {measured} from above, and the distance between them.", **names)
     return Drawing("track_comparison", caption, alt, track_comparison(comparison))
-
-
-def _plan_limits(points: FloatArray) -> tuple[float, float, float, float]:
-    """Limits of a plan with a margin in proportion to its size."""
-    room = _MARGIN * float(np.ptp(points, axis=0).max())
-    return track_limits(np.concatenate([points - room, points + room]))
 
 
 def _relabel_axes(axes: Axes, x_label: str, y_label: str) -> None:
@@ -253,13 +249,6 @@ def _draw_distances(axes: Axes, comparison: Comparison) -> None:
             *place, marker="o", markersize=3.0, linestyle="none", color=line_style["color"], clip_on=False, zorder=4
         )
     axes.set_xlim(0.0, comparison.measured.length)
-    _set_scale(axes, comparison)
-    axes.set_xlabel(Message("distance along the measured track (m)"))
-    axes.set_ylabel(Message("distance of the\nsimulated track (m)"))
-
-
-def _set_scale(axes: Axes, comparison: Comparison) -> None:
-    """Set the axis of distances from 0; logarithmic if one distance would hide another."""
     every = [getattr(comparison, kind).numbers for kind in LINE_STYLES]
     largest = [numbers.max for numbers in every if numbers is not None and numbers.max > EXACTNESS]
     if largest and max(largest) > _HIDES * min(largest):
@@ -268,6 +257,8 @@ def _set_scale(axes: Axes, comparison: Comparison) -> None:
         axes.yaxis.set_major_formatter(plain_number)
     else:
         axes.set_ylim(bottom=0.0)
+    axes.set_xlabel(Message("distance along the measured track (m)"))
+    axes.set_ylabel(Message("distance of the\nsimulated track (m)"))
 
 
 def _thinned(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:

@@ -13,7 +13,7 @@ from typing import Any, Final, get_args
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.user_files.json_text import json_number
-from .passages import CourseResult, GateOutcome, Passage
+from .passages import CourseResult, GateOutcome
 
 COLUMNS: Final = (
     "gate",
@@ -34,25 +34,21 @@ def gate_rows(result: CourseResult) -> list[dict[str, Any]]:
     """Rows with `COLUMNS`; times count from the track's first point; None for missing values."""
     rows, before = [], result.start_time
     for passage in result.passages:
-        rows.append(_row(passage, result.start_time, before))
+        time, gate = passage.time, passage.gate
+        values = (
+            gate.name,
+            gate.side,
+            passage.outcome,
+            None if time is None else time - result.start_time,
+            None if time is None else time - before,
+            passage.speed,
+            passage.clearance,
+            *gate.turning,
+        )
+        cells = [json_number(value) if isinstance(value, float) else value for value in values]
+        rows.append(dict(zip(COLUMNS, cells, strict=True)))
         before = before if passage.time is None else passage.time
     return rows
-
-
-def _row(passage: Passage, start: float, before: float) -> dict[str, Any]:
-    time, gate = passage.time, passage.gate
-    values = (
-        gate.name,
-        gate.side,
-        passage.outcome,
-        None if time is None else time - start,
-        None if time is None else time - before,
-        passage.speed,
-        passage.clearance,
-        *gate.turning,
-    )
-    cells = [json_number(value) if isinstance(value, float) else value for value in values]
-    return dict(zip(COLUMNS, cells, strict=True))
 
 
 def gates_csv(result: CourseResult) -> str:

@@ -84,7 +84,16 @@ class _Table:
     def of(cls, cells: Cells, name: str) -> _Table:
         """Build a table with rows as long as its header; the case of known headings is ignored."""
         cells = dataclasses.replace(cells, header=tuple(map(_column_name, cells.header)))
-        _require_header(cells, name)
+        twice = [column for column in COLUMNS if cells.header.count(column) > 1]
+        if twice:
+            raise track_error(
+                "column_twice",
+                name,
+                place=f"row {cells.header_line}",
+                column=twice[0],
+                allowed=Message("each column once"),
+                action=Message("Rename or remove one of them."),
+            )
         width = len(cells.header)
         require_width(cells, name)
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
@@ -226,19 +235,6 @@ def _column_name(heading: str) -> str:
     """
     name = re.sub(r"[\s_]+", "_", heading.strip()).casefold()
     return name if name in COLUMNS else heading
-
-
-def _require_header(cells: Cells, name: str) -> None:
-    twice = [column for column in COLUMNS if cells.header.count(column) > 1]
-    if twice:
-        raise track_error(
-            "column_twice",
-            name,
-            place=f"row {cells.header_line}",
-            column=twice[0],
-            allowed=Message("each column once"),
-            action=Message("Rename or remove one of them."),
-        )
 
 
 _METRES, _DEGREES = ("", "m"), ("", "°", "deg", "grad")

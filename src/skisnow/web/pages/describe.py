@@ -99,7 +99,14 @@ def _restore_rows_on_reload(described: DescriptionForm) -> None:
 def _store(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
     if session is None:
         return Journals(lab.store).begin(text, once=once)
-    _require_used_names(session, toml_values(text))
+    described = toml_values(text)
+    for kind in ("tool", "plate"):
+        names = {entry["name"] for entry in described.get(kind, ())}
+        for test in session.campaign.tests.values():
+            missing = {row.cells[kind] for row in test.rows if kind in row.cells} - names
+            if missing:
+                message = Message(_IN_USE[kind], test=test.name, name=min(missing))
+                raise ParameterError(message).tag("name_in_use")
     if text != session.campaign.description:
         entry = NewEntry(action="describe", file=DESCRIPTION, cells={DESCRIPTION: text})
         session.write_down(entry, seen=session.campaign.described)
@@ -118,17 +125,6 @@ _NO_NAME: Final = {
     "tool": template("tool {number} has lengths and no name; give it one, or empty them"),
     "plate": template("plate {number} has lengths and no name; give it one, or empty them"),
 }
-
-
-def _require_used_names(session: EditSession, described: dict[str, Any]) -> None:
-    """Reject a description without the tools and plates of tests."""
-    for kind in ("tool", "plate"):
-        names = {entry["name"] for entry in described.get(kind, ())}
-        for test in session.campaign.tests.values():
-            missing = {row.cells[kind] for row in test.rows if kind in row.cells} - names
-            if missing:
-                message = Message(_IN_USE[kind], test=test.name, name=min(missing))
-                raise ParameterError(message).tag("name_in_use")
 
 
 class DescriptionForm:
@@ -177,7 +173,8 @@ class DescriptionForm:
             key: typed_number(NUMBERS[key], number.value or "") for key, number in self._numbers.items() if number.value
         }
         text = description_text(Description(values, self._tools.values(), self._plates.values()))
-        return text + _screening(self._given)
+        codes = self._given.get("screening", {}).get("exclude")
+        return text + ("" if codes is None else f"\n[screening]\nexclude = {codes!r}\n")
 
 
 class EntryRows:
@@ -267,8 +264,3 @@ def _default_description() -> dict[str, Any]:
 
 def _number_text(value: float | None) -> str:
     return "" if value is None else number_said(f"{value:.12g}")
-
-
-def _screening(description: dict[str, Any]) -> str:
-    codes = description.get("screening", {}).get("exclude")
-    return "" if codes is None else f"\n[screening]\nexclude = {codes!r}\n"
