@@ -10,8 +10,8 @@ import pytest
 
 import skisnow
 from skisnow import SnowProperties, Track
-from skisnow._support.arrays import cross
 from skisnow._support.units import Facts, Shown, SmallFigure, field_facts
+from skisnow._support.vectors import applied, combined, cross, unit
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
 from skisnow.identification import Identified, Parameter
@@ -177,13 +177,14 @@ def test_a_track_of_many_points_is_shown_short() -> None:
     assert len(repr(far).splitlines()) < 10
 
 
-@pytest.mark.parametrize("shape", [(3,), (2, 3), (5, 2, 3)])
-def test_a_vector_product_has_the_bits_of_numpy(shape: tuple[int, ...]) -> None:
-    """Also its sign: ahead by left is up."""
+def test_single_vectors_are_those_of_numpy() -> None:
+    """Also the sign of the product: ahead by left is up."""
     random = np.random.default_rng(1)
-    first, second = random.normal(size=shape), random.normal(size=shape)
-    assert np.array_equal(cross(first, second), np.cross(first, second))
-    assert cross(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])).tolist() == [0.0, 0.0, 1.0]
+    first, second, axes = random.normal(size=3), random.normal(size=3), random.normal(size=(3, 3))
+    assert cross(first.tolist(), second.tolist()) == tuple(np.cross(first, second).tolist())
+    assert combined(first.tolist(), axes.tolist()) == pytest.approx(first @ axes, abs=1e-15)
+    assert applied(axes.tolist(), first.tolist()) == pytest.approx(axes @ first, abs=1e-15)
+    assert unit(first.tolist()) == pytest.approx(first / np.linalg.norm(first), abs=1e-15)
 
 
 def test_a_notebook_shows_values_and_a_small_figure_of_snow_ski_run_and_answer(objects: dict[str, Any]) -> None:

@@ -9,9 +9,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray, cross
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, Facts, Shown, ShownFields, amount
+from .._support.vectors import cross
 from ..geometry.boot_axes import angles_of, axes_of
 from .body import shaped
 
@@ -143,8 +144,9 @@ def _rate_of_vector(turn: FloatArray, spin: FloatArray) -> FloatArray:
     """Rate of a rotation vector (rad/s) from the angular velocity in the turned axes: inverse of the right Jacobian."""
     angle = math.hypot(*turn.tolist())
     twice = 1.0 / angle**2 - 0.5 / (angle * math.tan(0.5 * angle)) if angle > 1e-3 else 1.0 / 12.0
-    once = cross(turn, spin)
-    return spin + 0.5 * once + twice * cross(turn, once)
+    vector = turn.tolist()
+    once = cross(vector, spin.tolist())
+    return spin + 0.5 * np.array(once) + twice * np.array(cross(vector, once))
 
 
 def _cubic(span: float, start: FloatArray, end: FloatArray, rate: FloatArray, rate_end: FloatArray) -> FloatArray:

@@ -212,7 +212,7 @@ class Dynamics:
 
         In the ski's axes, about the boot; not a number for a ski without inertia.
         """
-        return self._part("boot_wrench")
+        return self.moment[_OF_SKIS:].reshape(len(self.body.skis), -1)[:, -6:]
 
     def find_equilibrium(self) -> float:
         """Move to static equilibrium in height, roll, pitch and deflection; Newton's last step, the residual (m).

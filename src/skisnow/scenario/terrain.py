@@ -10,7 +10,7 @@ from typing import Annotated, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from .._support.arrays import FloatArray, cross
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import Facts, Shown, amount, ends
@@ -238,7 +238,7 @@ def down_and_left(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Unit vectors (…, 3) in surfaces with these normals (…, 3): towards x as seen from above, and to the left."""
     ahead = np.stack([normal[..., 2], np.zeros_like(normal[..., 0]), -normal[..., 0]], axis=-1)
     ahead = ahead / np.linalg.norm(ahead, axis=-1, keepdims=True)
-    return ahead, cross(normal, ahead)
+    return ahead, np.cross(normal, ahead)
 
 
 def reach_of(slope: Slope) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -9,8 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from .._support.arrays import FloatArray, cross
+from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
+from .._support.vectors import cross
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
@@ -123,8 +124,9 @@ class Setup:
         rotation, rates = self.dynamics.rotation, self.dynamics.velocity
         if self.drive is None:
             return rotation @ rates[:3]
-        boots = self.dynamics.boots.mean(axis=0)
-        return np.asarray(rotation @ (rates[:3] + cross(rates[3:], boots[0]) + boots[4]))
+        left, right = self.dynamics.boots
+        middle = 0.5 * (left + right)
+        return np.asarray(rotation @ (rates[:3] + cross(rates[3:].tolist(), middle[0].tolist()) + middle[4]))
 
     @property
     def attitude(self) -> FloatArray:

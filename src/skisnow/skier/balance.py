@@ -28,6 +28,8 @@ from .yaw import Body
 BuiltIn: TypeAlias = SkidControl | CarveControl | WedgeControl
 HELD_AT_START = 1.3
 """Force that the edges of a side-slip hold at the start, over what the slope asks for (modelling assumption)."""
+LEVEL = np.array([0.0, 0.0, 1.0])
+"""Normal of a plane slope in its own axes."""
 GREATEST_PRESSED = 2.0
 """Greatest acceleration (m/s²) by the bend of the slope that the skier counts with (modelling assumption)."""
 
@@ -155,9 +157,9 @@ class BalancedSkier:
     def _stand_on(self, x: float, y: float) -> tuple[FloatArray, Gravity]:
         """Normal of the snow (3,) and gravity there."""
         slope, gravity = self.scenario.slope, self.scenario.gravity
-        normal = normals_of(slope, x, y)
         if isinstance(slope, Plane):
-            return normal, Gravity(gravity * math.cos(slope.angle), gravity * math.sin(slope.angle))
+            return LEVEL, Gravity(gravity * math.cos(slope.angle), gravity * math.sin(slope.angle))
+        normal = normals_of(slope, x, y)
         down = -gravity * float(down_and_left(normal)[0][2])
         return normal, Gravity(gravity * float(normal[2]) + self._pressed(x, y), down)
 

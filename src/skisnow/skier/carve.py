@@ -90,8 +90,7 @@ class Pursuit:
         x = at.x + self.sight * speed * math.cos(at.heading + turned)
         y = at.y + self.sight * speed * math.sin(at.heading + turned)
         aside, slope, bend = self.line.at(x)
-        along = math.atan(slope)
-        level = math.cos(along)
+        along, level = math.atan(slope), 1.0 / math.sqrt(1.0 + slope * slope)
         off, turn = (y - aside) * level, at.heading + 2.0 * turned - along
         back = -(self.rate**2) * off - 2.0 * self.rate * speed * math.sin(turn)
         return speed**2 * bend * level**3 + back
@@ -172,21 +171,21 @@ class CarveControl:
         most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
         at = Underway(now, *seen.feet, seen.feet_course, seen.feet_speed, acceleration)
         limit, load, total, weights, first = self._limit(seen.feet_speed), self._weight, 0.0, 0.0, 0.0
-        planned, held, asked, way = self._planned, self.edges.held, self._asked, step * at.speed
+        planned, held, way = self._planned, self.edges.held, step * at.speed
         down, normal, height = self.gravity.down, self.gravity.normal, self.body.height
+        weight, lighter = math.exp(-0.5 * step * omega), math.exp(-step * omega)
+        asked, fainter = self._asked * math.exp(-0.5 * step * fading), math.exp(-step * fading)
         for i in range(round(FORESIGHT / step)):
-            later = (i + 0.5) * step
-            at.time = now + later
+            at.time = now + (i + 0.5) * step
             rate += step * (EDGE_CHANGE**2 * (planned(at, most, limit) - turn) - 2.0 * EDGE_CHANGE * rate)
             turn += step * rate
-            wished = most * turn + asked * math.exp(-fading * later)
             sine = math.sin(at.heading)
             slope = down * sine
-            acceleration += (held(wished, slope, load) - acceleration) * step / (lag + step)
+            acceleration += (held(most * turn + asked, slope, load) - acceleration) * step / (lag + step)
             balanced = height * (acceleration + slope) / normal
             first = balanced if i == 0 else first
-            weight = math.exp(-omega * later)
             total, weights = total + weight * balanced, weights + weight
+            asked, weight = asked * fainter, weight * lighter
             at.x += way * math.cos(at.heading)
             at.y += way * sine
             at.acceleration = acceleration

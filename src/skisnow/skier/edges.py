@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from ..scenario import Scenario
@@ -52,6 +52,7 @@ CARVING_SHARE: Final = 0.3
 """Share of the straightest carve's acceleration from which edges go over from a skid to a carve (found by trial)."""
 BEYOND_LEAN: Final = math.radians(3.0)
 """Edge angle beyond the lean in a carve (rad): so that the ski holds, with the lean not known better."""
+_MORE: Final = math.tan(BEYOND_LEAN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,10 @@ class Edges:
     gravity: float
     softness: float
     greatest: float
+    _steepest: float = field(init=False, repr=False)  # tangent of the greatest edge angle
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_steepest", math.tan(self.greatest))
 
     @classmethod
     def of(cls, scenario: Scenario, gravity: float, skier: Skier) -> Edges:
@@ -98,8 +103,9 @@ class Edges:
 
     def _hold(self, grip: float, load: float) -> float:
         """Multiple of the load (N) that a wedge holds, edged for balance at a given multiple."""
-        edge = min(math.atan(grip) + BEYOND_LEAN, self.greatest)
-        return math.sqrt(2.0 * self.softness * math.tan(edge) / load)
+        steep, rest = grip + _MORE, 1.0 - grip * _MORE  # of the tangent of a sum
+        tangent = min(steep / rest, self._steepest) if rest > 0.0 else self._steepest
+        return math.sqrt(2.0 * self.softness * tangent / load)
 
     def held(self, acceleration: float, slope: float, load: float) -> float:
         """Part of an acceleration to the left that the snow gives a carve (m/s²).

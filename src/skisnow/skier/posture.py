@@ -8,7 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from .._support.arrays import FloatArray, cross
+from .._support.arrays import FloatArray
+from .._support.vectors import combined, cross, minus, plus, times
 from ..dynamics import BootPose
 from ..geometry.boot_axes import axes_of
 from ..scenario.skier import Skier
@@ -18,7 +19,6 @@ AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE, RISE = ra
 """Places in the numbers of a posture."""
 BLUNT: Final = math.sin(math.radians(3.0))
 """Sine of the edge angle below which a ski counts as flat for its lift (modelling assumption)."""
-UP: Final = np.array([0.0, 0.0, 1.0])
 MOMENT_TIME: Final = 0.01
 """Time (s) over which the snow's moment on the boots is smoothed (modelling assumption)."""
 GREATEST_TURN: Final = 120.0
@@ -138,9 +138,9 @@ class Posture:
         height = self.centre[1] + rise
         lean, lean_rate = math.atan2(aside, height), (aside_rate * height - aside * rise_rate) / (height**2 + aside**2)
         (sl, cl), (sy, cy) = ((math.sin(angle), math.cos(angle)) for angle in (lean, yaw))
-        body = np.array([[cy, -sy, 0.0], [cl * sy, cl * cy, sl], [-sl * sy, -sl * cy, cl]])
-        origin = np.array([self.centre[0], 0.0, self.centre[1]])
-        spin = lean_rate * body[0] - yaw_rate * UP
+        body = ((cy, -sy, 0.0), (cl * sy, cl * cy, sl), (-sl * sy, -sl * cy, cl))
+        origin = (self.centre[0], 0.0, self.centre[1])
+        spin = minus(times(lean_rate, body[0]), (0.0, 0.0, yaw_rate))
         poses = []
         for side, edge, toe, edge_rate, toe_rate in zip(
             (0.5, -0.5), edges_and_toes[:2], edges_and_toes[2:], turns[:2], turns[2:], strict=True
@@ -148,12 +148,13 @@ class Posture:
             sine = math.sin(edge)
             bent = math.hypot(sine, BLUNT)
             lift_rate = self.half_width * sine * math.cos(edge) * edge_rate / bent
-            from_centre = [-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height]
-            arm = np.array(from_centre) @ body
-            moving = np.array([-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate]) @ body
-            axes = axes_of(edge, 0.0, toe) @ body
-            turning = spin + toe_rate * body[2] - edge_rate * axes[0]
-            poses.append(BootPose(arm + origin, axes, moving + cross(spin, arm), turning))
+            from_centre = (-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height)
+            arm = combined(from_centre, body)
+            moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
+            axes = [combined(axis, body) for axis in axes_of(edge, 0.0, toe).tolist()]
+            turning = minus(plus(spin, times(toe_rate, body[2])), times(edge_rate, axes[0]))
+            numbers = plus(arm, origin), axes, plus(moving, cross(spin, arm)), turning
+            poses.append(BootPose(*(np.array(each) for each in numbers)))
         return poses
 
     def step(self, command: Command, seen: Seen, dt: float) -> None:

@@ -6,10 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Final, Protocol
 
-import numpy as np
-
-from .._support.arrays import FloatArray, cross
-from ..scenario.terrain import down_and_left
+from .._support.arrays import FloatArray
+from .._support.vectors import Vector, applied, combined, cross, dot, minus, plus, times, unit
 
 BEARING: Final = 0.2
 """Share of the weight below which the loads tell nothing (modelling assumption: a leap has all but begun)."""
@@ -115,62 +113,69 @@ def seen_at(
     weight: weight of the skier (N).
     yaw_inertia: moment of inertia of the body (kg m²).
     """
-    rotation, boots, spin = moment.rotation, moment.boots, moment.velocity[3:]
-    up = normal @ rotation
-    mean = 0.5 * (boots[0] + boots[1])
-    ahead = mean[1]
-    ahead = ahead - (ahead @ up) * up
-    ahead /= math.hypot(*ahead.tolist())
+    rotation, spin = moment.rotation.tolist(), moment.velocity[3:].tolist()
+    boots, wrench = moment.boots.tolist(), moment.wrench.tolist()
+    upright = normal.tolist()
+    up = combined(upright, rotation)
+    mean = [times(0.5, plus(*pair)) for pair in zip(*boots, strict=True)]
+    ahead = unit(minus(mean[1], times(dot(mean[1], up), up)))
     left = cross(up, ahead)
-    force, turning = (
-        np.einsum("kca,kc->ka", boots[:, 1:4], part) for part in (moment.wrench[:, :3], moment.wrench[:, 3:])
-    )
+    forces = [combined(part[:3], boot[1:4]) for part, boot in zip(wrench, boots, strict=True)]
+    moments = [combined(part[3:], boot[1:4]) for part, boot in zip(wrench, boots, strict=True)]
     middle = mean[0]
-    centre = np.array([centre_of_mass[0], 0.0, centre_of_mass[1]])
-    leg = centre - middle
-    leg_rate = cross(spin, leg) - mean[4]
-    loads, total = force @ up, force.sum(axis=0)
-    load = float(loads.sum())
-    twist = (cross(boots[:, 0] - middle, force) + turning).sum(axis=0)
+    centre = (centre_of_mass[0], 0.0, centre_of_mass[1])
+    leg = minus(centre, middle)
+    leg_rate = minus(cross(spin, leg), mean[4])
+    loads, total = [dot(force, up) for force in forces], plus(*forces)
+    load = sum(loads)
+    arms = (cross(minus(boot[0], middle), force) for boot, force in zip(boots, forces, strict=True))
+    twist = plus(plus(*arms), plus(*moments))
     bears = load > BEARING * weight
-    down, aside = (each @ rotation for each in down_and_left(normal))
-    way = moment.velocity[:3] + cross(spin, centre)
-    step = way - leg_rate  # velocity of the feet
-    course = math.atan2(step @ aside, step @ down)
-    heading = math.atan2(ahead @ aside, ahead @ down)
-    place, foot = moment.position + rotation @ centre, moment.position + rotation @ middle
-    lean = math.atan2(leg @ left, leg @ up)
+    down, aside = (combined(each, rotation) for each in _down_and_left(upright))
+    way = plus(moment.velocity[:3].tolist(), cross(spin, centre))
+    step = minus(way, leg_rate)  # velocity of the feet
+    course = math.atan2(dot(step, aside), dot(step, down))
+    heading = math.atan2(dot(ahead, aside), dot(ahead, down))
+    position = moment.position.tolist()
+    place, foot = (plus(position, applied(rotation, each)) for each in (centre, middle))
+    lean = math.atan2(dot(leg, left), dot(leg, up))
     hip = math.atan2(math.cos(lean) * left[0] - math.sin(lean) * up[0], ahead[0])
     return Seen(
         time=moment.time,
-        aside=float(leg @ left),
-        aside_rate=float(leg_rate @ left),
-        ahead=float(leg @ ahead),
-        ahead_rate=float(leg_rate @ ahead),
-        height=float(leg @ up),
-        pressure=max(-FARTHEST, min(FARTHEST, float(twist @ ahead) / load)) if bears else 0.0,
-        left=float(loads[0]),
-        right=float(loads[1]),
-        across=float(total @ left),
-        along=float(total @ ahead),
-        moment=float(twist @ up),
-        place=(float(place[0]), float(place[1])),
-        speed=math.hypot(way @ down, way @ aside),
-        course=math.atan2(way @ aside, way @ down),
-        feet=(float(foot[0]), float(foot[1])),
-        feet_speed=math.hypot(step @ down, step @ aside),
+        aside=dot(leg, left),
+        aside_rate=dot(leg_rate, left),
+        ahead=dot(leg, ahead),
+        ahead_rate=dot(leg_rate, ahead),
+        height=dot(leg, up),
+        pressure=max(-FARTHEST, min(FARTHEST, dot(twist, ahead) / load)) if bears else 0.0,
+        left=loads[0],
+        right=loads[1],
+        across=dot(total, left),
+        along=dot(total, ahead),
+        moment=dot(twist, up),
+        place=(place[0], place[1]),
+        speed=math.hypot(dot(way, down), dot(way, aside)),
+        course=math.atan2(dot(way, aside), dot(way, down)),
+        feet=(foot[0], foot[1]),
+        feet_speed=math.hypot(dot(step, down), dot(step, aside)),
         feet_course=course,
         heading=heading,
-        turn_rate=float((spin + mean[5]) @ up),
+        turn_rate=dot(plus(spin, mean[5]), up),
         slip=math.remainder(heading - course, 2.0 * math.pi),
         body_heading=heading + hip,
-        body_rate=float(spin @ up),
+        body_rate=dot(spin, up),
         yaw_inertia=yaw_inertia,
         edge=(_edge(boots[0], up), _edge(boots[1], up)),
         bears=bears,
-        lifted=bears and bool(loads.min() < LIFTED * load),
+        lifted=bears and min(loads) < LIFTED * load,
     )
 
 
-def _edge(boot: FloatArray, up: FloatArray) -> float:
-    return math.atan2(-float(boot[2] @ up), float(boot[3] @ up))
+def _edge(boot: list[Vector], up: Vector) -> float:
+    return math.atan2(-dot(boot[2], up), dot(boot[3], up))
+
+
+def _down_and_left(normal: Vector) -> tuple[Vector, Vector]:
+    """Unit vectors in the surface with this normal: towards x as seen from above, and to the left."""
+    down = unit((normal[2], 0.0, -normal[0]))
+    return down, cross(normal, down)
