@@ -23,7 +23,6 @@ from skisnow._support.arrays import FloatArray
 from skisnow.carving.equilibrium import carve
 from skisnow.carving.outputs import OUTPUTS
 from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives
-from skisnow.carving.shape import shape_growth
 from skisnow.carving.solve import _core_ski, refined, solved
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.problem import Search
@@ -31,7 +30,7 @@ from skisnow.design.search import begins_of
 from skisnow.design.task import Goal, design_task
 from skisnow.ski import read_ski
 from skisnow.ski.beam import clamped
-from skisnow.ski.editing import shape_parameters
+from skisnow.ski.editing import shape_parameters, table_growth
 from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
 
@@ -136,7 +135,7 @@ def print_costs() -> None:
         new = ski_of_keys(changed())
         _core_ski(clamped(new, model.clamp_length, request.elements))
         for name in names:
-            shape_growth(new, name, model.clamp_length, request.elements)
+            table_growth(new, name)
 
     all_names = shape_parameters(ski)
     of_search = ("ski.tip_width_mm", "ski.waist_width_mm", "ski.tail_width_mm", "edit.EI_N_m2", "ski.EI_N_m2[2]")

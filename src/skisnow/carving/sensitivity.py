@@ -17,9 +17,9 @@ from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
 from ..ski.beam import clamped
-from ..ski.editing import LINEAR, shape_parameters, shape_value, varied_ski
+from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growth, varied_ski
 from .outputs import OUTPUTS, At, OutputGrowth, output_growth
-from .shape import Shape, beam_gradient, beam_moved, bent_by, curvature_and_turn, shape_growth, stacked_shapes
+from .shape import Shape, ShapeGradient, beam_gradient, bent_by, curvature_and_turn, shape_growth
 from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
@@ -47,7 +47,8 @@ _IN_CONDITIONS: Final = (
 )  # fmt: skip
 """Numbers of the core that are conditions, in their order."""
 _ANGLE, _HARDNESS, _EXCESS, _LOAD, _MOMENT, _SIDE_FORCE, _BEVEL, _BEVEL_WIDTH, _PITCH, _PITCH_OF_SHEAR = range(10)
-_OF_SHAPE: Final = [10, 11, _BEVEL, _BEVEL_WIDTH]  # numbers of the core that are of the ski
+_WIDEST: Final = 11
+_OF_SHAPE: Final = [10, _BEVEL, _BEVEL_WIDTH]  # numbers of the core that are of the ski: those of `TableGrowth`
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,11 +117,12 @@ class _Direction:
         )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class _Gradient:
     """An output, and its growth with the numbers of the equations.
 
-    With columns of the stations, the core's numbers, and EI and GJ at the Gauss points; `adjoint`: of the beam.
+    With columns of the stations, the core's numbers, and EI and GJ at the Gauss points; `adjoint`: of the beam;
+    `by_tables`: with the tables of the ski, and with their stations or without.
     """
 
     output: OutputGrowth
@@ -128,6 +130,8 @@ class _Gradient:
     numbers: FloatArray
     adjoint: FloatArray
     stiffness: FloatArray
+    by_tables: FloatArray | None = None
+    with_stations: bool = False
 
 
 @dataclass(slots=True, eq=False)
@@ -333,19 +337,8 @@ class CarveDerivatives:
 
     def derivatives(self, output: str, names: tuple[str, ...]) -> FloatArray:
         """Growth of an output with each parameter, as `derivative`: one adjoint for all."""
-        gradient, model = self._gradient(output), self.request.model
-        growth = gradient.output
-        shapes = stacked_shapes(
-            model.ski,
-            tuple(name for name in names if name not in CONDITIONS),
-            model.clamp_length,
-            self.request.elements,
-        )
-        total = shapes.numbers @ gradient.numbers[_OF_SHAPE]
-        total += shapes.sections @ gradient.columns[2:4].ravel() + shapes.stiffness @ gradient.stiffness.ravel()
-        if len(growth.edge):
-            total += shapes.sections_at(growth.edge) @ growth.edge_by[:2].ravel()
-        by_shape = iter(total.tolist())
+        gradient, ski = self._gradient(output), self.request.model.ski
+        growth, numbers = gradient.output, gradient.numbers[_OF_SHAPE]
         out = []
         for name in names:
             if name in CONDITIONS:
@@ -353,24 +346,30 @@ class CarveDerivatives:
                 by_state = growth.edge_angle * along.numbers[_ANGLE] + growth.load * along.numbers[_LOAD]
                 out.append(gradient.numbers @ along.numbers + growth.strength * along.strength + by_state)
             else:
-                out.append(next(by_shape) + (self._moving(gradient, name) if name in shapes.moving else 0.0))
+                grown = table_growth(ski, name)
+                by_tables = self._by_tables(output, moving=grown.moves)
+                out.append(np.vdot(by_tables, grown.tables) + numbers @ grown.numbers)
         return np.array(out)
 
-    def _moving(self, gradient: _Gradient, name: str) -> float:
-        """Part of a derivative by which nodes and stations move and elements lengthen."""
-        direction = self._direction(name)
-        assert direction.shape is not None
-        growth, model, u = gradient.output, self.request.model, self.at.solution.u
-        columns, along = gradient.columns, direction.columns(model)
-        total = float(np.sum(columns[:2] * along[:2])) + float(gradient.adjoint @ bent_by(model, u, direction.shape))
-        # the shapes of slopes are as long as the element
-        own, back = (_slopes_at_stations(model, unknowns) for unknowns in (u, gradient.adjoint))
-        total += float((columns[4] * own - columns[5] * back) @ along[4])
-        for by, column in ((growth.place, along[0]), (growth.weight, along[1])):
-            total += 0.0 if by is None else float(by @ column)
-        if len(growth.edge):
-            total += float(np.sum(growth.edge_by[2:] * beam_moved(model, u, growth.edge, direction.shape)))
-        return total
+    def _by_tables(self, output: str, *, moving: bool) -> FloatArray:
+        """Growth of an output with the tables of the ski; that with their stations only where they move."""
+        request, gradient = self.request, self._gradient(output)
+        model, u, growth = request.model, self.at.solution.u, gradient.output
+        if gradient.by_tables is None or moving > gradient.with_stations:
+            columns = gradient.columns.copy()
+            for row, by in enumerate((growth.place, growth.weight)):
+                columns[row] += 0.0 if by is None else by
+            own, back = (_slopes_at_stations(model, unknowns) for unknowns in (u, gradient.adjoint))
+            columns[4], columns[5] = (
+                columns[4] * own,
+                -columns[5] * back,
+            )  # the shapes of slopes are as long as the element
+            shape = ShapeGradient(columns, gradient.stiffness, gradient.numbers[_WIDEST], growth.edge, growth.edge_by)
+            gradient.by_tables = shape.by_tables(model, request.elements)
+            if moving:
+                gradient.by_tables[0] = shape.by_stations(model, request.elements, u, gradient.adjoint)
+            gradient.with_stations = moving
+        return gradient.by_tables
 
     def _growth(self, name: str) -> tuple[FloatArray, tuple[float, float, float], FloatArray, FloatArray, float]:
         direction, model = self._direction(name), self.request.model
@@ -390,7 +389,7 @@ class CarveDerivatives:
                 request = self.request
                 shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
                 numbers = np.zeros(12)
-                numbers[_OF_SHAPE] = shape.numbers
+                numbers[[10, _WIDEST, _BEVEL, _BEVEL_WIDTH]] = shape.numbers
                 self._directions[name] = _Direction(numbers, 0.0, shape)
         return self._directions[name]
 

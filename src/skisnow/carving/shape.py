@@ -18,7 +18,7 @@ from ..ski.beam import (
     deflection_shape,
     model_nodes,
     places_within,
-    twist_shape,
+    slope_shape,
 )
 from ..ski.editing import TableGrowth, table_growth
 
@@ -56,11 +56,12 @@ class Shape:
 
 
 class _Lines(NamedTuple):
-    """Places on the straight lines between two rows of a ski's tables."""
+    """Places on the straight lines between two rows of a ski's tables; `ends`: both rows of each, in two tables."""
 
     row: IntArray
     share: FloatArray
     spacing: FloatArray
+    ends: IntArray
 
     def along(self, table: FloatArray) -> FloatArray:
         """Values of tables (…, rows) at the places."""
@@ -70,6 +71,17 @@ class _Lines(NamedTuple):
         """Growth of these where the tables' stations and the places grow; the rows stay the same."""
         share = (self.along(station) - place) / self.spacing
         return np.asarray(share * (table[..., self.row + 1] - table[..., self.row]))
+
+    def to_rows(self, by_value: FloatArray, rows: int) -> FloatArray:
+        """Growth with one or two tables, from that with their values at the places: the transpose of `along`."""
+        tables = len(by_value)
+        pair = np.concatenate([(1.0 - self.share) * by_value, self.share * by_value], axis=1)
+        ends = self.ends[: tables * pair.shape[1]]
+        return np.asarray(np.bincount(ends, pair.ravel(), tables * rows), float).reshape(tables, rows)
+
+    def by_station(self, table: FloatArray, by_value: FloatArray) -> FloatArray:
+        """Growth with the table's stations at the places, minus that with the places: the transpose of `moved`."""
+        return np.asarray(np.sum(by_value * (table[:, self.row + 1] - table[:, self.row]), axis=0) / self.spacing)
 
 
 class _Mesh(NamedTuple):
@@ -86,15 +98,15 @@ def _mesh(station: bytes, clamp_length: float, elements: int) -> _Mesh:
     return _Mesh(
         node,
         _lines(station, places_within(node, STATION_POINTS).ravel()),
-        _lines(station, places_within(node, GAUSS_POINTS)),
+        _lines(station, places_within(node, GAUSS_POINTS).ravel()),
     )
 
 
 def _lines(station: bytes, place: FloatArray) -> _Lines:
     rows = np.frombuffer(station)
     row = np.clip(np.searchsorted(-rows, -place, side="right") - 1, 0, len(rows) - 2)
-    spacing = rows[row] - rows[row + 1]
-    return _Lines(row, (rows[row] - place) / spacing, spacing)
+    spacing, pair = rows[row] - rows[row + 1], np.concatenate([row, row + 1])
+    return _Lines(row, (rows[row] - place) / spacing, spacing, np.concatenate([pair, pair + len(rows)]))
 
 
 @functools.lru_cache(maxsize=16)
@@ -113,7 +125,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
     mesh, half = _mesh(station, clamp_length, elements), clamp_length / 2.0
     parts = np.array([float(ski.station[-1]), -half, half, float(ski.station[0])])
     node = np.interp(mesh.node, parts, [by_station[-1], 0.0, 0.0, by_station[0]])
-    place, gauss = places_within(node, STATION_POINTS).ravel(), places_within(node, GAUSS_POINTS)
+    place, gauss = places_within(node, STATION_POINTS).ravel(), places_within(node, GAUSS_POINTS).ravel()
     sections = fixed.sections + mesh.stations.moved(np.array([ski.width, ski.base_height]), by_station, place)
     stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
     return Shape(
@@ -121,7 +133,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
         node[:-1] - node[1:],
         place,
         sections,
-        fixed.stiffness + mesh.gauss.moved(stiffness, by_station, gauss),
+        fixed.stiffness + mesh.gauss.moved(stiffness, by_station, gauss).reshape(fixed.stiffness.shape),
         np.array([fixed.numbers[0], sections[0, widest], *fixed.numbers[2:]]),
         moves=True,
         widens=True,
@@ -136,7 +148,8 @@ def _fixed_shape(growth: TableGrowth, station: bytes, clamp_length: float, eleme
     widens, stiffens = bool(tables[1:3].any()), bool(tables[3:].any())
     stations = len(mesh.stations.row)
     sections = mesh.stations.along(tables[1:3]) if widens else np.zeros((2, stations))
-    stiffness = mesh.gauss.along(tables[3:]) if stiffens else np.zeros((2, *mesh.gauss.row.shape))
+    gauss = mesh.gauss.along(tables[3:]) if stiffens else np.zeros((2, len(mesh.gauss.row)))
+    stiffness = gauss.reshape(2, -1, len(GAUSS_POINTS))
     running_length, bevel, edge_width = growth.numbers
     numbers = np.array([running_length, sections[0, widest], bevel, edge_width])
     none = np.zeros(len(mesh.node))
@@ -152,49 +165,87 @@ def _widest(ski: Ski, clamp_length: float, elements: int) -> int:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shapes:
-    """Growth of a ski with several parameters, a row each: `Shape.numbers`, sections, stiffness of those at rest.
+class ShapeGradient:
+    """Growth of an output with the numbers of the equations that shape and stiffness of a ski give.
 
-    `moving`: names of the parameters that move nodes; `tables`: growth of station, width and height of the base.
+    `stations`: with place, weight, width, height of the base, and the lengths of both elements' slopes over themselves
+    (6, 2 n); `stiffness`: with EI and GJ at the Gauss points (2, n, 4); `widest`: with the greatest width; `edge`,
+    `by_edge`: places of the edge, and growth with width, height, deflection and twist there (4, k).
     """
 
-    ski: Ski
-    names: tuple[str, ...]
-    moving: frozenset[str]
-    tables: FloatArray
-    numbers: FloatArray
-    sections: FloatArray
+    stations: FloatArray
     stiffness: FloatArray
+    widest: float
+    edge: FloatArray
+    by_edge: FloatArray
 
-    def sections_at(self, place: FloatArray) -> FloatArray:
-        """Growth of width and height of the base with each parameter at fixed places (p, 2 k)."""
-        lines = _lines_at(self.ski.station.tobytes(), tuple(place.tolist()))
-        out = lines.along(self.tables[:, 1:])
-        for row, name in enumerate(self.names):
-            if name in self.moving:
-                own = np.array([self.ski.width, self.ski.base_height])
-                out[row] += lines.moved(own, self.tables[row, 0], 0.0 * place)
-        return out.reshape(len(out), 2 * len(place))
+    def by_tables(self, model: ClampedSki, elements: int) -> FloatArray:
+        """Growth with the ski's tables, as of `TableGrowth`, on stations that stay (5, rows)."""
+        station, rows = model.ski.station.tobytes(), len(model.ski.station)
+        mesh, out = _mesh(station, model.clamp_length, elements), np.zeros((5, rows))
+        out[1:3] = mesh.stations.to_rows(self._sections(model, elements), rows)
+        out[3:] = mesh.gauss.to_rows(self.stiffness.reshape(2, -1), rows)
+        if len(self.edge):
+            out[1:3] += _lines_at(station, tuple(self.edge.tolist())).to_rows(self.by_edge[:2], rows)
+        return out
+
+    def _sections(self, model: ClampedSki, elements: int) -> FloatArray:
+        out = self.stations[2:4].copy()
+        out[0, _widest(model.ski, model.clamp_length, elements)] += self.widest
+        return out
+
+    def by_stations(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
+        """Growth with the stations of the ski's tables (rows,): places move, elements lengthen, lines shift."""
+        ski, half = model.ski, model.clamp_length / 2.0
+        mesh, rows = _mesh(ski.station.tobytes(), model.clamp_length, elements), len(ski.station)
+        shape, stiffness = (
+            np.array([ski.width, ski.base_height]),
+            np.array([ski.bending_stiffness, ski.torsional_stiffness]),
+        )
+        lines = mesh.stations, mesh.gauss, _lines_at(ski.station.tobytes(), tuple(self.edge.tolist()))
+        by_line = [
+            lines[0].by_station(shape, self._sections(model, elements)),
+            lines[1].by_station(stiffness, self.stiffness.reshape(2, -1)),
+            lines[2].by_station(shape, self.by_edge[:2]),
+        ]
+        out = np.sum([line.to_rows(by[None], rows)[0] for line, by in zip(lines, by_line, strict=True)], axis=0)
+        station = (self.stations[0] - by_line[0]).reshape(-1, 2)
+        gauss = -by_line[1].reshape(-1, len(GAUSS_POINTS))
+        length = _lengths(model)
+        by_length = (self.stations[1] / 2.0 + (self.stations[4] + self.stations[5]) / np.repeat(length, 2)).reshape(
+            -1, 2
+        )
+        stretch = _by_stretch(model, mesh.gauss.along(stiffness).reshape(self.stiffness.shape), u, adjoint)
+        longer = by_length.sum(axis=1) + stretch / length
+        node = np.zeros(len(mesh.node))
+        node[:-1] += station @ (1.0 - STATION_POINTS) + gauss @ (1.0 - GAUSS_POINTS) + longer
+        node[1:] += station @ STATION_POINTS + gauss @ GAUSS_POINTS - longer
+        self._add_edge(model, u, node)
+        out[0] += node @ np.clip((mesh.node - half) / (ski.station[0] - half), 0.0, 1.0)
+        out[-1] += node @ np.clip((mesh.node + half) / (ski.station[-1] + half), 0.0, 1.0)
+        return out
+
+    def _add_edge(self, model: ClampedSki, u: FloatArray, node: FloatArray) -> None:
+        """Add the growth with the nodes that deflection and twist at fixed places give, for the same unknowns."""
+        element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
+        value, length = _values(model, u)[element], _lengths(model)[element]
+        local, (by_deflection, by_twist) = (model.node[element] - self.edge) / length, self.by_edge[2:]
+        slope = np.sum(slope_shape(local, length) * value, axis=1)
+        forward = by_deflection * slope + by_twist * (value[:, 5] - value[:, 2]) / length
+        of_slopes = np.sum((deflection_shape(local, length) * value)[:, [1, 4]], axis=1) / length
+        longer = by_deflection * of_slopes - local * forward
+        np.add.at(node, element, forward + longer)
+        np.add.at(node, element + 1, -longer)
 
 
-@functools.lru_cache(maxsize=32)
-def stacked_shapes(ski: Ski, names: tuple[str, ...], clamp_length: float, elements: int) -> Shapes:
-    """Growth of the shape with each of the parameters."""
-    shapes = [shape_growth(ski, name, clamp_length, elements) for name in names]
-    stations = len(_mesh(ski.station.tobytes(), clamp_length, elements).stations.row)
-
-    def stacked(rows: list[FloatArray], *size: int) -> FloatArray:
-        return np.array(rows, float).reshape(len(names), *size)
-
-    return Shapes(
-        ski,
-        names,
-        frozenset(name for name, shape in zip(names, shapes, strict=True) if shape.moves),
-        stacked([table_growth(ski, name).tables[:3] for name in names], 3, len(ski.station)),
-        stacked([shape.numbers for shape in shapes], 4),
-        stacked([shape.sections for shape in shapes], 2 * stations),
-        stacked([0.0 * shape.stiffness if shape.moves else shape.stiffness for shape in shapes], 4 * stations),
-    )
+def _by_stretch(model: ClampedSki, stiffness: FloatArray, u: FloatArray, adjoint: FloatArray) -> FloatArray:
+    """Growth of λ·K u with each element's length over itself: shapes of curvature fall as 1/ℓ², of slopes as 1/ℓ."""
+    length, curvature = _curvature(model)
+    falls = -np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
+    (own, turn), (back, turn_back) = (curvature_and_turn(model, unknowns) for unknowns in (u, adjoint))
+    own_falls, back_falls = (np.einsum("ngi,ni->ng", falls, _values(model, unknowns)) for unknowns in (u, adjoint))
+    moment = stiffness[0] * ((own_falls + own) * back + own * back_falls) - stiffness[1] * turn * turn_back
+    return np.asarray(moment @ GAUSS_WEIGHTS * length)
 
 
 @functools.lru_cache(maxsize=32)
@@ -244,27 +295,6 @@ def beam_gradient(model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoin
     kappa, turn = curvature_and_turn(model, adjoint)
     weight = GAUSS_WEIGHTS * _lengths(model)[:, None]
     return np.array([weight * bent[0] * kappa, weight * (bent[1] * turn)])
-
-
-def beam_moved(model: ClampedSki, u: FloatArray, place: FloatArray, growth: Shape) -> tuple[FloatArray, FloatArray]:
-    """Growth of deflection and twist at fixed places for the same unknowns, where nodes move."""
-    if not growth.moves:
-        return np.zeros(len(place)), np.zeros(len(place))
-    element = np.clip(np.searchsorted(-model.node, -place, side="right") - 1, 0, len(model.dof) - 1)
-    value = _values(model, u)[element]
-    step = 1e-6 / max(1e-12, float(np.max(np.abs(growth.node))))
-
-    def at(side: float) -> tuple[FloatArray, FloatArray]:
-        node = model.node + side * step * growth.node
-        length = node[element] - node[element + 1]
-        local = (node[element] - place) / length
-        return (
-            np.sum(deflection_shape(local, length) * value, axis=-1),
-            np.sum(twist_shape(local) * value, axis=-1),
-        )
-
-    (w1, t1), (w0, t0) = at(1.0), at(-1.0)
-    return (w1 - w0) / (2.0 * step), (t1 - t0) / (2.0 * step)
 
 
 def _values(model: ClampedSki, u: FloatArray) -> FloatArray:

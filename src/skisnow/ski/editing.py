@@ -228,6 +228,11 @@ class TableGrowth:
     tables: FloatArray
     numbers: FloatArray
 
+    @property
+    def moves(self) -> bool:
+        """Whether the stations move: first and last station are its ends."""
+        return bool(self.tables[0].any())
+
 
 _PARTS: Final = ("width", "base_height", *STIFFNESSES)
 _LENGTHS: Final = ("length_mm", "running_length_mm", "sidecut_length_mm", "tail_overhang_mm", "boot_position_mm")
