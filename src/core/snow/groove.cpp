@@ -116,7 +116,10 @@ Ground& Ground::operator=(const Ground& other) {
 }
 
 void Ground::append(double at, double deep) {
-  if (count > 0 && std::fabs(place[count - 1] - at) < THIN && std::fabs(depth[count - 1] - deep) < THIN) return;
+  if (count > 0 && std::fabs(place[count - 1] - at) < THIN && std::fabs(depth[count - 1] - deep) < THIN) {
+    depth[count - 1] = std::max(depth[count - 1], deep);
+    return;
+  }
   if (count == ROOM) simplify(0.0, ROOM - 1);
   place[count] = at;
   depth[count] = deep;
