@@ -20,16 +20,8 @@ Vector3 rotation_vector(const double (&m)[3][3]) {
 // A body that turns at a steady rate and keeps its velocity in its own axes moves along an arc: its distance from the
 // straight way, to the second order of the turn (in the axes of the start).
 void bend_way(const Pose& from, const Pose& to, const Vector3& turn, double share, Vector3& place) {
-  double way[3], axis[3];
-  for (std::size_t a = 0; a < 3; a++) {
-    way[a] = to.position[a] - from.position[a];
-    axis[a] = from.rotation[a][0] * turn[0] + from.rotation[a][1] * turn[1] + from.rotation[a][2] * turn[2];
-  }
-  const double bend = 0.5 * share * (share - 1.0);
-  for (std::size_t a = 0; a < 3; a++) {
-    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-    place[a] += bend * (axis[b] * way[c] - axis[c] * way[b]);
-  }
+  const Vector3 axis = turn[0] * from.axis(0) + turn[1] * from.axis(1) + turn[2] * from.axis(2);
+  place = place + (0.5 * share * (share - 1.0)) * cross(axis, to.position - from.position);
 }
 
 constexpr double TABLE_STEP = 1e-3;  // (m) of the table, at most; between its rows it is linear

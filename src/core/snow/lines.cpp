@@ -27,8 +27,7 @@ void put(GrooveLines& lines, LineField first, int slot, const Vector3& vector) {
 // The place on the surface under a position along the ski's straight axis.
 Vector3 place_under(const Pose& pose, double station, const Snow& snow) {
   const Vector3 ahead = pose.axis(0);
-  Vector3 from;
-  for (int a = 0; a < 3; a++) from[a] = pose.position[a] + station * ahead[a];
+  const Vector3 from = pose.position + station * ahead;
   const double level = ahead[0] * ahead[0] + ahead[1] * ahead[1];
   double way = 0.0;
   for (int i = 0; i < NEWTON_STEPS; i++) {
@@ -42,10 +41,8 @@ Vector3 place_under(const Pose& pose, double station, const Snow& snow) {
 
 // The ski's direction ahead in a surface, a unit vector.
 Vector3 ahead_on(const Vector3& normal, const Pose& pose) {
-  Vector3 ahead = pose.axis(0);
-  const double up = dot(ahead, normal);
-  for (int a = 0; a < 3; a++) ahead[a] -= up * normal[a];
-  return unit(ahead);
+  const Vector3 ahead = pose.axis(0);
+  return unit(ahead - dot(ahead, normal) * normal);
 }
 
 int power_of_two(int least) {
@@ -134,8 +131,7 @@ void GrooveLines::put_back(const Line& line) {
 double GrooveLines::station(std::int64_t number, const Pose& pose) const {
   const int at = slot(number);
   const Vector3 ahead = pose.axis(0), left = pose.axis(1), lateral = this->lateral(at);
-  Vector3 there = origin(at);
-  for (int a = 0; a < 3; a++) there[a] -= pose.position[a];
+  const Vector3 there = origin(at) - pose.position;
   return dot(there, ahead) - dot(there, left) * dot(lateral, ahead) / dot(lateral, left);
 }
 
@@ -171,8 +167,7 @@ void GrooveLines::follow_snow(int slot, double place, const Snow& snow) {
 
 double GrooveLines::aside(int slot, const Pose& pose) const {
   const Vector3 ahead = pose.axis(0), lateral = this->lateral(slot), along = get(*this, AHEAD_X, slot);
-  Vector3 there = origin(slot);
-  for (int a = 0; a < 3; a++) there[a] = pose.position[a] - there[a];
+  const Vector3 there = pose.position - origin(slot);
   return dot(there, lateral) - dot(there, along) * dot(ahead, lateral) / dot(ahead, along);
 }
 
