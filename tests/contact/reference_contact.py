@@ -39,6 +39,7 @@ class Line:
     out: FloatArray
     pressed: list[tuple[float, float, float, float]] = field(default_factory=list)
     holds: tuple[Hold, Hold] | None = None
+    passed: tuple[float, float] | None = None  # along the ski at the last accepted pose, and how the depth grew ahead
     slipped: float = 0.0
     stuck: tuple[float, float, float] | None = None  # along the ski and across where friction is 0; the point's arm
     strength: float = 0.0  # of edges that hold (Pa)
@@ -145,6 +146,8 @@ class ReferenceRunner:
                 line.pressed.append(
                     (touch.low, float(touch.base(touch.low)), touch.high, float(touch.base(touch.high)))
                 )
+                line.pressed += itertools.starmap(lambda a, b: (*a, *b), itertools.pairwise(section.deepest_on_way()))
+            line.passed = (section.on_ski, section.climb) if section.deepest > 0.0 else None
             holds, slipped = [], 0.0
             for k, edge in enumerate(section.edges):
                 hold = Hold(edge.place, edge.depth)
@@ -181,7 +184,7 @@ class _Section:
             missed = float((to_line - grip) @ ahead / (self._direction(side) @ ahead))
             s = on_ski + min(max(missed, -0.1), 0.1)
         self.station = s
-        s = min(max(s, tail), tip)
+        self.on_ski = s = min(max(s, tail), tip)
         self._shape(s)
         axis = s * self.x + self.height * up
         depth, self.sine = float((to_line - axis) @ n), float(-self.t @ n)
@@ -217,6 +220,7 @@ class _Section:
         u = np.cross(n, along)
         self.per_length = 1.0 / float(np.linalg.norm(u))
         self.u, self.up = u * self.per_length, up
+        self.climb = float(self.base @ np.cross(self.u, n))
 
     def _shape(self, s: float) -> None:
         """The bent base at a station: half width, height, their slopes, twist, directions across and off the base."""
@@ -274,6 +278,37 @@ class _Section:
         self.deflects_s[place] = -(cubics @ [0, 1, 2 * z, 3 * z * z]) / h
         self.twists[[3 * e + 2, 3 * e + 5]] = 1.0 - z, z
         self.twists_s[[3 * e + 2, 3 * e + 5]] = 1.0 / h, -1.0 / h
+
+    def deepest_on_way(self) -> list[tuple[float, float]]:
+        """Places and depths of the base where it was deepest between two poses, five places, or none.
+
+        At each share of the width the depth d(w), 0 <= w <= 1, has both ends' values, and d' changes by the climb.
+        """
+        deeper = 0 if self.edges[0].depth > self.edges[1].depth else 1
+        if self.stood(deeper) is None or self.line.passed is None or self.edges[deeper].depth <= 0.0:
+            return []
+        assert self.line.holds is not None
+        slope_change = (self.line.passed[0] - self.on_ski) * (self.line.passed[1] - self.climb)
+        if slope_change >= 0.0:
+            return []
+        width = [edge.place for edge in self.edges[::-1]]
+        fallen = [edge.depth - hold.depth for edge, hold in zip(self.edges, self.line.holds, strict=True)]
+        moved = [hold.place - edge.place for edge, hold in zip(self.edges, self.line.holds, strict=True)]
+        # d'(w) = 0 at 1 - since, which is linear across: only the places that pass their deepest on the way
+        since = [0.5 + each / slope_change for each in reversed(fallen)]
+        slope = (since[1] - since[0]) / (width[1] - width[0])
+        ends = sorted(width[0] + (each - since[0]) / slope for each in (0.0, 1.0)) if slope else [-math.inf, math.inf]
+        if not slope and not 0.0 < since[0] < 1.0:
+            return []
+        low, high = max(self.touch.low, ends[0]), min(self.touch.high, ends[1])
+        if not low < high:
+            return []
+        out = []
+        for y in np.linspace(low, high, 5):
+            back = since[0] + slope * (y - width[0])
+            aside = float(np.interp(y, width, moved[::-1]))
+            out.append((y + back * aside, float(self.touch.base(y)) - 0.5 * slope_change * back**2))
+        return out
 
     def stood(self, k: int) -> Hold | None:
         """An edge at the last accepted pose, if it was in the snow."""
@@ -365,7 +400,7 @@ class _Section:
         used = way / max(float(np.linalg.norm(way)), full)
         speed = float(np.linalg.norm(slides))
         by_twist = self.twist_s * moment / (1.0 - self.sine**2) * self.per_length
-        resist = force * float(self.base @ forwards) + by_twist if snow.compaction_resistance else 0.0
+        resist = force * self.climb + by_twist if snow.compaction_resistance else 0.0
         held = self.held()
         # its load: what presses square on the base, snow's normal and side force together, or the snow's normal alone
         pressing, at_grip = force, 0.0

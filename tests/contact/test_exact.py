@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow.contact import SnowContact, SnowField
+from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.forces.friction.law import ActsOn
 from skisnow.forces.shear import MachiningShear
 from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
@@ -180,3 +180,29 @@ def test_a_runner_in_the_groove_of_another_lies_deeper(ratio: float) -> None:
     assert wrench(behind, placed(angle, e, x=1.5))[2] == pytest.approx(virgin, rel=1e-6)
     lifted = placed(angle, e * (1.0 - 0.5 / ratio), x=1.5)
     assert wrench(behind, lifted)[2] == pytest.approx(virgin * 0.25, rel=1e-3)
+
+
+def groove_of_rocker(degrees: float, way: float, *, turn: float = 0.0) -> float:
+    """Energy of a metre of groove (J) behind a base that is bent by 200 m and 1 mm deep in the middle, in steps of
+    ``way`` (m), rolling by ``turn`` (rad) for each metre."""
+    station = np.linspace(0.8, -0.8, 1601)
+    rocker = Runner(station, np.full_like(station, 0.5 * WIDTH), station**2 / 400.0)
+    contact = SnowContact(SnowField(H, S, 10.0, knot_area=1e-12, part_along=1.0, part_across=1.0), [rocker])
+    angle, energy = math.radians(degrees), []
+    for x in np.arange(round(1.8 / way) + 1) * way:
+        position, _ = placed(angle, 1e-3, x=x)
+        contact.update(position, edged(angle + turn * (x - 1.35))[None], 1e-3)
+        energy.append(contact.groove_energy)
+    passed = round(0.9 / way)
+    return (energy[-1] - energy[-1 - passed]) / (passed * way)
+
+
+def test_a_groove_is_as_deep_as_the_deepest_place_of_the_base() -> None:
+    """Steps of 18 mm pass lines 20 mm apart at nine phases. Their ends alone miss 6.7e-8 m of 1 mm in the mean."""
+    assert groove_of_rocker(0.0, 0.018) == pytest.approx(0.5 * H * (1.0 - 1.0 / 10.0) * WIDTH * 1e-6, rel=1e-12)
+
+
+def test_a_base_that_rolls_is_deepest_elsewhere_at_each_place() -> None:
+    """Ends alone miss 1.8e-4 of the energy. The depth is straight between five places across: it gains 2.3e-5."""
+    fine = groove_of_rocker(1.0, 0.0005, turn=0.002)
+    assert groove_of_rocker(1.0, 0.018, turn=0.002) == pytest.approx(fine, rel=3e-5)

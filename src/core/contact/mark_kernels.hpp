@@ -62,6 +62,8 @@ void mark(const Snow& snow, const Base& s, const double* of, const EdgeHold* eas
       store(lines.values[SLIPPED] + j, load<V>(lines.values[SLIPPED] + j) + slipped);
       if (any(touches)) keep_stuck<V>(snow, s, i, lines, j, touches);
     }
+    put(lines, MARK_STATION, j, on_ski, load<V>(s[STATION] + i));
+    put(lines, MARK_CLIMB, j, touches, load<V>(s[DEPTH_CLIMB] + i));
     put(lines, STUCK, j, chosen, select(touches, one, none));
     put(lines, MARKED, j, chosen, select(on_ski, one, none));
   });

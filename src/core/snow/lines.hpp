@@ -24,6 +24,7 @@ enum LineField {
   HARDNESS, EXCESS, STRENGTH,    // H_V and k_u - H_V (N/m³), S_f (Pa) at the line,
   FRICTION,                      // and μ there over that of the law
   MARKED,                        // whether the ski was over it at the last accepted pose (0 or 1)
+  MARK_STATION, MARK_CLIMB,      // place along the ski then (m), and how fast the depth grew ahead there
   // each edge then: where across it was, how deep, and where it holds if it was in the snow (m)
   LEFT_MARK, RIGHT_MARK, LEFT_MARK_DEPTH, RIGHT_MARK_DEPTH, LEFT_ANCHOR, RIGHT_ANCHOR,
   SLIPPED,                       // how far an edge has slipped across here, the one that slipped farther (m)
