@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -27,7 +28,7 @@ from ..formatting import figure_text, prose
 from .data import Json, ReportData, TextArray, numbers, pairs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from matplotlib.axes import Axes
 
@@ -35,6 +36,11 @@ if TYPE_CHECKING:
 
 MOST_SITES: Final = 40
 _ROW_MM: Final = 4.6
+_TWO_LINES_MM: Final = 7.4
+_LINE: Final = 15
+"""Longest line of a site's name; with many sites a name has one line."""
+_MANY_SITES: Final = 24
+_TICKS: Final = 4
 _MARGIN_MM: Final = 22.0
 _GOLDEN_SHARE: Final = 0.618034
 """Its multiples spread points evenly across a row without a random number."""
@@ -54,11 +60,14 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     if max(len(rows[key]) for key, _ in panels) > MOST_SITES:
         return LeftOut(name, Message("Sites compared"), Message("there are more than {most} sites", most=MOST_SITES))
     most = max(len(rows[key]) for key, _ in panels)
-    figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + _ROW_MM * most)
+    names = {row["site"]: _site_lines(row["site"], most) for key, _ in panels for row in rows[key]}
+    row_mm = _TWO_LINES_MM if any("\n" in name for name in names.values()) else _ROW_MM
+    figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + row_mm * most)
+    figure.set_layout_engine("constrained", wspace=0.08)
     for place, (key, label) in enumerate(panels, start=1):
         axes = figure.add_subplot(1, len(panels), place)
         single = (data.hardness, data.penetration_site) if key == _SITES[0][0] else (data.stress, data.shear_site)
-        _panel(axes, rows[key], *single)
+        _panel(axes, rows[key], names, *single)
         axes.set_xlabel(label)
     mark_synthetic(data, axes)
     caption = prose(
@@ -70,7 +79,15 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     return Drawing(name, caption, alt, figure, wide=len(panels) > 1, points=points)
 
 
-def _panel(axes: Axes, rows: list[Json], values: FloatArray, site: TextArray) -> None:
+def _site_lines(site: str, count: int) -> str:
+    """Name of a site in one or two short lines."""
+    if count > _MANY_SITES:
+        return figure_text(site, longest=_LINE)
+    lines = textwrap.wrap(figure_text(site), _LINE)
+    return "\n".join(lines if len(lines) <= 2 else textwrap.wrap(figure_text(site, longest=_LINE), _LINE))
+
+
+def _panel(axes: Axes, rows: list[Json], names: Mapping[str, str], values: FloatArray, site: TextArray) -> None:
     rows = sorted(rows, key=lambda row: row["mean"])
     for place, row in enumerate(rows):
         mine = values[(site == row["site"]) & (values > 0)]
@@ -80,17 +97,17 @@ def _panel(axes: Axes, rows: list[Json], values: FloatArray, site: TextArray) ->
     ends = pairs(rows, "interval")
     axes.hlines(places, ends[:, 0], ends[:, 1], color=BLUE, linewidth=1.6, zorder=2)
     axes.plot(numbers(rows, "mean"), places, "o", color=BLUE, markersize=4.0, zorder=3)
-    axes.set_yticks(places, [figure_text(row["site"]) for row in rows])
+    axes.set_yticks(places, [names[row["site"]] for row in rows])
     axes.set_ylim(-0.6, len(rows) - 0.4)
     everything = np.concatenate((values[values > 0], ends[np.isfinite(ends)]))
     if spans_a_decade(everything):
         logarithmic(axes, "x", everything)
     else:
         axes.set_xlim(0.0, float(everything.max()) * 1.06)
-    for y, row in zip(places.tolist(), rows, strict=True):
-        axes.annotate(
-            row["letters"], (1.01, y), xycoords=("axes fraction", "data"), va="center", ha="left", annotation_clip=False
-        )
+        axes.locator_params(axis="x", nbins=_TICKS)
+    letters = axes.secondary_yaxis("right")
+    letters.set_yticks(places, [row["letters"] for row in rows])
+    letters.tick_params(length=0)
 
 
 MOST_DRAWN: Final = 24
