@@ -212,11 +212,11 @@ def test_an_uncertain_pair_names_the_tests_that_would_decide() -> None:
     """The sentence of the specification, in both languages: 1/1.54 is A over B."""
     found = verdict(row(1 / 1.54, 1 / 2.52, 1 / 0.94, 0.07), 20.0)
     assert str(found) == (
-        "B is harder than A by 54 % [-6, +152]: not certain. About 54 more tests with this scatter, 30 in each group, "
+        "B is harder than A by 54 % [−6, +152]: not certain. About 54 more tests with this scatter, 30 in each group, "
         "would find a difference of 20 % in four of five cases."
     )
     assert found.text("de") == (
-        "B ist um 54 % härter als A [-6, +152]: nicht gesichert. Etwa 54 weitere Versuche mit dieser Streuung, 30 in "
+        "B ist um 54 % härter als A [−6, +152]: nicht gesichert. Etwa 54 weitere Versuche mit dieser Streuung, 30 in "
         "jeder Gruppe, würden einen Unterschied von 20 % in vier von fünf Fällen erkennen."
     )
 
@@ -273,7 +273,8 @@ def test_the_figure_shows_each_site_with_mean_interval_and_letters(reference: Re
             key=lambda each: each["mean"],
         )
         assert [label.get_text() for label in axes.get_yticklabels()] == [each["site"] for each in rows]
-        assert [text.get_text() for text in axes.texts] == [each["letters"] for each in rows]
+        (letters,) = axes.child_axes
+        assert [label.get_text() for label in letters.get_yticklabels()] == [each["letters"] for each in rows]
         (bars,) = axes.collections
         assert isinstance(bars, LineCollection)
         ends = [segment[:, 0] for segment in bars.get_segments()]

@@ -30,7 +30,7 @@ def test_every_template_has_its_translation(language: str) -> None:
     [
         (1.5, "1.5", "1,5"),
         (10.0, "10", "10"),
-        (-0.25, "-0.25", "-0,25"),
+        (-0.25, "-0.25", "−0,25"),
         (1e-9, "1e-09", "1e-09"),
         (12, "12", "12"),
         (True, "True", "True"),

@@ -215,7 +215,11 @@ class LocalFormatter(Formatter):
 
     def _number(self, value: Any, spec: str) -> str:
         text = format(value, spec or ("" if isinstance(value, int) else ".12g"))
-        return text if self._sign == "." else text.translate({ord("."): self._sign, ord(","): "."})
+        if text.startswith("-") and ("+" in spec or self._language != ENGLISH):
+            text = f"−{text[1:]}"
+        if self._sign == ".":
+            return text
+        return text.translate({ord("."): self._sign, ord(","): ".", ord("%"): "\N{NO-BREAK SPACE}%"})
 
     def _several(self, values: Any, spec: str) -> str:
         items = [self.format_field(value, spec) for value in values]
