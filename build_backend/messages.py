@@ -10,6 +10,7 @@ import ast
 import re
 import sys
 import tempfile
+import tomllib
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
@@ -34,6 +35,17 @@ def python_calls(
             yield node.lineno, name, literals, []
 
 
+def sources_of_skis(
+    file: Any,
+    keywords: Any,
+    _tags: Any,
+    options: Any,  # noqa: ARG001 -- as Babel calls it
+) -> Iterator[tuple[int, str, str, list[str]]]:
+    """Origin of the numbers of a ski of the catalogue."""
+    if source := tomllib.load(file).get("source"):
+        yield 1, next(iter(keywords)), source, []
+
+
 ERRORS = ("Given", "Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
 WARNINGS = ("Range", "ModelLimit", "Fit")
 CLASSES = {**{f"{name}Error": None for name in ERRORS}, **{f"{name}Warning": None for name in WARNINGS}}
@@ -43,6 +55,7 @@ KEYWORDS: dict[str, tuple[Any, dict[str, Any]]] = {
     # {% trans %} is one of the calls
     "**.html": ("jinja2.ext:babel_extract", {"gettext": None, "said": None, "ngettext": (1, 2), "prose": None}),
     "**.js": ("javascript", {"said": None}),
+    "catalogue/*.toml": (sources_of_skis, {"template": None}),
 }
 WITH_KEYS = ("carving", "scenario", "snow", "track")
 """Packages whose calls of Quantity and Word have as second argument the meaning of a key, which pages show."""

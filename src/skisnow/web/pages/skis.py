@@ -9,7 +9,7 @@ from urllib.parse import quote
 from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
-from ..._support.messages import Message
+from ..._support.messages import Message, current_language, translations
 from ...report.charts import SkiDrawing, ski_drawing
 from ..elements import Outcome, Words, button, choice, field, folded, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
@@ -19,7 +19,6 @@ from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
 from ..subprocesses import SKI_BOUNDS, confined
 from ..widgets import STYLES, ChartLine, LineChart
-from ..words import said
 
 PATH: Final = "/skis"
 TITLE: Final = Message("Skis")
@@ -152,7 +151,8 @@ class _Skis:
         self._sources.clear()
         with self._sources:
             for ski in drawn:
-                sentence(f"{ski.name}: {said(ski.source)}", "quiet")
+                source = translations(current_language()).gettext(ski.source) if ski.source else ""
+                sentence(f"{ski.name}: {source}", "quiet")
         for key, chart in self._charts.items():
             chart.show(list(_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
 
