@@ -16,7 +16,7 @@ from tests.coded import Coded, coded, raises
 
 import skisnow
 from skisnow._support.errors import ParameterError
-from skisnow.parameters import Quantity, Section, Word, made, quantities, require_declared, values_of
+from skisnow.parameters import Allowed, Quantity, Section, Word, made, quantities, require_declared, values_of
 from skisnow.parameters.json_schema import page_table, table_schema
 
 
@@ -24,8 +24,8 @@ from skisnow.parameters.json_schema import page_table, table_schema
 class Snow:
     """Shared by several; its names have no section."""
 
-    hardness: Annotated[float, Quantity("H_V_N_per_mm3", "hardness", lowest=0.0, above=True)]
-    strength: Annotated[float | None, Quantity("S_f_N_per_mm2", "strength", lowest=0.0)]
+    hardness: Annotated[float, Quantity("H_V_N_per_mm3", "hardness"), Allowed(0.0, above=True)]
+    strength: Annotated[float | None, Quantity("S_f_N_per_mm2", "strength"), Allowed(0.0)]
     source: Annotated[str, Word("published", "name of a snow")] = "numbers"
 
     def __post_init__(self) -> None:
@@ -38,16 +38,16 @@ class Bench:
 
     snow: Annotated[Snow, Section("snow", otherwise=True)]
     law: Annotated[Literal["a", "b"], Quantity("bench.law", "which law")] = "a"
-    step: Annotated[float, Quantity("bench.step_ms", "step", lowest=0.1, highest=5.0, origin="choice")] = 0.5e-3
-    parts: Annotated[int | None, Quantity("bench.parts", "parts", lowest=4)] = None
+    step: Annotated[float, Quantity("bench.step_ms", "step"), Allowed(0.1, 5.0, origin="choice")] = 0.5e-3
+    parts: Annotated[int | None, Quantity("bench.parts", "parts"), Allowed(4)] = None
     fixed: Annotated[bool, Quantity("bench.fixed", "whether fixed")] = False
-    inertia: Annotated[tuple[float, float, float], Quantity("bench.inertia_kg_m2", "inertia", lowest=0.0, above=True)]
+    inertia: Annotated[tuple[float, float, float], Quantity("bench.inertia_kg_m2", "inertia"), Allowed(0.0, above=True)]
     centre: Annotated[
         tuple[float, float],
         Quantity("bench.height_mm", "height", lowest=0.0, highest=100.0, index=1),
         Quantity("bench.forward_mm", "forward", index=0, default=0.0),
     ]
-    angle: Annotated[float, Quantity("snow.angle_deg", "angle", lowest=-85.0, highest=85.0)] = 0.0
+    angle: Annotated[float, Quantity("snow.angle_deg", "angle"), Allowed(-85.0, 85.0)] = 0.0
     load_N: Annotated[float, Quantity("bench.load_N", "load")] = 1.0
     table: dict[str, float] = field(default_factory=dict)
 

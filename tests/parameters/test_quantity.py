@@ -10,7 +10,7 @@ from tests.coded import coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import unit_of_name, without_unit
-from skisnow.parameters import Quantity, Search, checked_table, made, own_quantities
+from skisnow.parameters import Allowed, Quantity, Search, checked_table, made, own_quantities
 from skisnow.parameters.json_schema import output_schema, page_table, schema_of, schema_text
 
 ANGLE = Quantity("edge_angle_deg", "edge angle", lowest=0.0, highest=90.0, below=True)
@@ -23,7 +23,7 @@ class Range:
     """Ends in the unit of some key."""
 
     first: Annotated[float, Quantity("from", "its begin")]
-    n: Annotated[int | None, Quantity("n", "how many", lowest=2)] = None
+    n: Annotated[int | None, Quantity("n", "how many"), Allowed(2)] = None
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import Facts, Shown
 from .._support.user_files import GivenError, plain_bytes
-from ..parameters import Quantity, require_declared
+from ..parameters import Allowed, Quantity, require_declared
 from ..parameters.quantity import LARGEST
 from .problems import error
 
@@ -279,17 +279,13 @@ class WeatherSettings:
             "utc_offset_h",
             "hours that the clock of the column `time` is ahead of UTC, where a time does not say it; default: as in "
             "the station's file",
-            lowest=-14.0,
-            highest=14.0,
         ),
+        Allowed(-14.0, 14.0),
     ] = None
     longest_gap_h: Annotated[
         float,
-        Quantity(
-            "longest_gap_h",
-            "between readings of the station that are farther apart nothing is interpolated",
-            lowest=0.0,
-        ),
+        Quantity("longest_gap_h", "between readings of the station that are farther apart nothing is interpolated"),
+        Allowed(0.0),
     ] = 3.0
 
     def __post_init__(self) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray, IntArray
 from .._support.units import MM, Facts, Shown, amount
-from ..parameters import Quantity, require_declared
+from ..parameters import Allowed, Quantity, require_declared
 from .snow_micro_pen import SnowMicroPenProfile, parse_snow_micro_pen
 
 Relation: TypeAlias = Literal["proksch-2015", "calonne-2020", "king-2020a", "king-2020b"]
@@ -26,20 +26,18 @@ class SnowMicroPenSettings:
             "from_depth_mm",
             "where the depth begins over which the force is averaged, from the snow surface; the instrument's cone of "
             "60° and 5 mm is 4.3 mm long",
-            lowest=0.0,
         ),
+        Allowed(0.0),
     ] = 5.0 * MM
-    to_depth: Annotated[float, Quantity("to_depth_mm", "where it ends", lowest=0.0, above=True)] = 30.0 * MM
+    to_depth: Annotated[float, Quantity("to_depth_mm", "where it ends"), Allowed(0.0, above=True)] = 30.0 * MM
     surface_rise: Annotated[
         float,
         Quantity(
-            "surface_rise_N",
-            "the snow begins where the force rises by this above what it was in the air just before …",
-            lowest=0.0,
-            above=True,
+            "surface_rise_N", "the snow begins where the force rises by this above what it was in the air just before …"
         ),
+        Allowed(0.0, above=True),
     ] = 0.01
-    surface_hold: Annotated[float, Quantity("surface_hold_mm", "… and stays above over this length", lowest=0.0)] = (
+    surface_hold: Annotated[float, Quantity("surface_hold_mm", "… and stays above over this length"), Allowed(0.0)] = (
         5.0 * MM
     )
     subtract_air_force: Annotated[

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Final, Literal
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM3, in_degrees_if_radians
-from ..parameters import Quantity, nearest, own_quantities, require_declared
+from ..parameters import Allowed, Label, Quantity, nearest, own_quantities, require_declared
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
 from ..ski.editing import SIDECUT, SkiEdit, edit_stations, edited_ski
@@ -123,25 +123,19 @@ class CarveQuestion:
     ski: Annotated[str, Quantity("ski", "a ski of the catalogue, or the path of a ski file")]
     edge_angle_deg: Annotated[
         float,
-        Quantity(
-            "edge_angle_deg",
-            "angle ϑ of the base under the boot to the snow surface",
-            label=Message("edge angle"),
-            symbol="ϑ",
-            lowest=0.0,
-            highest=round(math.degrees(GREATEST_EDGE_ANGLE), 9),
+        Quantity("edge_angle_deg", "angle ϑ of the base under the boot to the snow surface"),
+        Label(Message("edge angle"), symbol="ϑ"),
+        Allowed(
+            0.0,
+            round(math.degrees(GREATEST_EDGE_ANGLE), 9),
             origin="at 90° the side force of a balanced turn has no bound",
         ),
     ]
     load_N: Annotated[
         float,
-        Quantity(
-            "load_N",
-            "force on this ski along the snow normal, at the boot",
-            label=Message("load"),
-            lowest=0.0,
-            above=True,
-        ),
+        Quantity("load_N", "force on this ski along the snow normal, at the boot"),
+        Label(Message("load")),
+        Allowed(0.0, above=True),
     ]
     H_V_N_per_mm3: Annotated[float | None, _SNOW["H_V_N_per_mm3"]] = None
     S_f_N_per_mm2: Annotated[
@@ -156,20 +150,18 @@ class CarveQuestion:
             "unloading_ratio",
             "k_u/H_V: 1 is elastic snow, inf rigid-plastic snow (computed as 1000); plays no part at rest",
             symbol="$k_u/H_V$",
-            lowest=1.0,
-            infinite=True,
-            origin="not published: a parameter",
             example="--unloading-ratio 10 (1 elastic, inf rigid-plastic)",
         ),
+        Allowed(1.0, infinite=True, origin="not published: a parameter"),
     ] = None
     moment_Nm: Annotated[
         float,
         Quantity(
             "moment_Nm",
             "boot moment about the cross axis (see moment_balance), positive where it presses the tip down",
-            label=Message("boot moment"),
             origin="load at the boot",
         ),
+        Label(Message("boot moment")),
     ] = 0.0
     moment_balance: Annotated[
         Literal["boot", "free"],
@@ -182,24 +174,18 @@ class CarveQuestion:
     ] = "boot"
     clamp_length_m: Annotated[
         float,
-        Quantity(
-            "clamp_length_m",
-            "length of ski that boot and binding keep straight",
-            label=Message("clamp length"),
-            lowest=0.0,
-            origin="choice: about a boot's sole",
-        ),
+        Quantity("clamp_length_m", "length of ski that boot and binding keep straight"),
+        Label(Message("clamp length")),
+        Allowed(0.0, origin="choice: about a boot's sole"),
     ] = CLAMP_LENGTH
     footprint_stiffness_N_per_mm2: Annotated[
         float | None,
         Quantity(
             "footprint_stiffness_N_per_mm2",
             "stiffness of boot and binding under each metre of the clamp length, against bending; default: rigid",
-            label=Message("footprint stiffness"),
-            lowest=0.0,
-            highest=1e4,
-            above=True,
         ),
+        Label(Message("footprint stiffness")),
+        Allowed(0.0, 1e4, above=True),
     ] = None
     side_force_bending: Annotated[
         bool,
@@ -231,14 +217,9 @@ class CarveQuestion:
     ] = True
     elements: Annotated[
         int,
-        Quantity(
-            "elements",
-            "finite elements over the whole ski",
-            label=Message("elements"),
-            lowest=4,
-            highest=MOST_ELEMENTS,
-            origin="choice: 1 cm each",
-        ),
+        Quantity("elements", "finite elements over the whole ski"),
+        Label(Message("elements")),
+        Allowed(4, MOST_ELEMENTS, origin="choice: 1 cm each"),
     ] = ELEMENTS
     at_rest: Annotated[
         bool,

@@ -19,7 +19,7 @@ from .._support.user_files import read_toml
 from ..carving.answer import asked_snow
 from ..carving.outputs import FORCE_ALONG_EDGE, OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
-from ..parameters import Quantity, checked_table, made, nearest
+from ..parameters import Allowed, Quantity, checked_table, made, nearest
 from ..ski import Ski
 from ..ski.editing import shape_parameters
 from ..ski.file_keys import LISTS
@@ -39,14 +39,14 @@ class Goal:
     """A goal for one output at some conditions, or the force at some places: a target, or a limit on one side."""
 
     output: Annotated[str, Quantity("output", "name of an output, such as turn_radius_boot_m")]
-    target: Annotated[float | None, Quantity("target", "value to reach", lowest=0.0, above=True)] = None
-    at_most: Annotated[float | None, Quantity("at_most", "upper limit", lowest=0.0, above=True)] = None
-    at_least: Annotated[float | None, Quantity("at_least", "lower limit", lowest=0.0, above=True)] = None
+    target: Annotated[float | None, Quantity("target", "value to reach"), Allowed(0.0, above=True)] = None
+    at_most: Annotated[float | None, Quantity("at_most", "upper limit"), Allowed(0.0, above=True)] = None
+    at_least: Annotated[float | None, Quantity("at_least", "lower limit"), Allowed(0.0, above=True)] = None
     over: Annotated[
         Literal["mean", "worst"],
         Quantity("over", "what of a target's relative deviations is smallest: the mean square, or the worst one"),
     ] = "mean"
-    weight: Annotated[float, Quantity("weight", "factor of the deviations", lowest=0.0, above=True)] = 1.0
+    weight: Annotated[float, Quantity("weight", "factor of the deviations"), Allowed(0.0, above=True)] = 1.0
     conditions: Annotated[
         tuple[float, ...] | None, Quantity("conditions", "numbers of the conditions, from 1", origin="all")
     ] = None
@@ -56,7 +56,8 @@ class Goal:
     ] = None
     curve: Annotated[
         tuple[float, ...] | None,
-        Quantity("curve", "factors of the target or limit at these places", lowest=0.0, origin="1 everywhere"),
+        Quantity("curve", "factors of the target or limit at these places"),
+        Allowed(0.0, origin="1 everywhere"),
     ] = None
     ratio: Annotated[bool, Quantity("ratio", "the output at the first of two conditions over that at the second")] = (
         False

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import require_choice
-from ..parameters import Quantity, require_declared
+from ..parameters import Allowed, Quantity, require_declared
 
 GeometryForm: TypeAlias = Literal["extended", "paper"]
 
@@ -94,7 +94,7 @@ class SkiPiece(Tool):
     """
 
     length: Annotated[
-        float, Quantity("length_mm", "length along the edge", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+        float, Quantity("length_mm", "length along the edge"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]
     width: Annotated[float, _length("width_mm", "width of the base")]
 
@@ -145,7 +145,7 @@ class PlainWedge(Tool):
     """
 
     length: Annotated[
-        float, Quantity("length_mm", "length along the edge", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+        float, Quantity("length_mm", "length along the edge"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]
     width: Annotated[float, _length("width_mm", "width of the base")]
 
@@ -232,7 +232,7 @@ class LyingCylinder(Tool):
 
     radius: Annotated[float, _length("radius_mm", "radius")]
     width: Annotated[
-        float, Quantity("width_mm", "length along the axis", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+        float, Quantity("width_mm", "length along the axis"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]
 
     def __post_init__(self) -> None:

@@ -16,7 +16,7 @@ from .._support.messages import Message, template
 from .._support.spreadsheet_text import MOST_CSV_BYTES, number
 from .._support.units import ShownFields
 from .._support.user_files import plain_bytes
-from ..parameters import Quantity, own_quantities
+from ..parameters import Allowed, Quantity, own_quantities
 from ..track.readers.text import decimal_mark_of, decode_text, require_width, split_cells
 
 FEWEST_FOR_SCATTER: Final = 3
@@ -139,7 +139,7 @@ class Passage:
     run: Annotated[str, Quantity("run", "name of the run")]
     station: Annotated[float, Quantity("station_m", "distance from the start down, which no cell lies before")]
     time: Annotated[float, Quantity("time_s", "of the passage")]
-    time_sd: Annotated[float | None, Quantity("time_sd_s", "standard deviation of it", lowest=0.0, above=True)] = None
+    time_sd: Annotated[float | None, Quantity("time_sd_s", "standard deviation of it"), Allowed(0.0, above=True)] = None
 
 
 _PASSAGE: Final = own_quantities(Passage)
@@ -237,12 +237,12 @@ def _sd_of_run(name: str, sd: FloatArray | None, rows: BoolArray) -> FloatArray 
 class GrooveRow:
     """A row of a file of measured grooves; None for a quantity that was not measured."""
 
-    depth: Annotated[float | None, Quantity("depth_mm", "depth of the groove", lowest=0.0, above=True)] = None
-    width: Annotated[float | None, Quantity("width_mm", "width of the groove", lowest=0.0, above=True)] = None
+    depth: Annotated[float | None, Quantity("depth_mm", "depth of the groove"), Allowed(0.0, above=True)] = None
+    width: Annotated[float | None, Quantity("width_mm", "width of the groove"), Allowed(0.0, above=True)] = None
     turn_radius: Annotated[float | None, Quantity("turn_radius_m", "radius of the track on either side")] = None
-    depth_sd: Annotated[float | None, Quantity("depth_sd_mm", "of the depth", lowest=0.0, above=True)] = None
-    width_sd: Annotated[float | None, Quantity("width_sd_mm", "of the width", lowest=0.0, above=True)] = None
-    turn_radius_sd: Annotated[float | None, Quantity("turn_radius_sd_m", "of the radius", lowest=0.0, above=True)] = (
+    depth_sd: Annotated[float | None, Quantity("depth_sd_mm", "of the depth"), Allowed(0.0, above=True)] = None
+    width_sd: Annotated[float | None, Quantity("width_sd_mm", "of the width"), Allowed(0.0, above=True)] = None
+    turn_radius_sd: Annotated[float | None, Quantity("turn_radius_sd_m", "of the radius"), Allowed(0.0, above=True)] = (
         None
     )
 

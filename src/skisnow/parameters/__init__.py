@@ -15,14 +15,16 @@ from .declared import (
     require_effect,
     values_of,
 )
-from .quantity import SMALLEST, Condition, InputValue, Kind, Quantity, Search
+from .quantity import SMALLEST, Allowed, Condition, InputValue, Kind, Label, Quantity, Search
 
 __all__ = [
     "APART",
     "SMALLEST",
+    "Allowed",
     "Condition",
     "InputValue",
     "Kind",
+    "Label",
     "Quantity",
     "Search",
     "Section",

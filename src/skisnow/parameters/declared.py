@@ -1,10 +1,10 @@
 """Quantities that dataclasses declare: found, checked in constructors, read from values as given and written back.
 
-The annotation of a field declares its quantity:
+The annotation of a field declares its quantity, with its `Label`, `Allowed`, `Condition` and `Search`:
 
 >>> @dataclass(frozen=True)
 ... class Air:
-...     density: Annotated[float, Quantity("air.density_kg_per_m3", "density of the air", lowest=0.0)] = 1.2
+...     density: Annotated[float, Quantity("air.density_kg_per_m3", "density of the air"), Allowed(0.0)] = 1.2
 ...
 ...     def __post_init__(self) -> None:
 ...         require_declared(self)
@@ -29,7 +29,7 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
 from .._support.errors import ParameterError, nearest
-from .quantity import Kind, Quantity
+from .quantity import Allowed, Condition, Kind, Label, Quantity, Search
 
 T = TypeVar("T")
 
@@ -270,13 +270,24 @@ def _slot(owner: type, field: Field[Any]) -> _Slot:
     return _Slot(
         field,
         tuple(
-            declaration if isinstance(declaration, Word) else _resolved(declaration, field, members, needed)
+            declaration if isinstance(declaration, Word) else _resolved(declaration, marks, field, members, needed)
             for declaration in declared
         ),
         parts,
         section._replace(otherwise=section.otherwise or otherwise),
         NoneType in members,
     )
+
+
+def _details(marks: tuple[Any, ...]) -> dict[str, Any]:
+    """Fields of a quantity that further marks of its annotation state."""
+    details: dict[str, Any] = {}
+    for mark in marks:
+        if isinstance(mark, Label | Allowed):
+            details |= mark._asdict()
+        elif isinstance(mark, Condition | Search):
+            details[type(mark).__name__.lower()] = mark
+    return details
 
 
 _KINDS: Final[dict[Any, Kind]] = {
@@ -293,14 +304,21 @@ def _members(hint: Any) -> tuple[Any, ...]:
     return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
 
 
-def _resolved(quantity: Quantity, field: Field[Any], members: tuple[Any, ...], needed: bool) -> Quantity:
-    """The quantity, completed from its field: kind, choices, default."""
+def _resolved(
+    quantity: Quantity, marks: tuple[Any, ...], field: Field[Any], members: tuple[Any, ...], needed: bool
+) -> Quantity:
+    """The quantity, completed from the further marks of its annotation and from its field: kind, choices, default."""
     (type_,) = (member for member in members if member is not NoneType)
     choices = get_args(type_) if get_origin(type_) is Literal else ()
     kind = "text" if choices else "number" if quantity.index is not None else _KINDS[type_]
     default = quantity.default
     resolved = replace(
-        quantity, kind=kind, choices=choices, field=field.name, needed=quantity.needed and needed and default is None
+        quantity,
+        kind=kind,
+        choices=choices,
+        field=field.name,
+        needed=quantity.needed and needed and default is None,
+        **_details(marks),
     )
     if default is None and field.default is not MISSING:
         return replace(resolved, default=resolved.in_unit(field.default))

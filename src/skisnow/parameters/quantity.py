@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
@@ -46,6 +46,25 @@ class Search:
     upper: float
     about: bool = False
     logarithmic: bool = False
+
+
+class Allowed(NamedTuple):
+    """Allowed values of a quantity, next to it in the annotation of its field; see `Quantity`."""
+
+    lowest: float = -math.inf
+    highest: float = math.inf
+    above: bool = False
+    below: bool = False
+    infinite: bool = False
+    usual: tuple[float, float] | None = None
+    origin: str = ""
+
+
+class Label(NamedTuple):
+    """Short name of a quantity, and its symbol on the axis of a figure, next to it in the annotation of its field."""
+
+    label: str
+    symbol: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,18 @@ from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw, ProfilePoint
 from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.law import SHEAR_DISPLACEMENT
-from ..parameters import APART, Condition, Quantity, Search, Section, Word, declared_text, require_declared
+from ..parameters import (
+    APART,
+    Allowed,
+    Condition,
+    Label,
+    Quantity,
+    Search,
+    Section,
+    Word,
+    declared_text,
+    require_declared,
+)
 from ..snow import SnowProperties
 from ..snow.measured_range import without_range_warnings
 from .snow_map import SnowLayers, SnowMap
@@ -75,13 +86,10 @@ class Contact:
             "snow.unloading_ratio",
             'k_u/H_V: 1 is elastic snow, 1000 nearly rigid-plastic; omit it, or use 1, with penetration = "elastic", '
             "and omit it if the results contain it",
-            label=Message("unloading ratio"),
-            symbol="$k_u/H_V$",
-            lowest=1.0,
-            highest=1000.0,
-            origin="not published: a parameter",
-            search=Search(3.0, 1.0, 1000.0, logarithmic=True),
         ),
+        Label(Message("unloading ratio"), symbol="$k_u/H_V$"),
+        Allowed(1.0, 1000.0, origin="not published: a parameter"),
+        Search(3.0, 1.0, 1000.0, logarithmic=True),
         Word(
             "snow.penetration",
             "whether the snow is plastic (history-dependent), or elastic",
@@ -97,9 +105,9 @@ class Contact:
         Quantity(
             "snow.compaction_resistance",
             "whether pushing the groove brakes the ski",
-            label=Message("pushing the groove brakes"),
             origin="exact: else a gliding ski would cut its groove for nothing",
         ),
+        Label(Message("pushing the groove brakes")),
     ] = True
     shear_displacement: Annotated[
         float,
@@ -107,49 +115,32 @@ class Contact:
             "snow.shear_displacement_mm",
             "u_y, the sideways displacement of an edge at which the snow reaches S_f; omit it if the results contain "
             "it",
-            label=Message("shear displacement"),
-            symbol="$u_y$",
-            lowest=0.01,  # below, a step's corrections are as large
-            highest=10.0,
-            origin="not measured: a choice near the law of the paper, which is its limit 0",
-            search=Search(3.0, 0.01, 5.0, logarithmic=True),
         ),
+        Label(Message("shear displacement"), symbol="$u_y$"),
+        # below 0.01 mm, a step's corrections are as large
+        Allowed(0.01, 10.0, origin="not measured: a choice near the law of the paper, which is its limit 0"),
+        Search(3.0, 0.01, 5.0, logarithmic=True),
     ] = SHEAR_DISPLACEMENT
     hardness_growth: Annotated[
         float,
         Quantity(
             "snow.hardness_growth_per_mm",
             "γ' of p = H_V ε (1 + γ' ε), snow that is harder below; 0: alike at every depth",
-            label=Message("growth of the hardness"),
-            symbol="$γ'$",
-            lowest=0.0,
-            highest=10.0,
-            origin="choice: none; a campaign gives γ/e₇",
         ),
+        Label(Message("growth of the hardness"), symbol="$γ'$"),
+        Allowed(0.0, 10.0, origin="choice: none; a campaign gives γ/e₇"),
     ] = 0.0
     layer_depth: Annotated[
         float | None,
-        Quantity(
-            "snow.layer_depth_mm",
-            "depth at which a lower layer begins, or the ground",
-            label=Message("depth of the upper layer"),
-            symbol="d",
-            lowest=0.01,
-            highest=10000.0,
-            origin="none: one layer",
-        ),
+        Quantity("snow.layer_depth_mm", "depth at which a lower layer begins, or the ground"),
+        Label(Message("depth of the upper layer"), symbol="d"),
+        Allowed(0.01, 10000.0, origin="none: one layer"),
     ] = None
     lower_hardness: Annotated[
         float | None,
-        Quantity(
-            "snow.lower_H_V_N_per_mm3",
-            "H_V of that layer: growth of the pressure with depth there",
-            label=Message("hardness of the lower layer"),
-            symbol="$H_2$",
-            lowest=0.0001,
-            highest=10000.0,
-            origin="none; goes with snow.layer_depth_mm",
-        ),
+        Quantity("snow.lower_H_V_N_per_mm3", "H_V of that layer: growth of the pressure with depth there"),
+        Label(Message("hardness of the lower layer"), symbol="$H_2$"),
+        Allowed(0.0001, 10000.0, origin="none; goes with snow.layer_depth_mm"),
     ] = None
     layers: Annotated[
         SnowLayers | None,
@@ -165,86 +156,63 @@ class Contact:
     damping: Annotated[
         float,
         Quantity(
-            "snow.damping_N_s_per_mm3",
-            "c of p = H_V ε + c dε/dt, snow that answers to how fast it is pressed; 0: none",
-            label=Message("damping of the snow"),
-            symbol="c",
-            lowest=0.0,
-            highest=10.0,
-            origin="choice: none, as the paper; steady penetration of snow hardly depends on speed",
-            search=Search(0.002, 0.0, 0.1),
+            "snow.damping_N_s_per_mm3", "c of p = H_V ε + c dε/dt, snow that answers to how fast it is pressed; 0: none"
         ),
+        Label(Message("damping of the snow"), symbol="c"),
+        Allowed(0.0, 10.0, origin="choice: none, as the paper; steady penetration of snow hardly depends on speed"),
+        Search(0.002, 0.0, 0.1),
     ] = DAMPING
     delayed_share: Annotated[
         float,
         Quantity(
-            "snow.delayed_share",
-            "delayed elastic depth under a load that stays, over the depth at once; 0: none",
-            label=Message("delayed share"),
-            symbol="$H_V/H_2$",
-            lowest=0.0,
-            highest=10.0,
-            origin="choice: none; not measured for groomed snow",
-            search=Search(0.1, 0.0, 2.0),
+            "snow.delayed_share", "delayed elastic depth under a load that stays, over the depth at once; 0: none"
         ),
+        Label(Message("delayed share"), symbol="$H_V/H_2$"),
+        Allowed(0.0, 10.0, origin="choice: none; not measured for groomed snow"),
+        Search(0.1, 0.0, 2.0),
     ] = DELAYED_SHARE
     retardation_time: Annotated[
         float,
         Quantity(
             "snow.retardation_time_ms",
             "time in which 63 % of the delayed depth is reached; without effect if there is no delayed depth",
-            label=Message("retardation time"),
-            symbol="$c_2/H_2$",
-            lowest=1.0,
-            highest=1e7,
-            origin="choice: what a ski takes to pass; not measured",
-            search=Search(1.0, 1.0, 1e4, logarithmic=True),
-            condition=Condition("snow.delayed_share", 0.0, differs=True),
         ),
+        Label(Message("retardation time"), symbol="$c_2/H_2$"),
+        Allowed(1.0, 1e7, origin="choice: what a ski takes to pass; not measured"),
+        Condition("snow.delayed_share", 0.0, differs=True),
+        Search(1.0, 1.0, 1e4, logarithmic=True),
     ] = RETARDATION_TIME
     friction: Annotated[
         float,
-        Quantity(
-            "friction.mu_0",
-            "μ_0 of the glide friction μ = μ_0 + μ_1 v",
-            label=Message("friction"),
-            symbol="$μ_0$",
-            lowest=0.0,
-            highest=1.0,
-            origin="measured μ 0.023 to 0.139; a warning beyond",
-            search=Search(0.1, 0.0, 0.5),
-        ),
+        Quantity("friction.mu_0", "μ_0 of the glide friction μ = μ_0 + μ_1 v"),
+        Label(Message("friction"), symbol="$μ_0$"),
+        Allowed(0.0, 1.0, origin="measured μ 0.023 to 0.139; a warning beyond"),
+        Search(0.1, 0.0, 0.5),
     ]
     friction_by_speed: Annotated[
         float,
-        Quantity(
-            "friction.mu_1_s_per_m",
-            "μ_1 of it, with the speed v",
-            label=Message("friction that grows with speed"),
-            symbol="$μ_1$",
-            lowest=-0.1,
-            highest=0.1,
-            origin="choice: friction that does not depend on speed",
-            search=Search(0.01, -0.05, 0.05),
-        ),
+        Quantity("friction.mu_1_s_per_m", "μ_1 of it, with the speed v"),
+        Label(Message("friction that grows with speed"), symbol="$μ_1$"),
+        Allowed(-0.1, 0.1, origin="choice: friction that does not depend on speed"),
+        Search(0.01, -0.05, 0.05),
     ] = 0.0
     friction_acts_on: Annotated[
         ActsOn,
         Quantity(
             "friction.acts_on",
             "load that μ is multiplied with: along the snow's normal, or square on the base, side force included",
-            label=Message("friction acts on"),
             origin="choice: it does not hang on how the side force spreads along the edge, which was not measured",
         ),
+        Label(Message("friction acts on")),
     ] = "snow-normal"
     friction_direction: Annotated[
         Direction,
         Quantity(
             "friction.direction",
             "against the sliding velocity, or along the ski at any slip angle",
-            label=Message("direction of friction"),
             origin="Coulomb's law; the paper's turns had friction along the ski",
         ),
+        Label(Message("direction of friction")),
     ] = "vector"
     friction_law: Annotated[
         FrictionFile | None,
@@ -259,25 +227,15 @@ class Contact:
     ] = None
     temperature: Annotated[
         float | None,
-        Quantity(
-            "friction.temperature_C",
-            "temperature of the snow's surface, for friction.law_file",
-            label=Message("snow temperature"),
-            lowest=-60.0,
-            highest=0.0,
-            origin="none; a law file with temperatures needs it",
-        ),
+        Quantity("friction.temperature_C", "temperature of the snow's surface, for friction.law_file"),
+        Label(Message("snow temperature")),
+        Allowed(-60.0, 0.0, origin="none; a law file with temperatures needs it"),
     ] = None
     liquid_water: Annotated[
         float | None,
-        Quantity(
-            "friction.liquid_water_percent",
-            "liquid water in the volume of wet snow, for friction.law_file",
-            label=Message("liquid water of the snow (%)"),
-            lowest=0.0,
-            highest=50.0,
-            origin="none: dry snow; goes with friction.law_file and 0 °C",
-        ),
+        Quantity("friction.liquid_water_percent", "liquid water in the volume of wet snow, for friction.law_file"),
+        Label(Message("liquid water of the snow (%)")),
+        Allowed(0.0, 50.0, origin="none: dry snow; goes with friction.law_file and 0 °C"),
     ] = None
     snow_map: Annotated[
         SnowMap | None,

@@ -13,7 +13,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
-from ..parameters import Quantity, checked_table, nearest, quantities
+from ..parameters import Allowed, Quantity, checked_table, nearest, quantities
 from ..snow import SnowProperties
 from ..snow.mean_snow import log_normal
 from .keys import SCENARIO_KEYS, free_key
@@ -27,7 +27,7 @@ class Sought:
     lower: Annotated[float | None, Quantity("lower", "bound")] = None
     upper: Annotated[float | None, Quantity("upper", "bound")] = None
     prior_mean: Annotated[float | None, Quantity("prior_mean", "mean of a prior normal distribution")] = None
-    prior_sd: Annotated[float | None, Quantity("prior_sd", "its standard deviation", lowest=0.0, above=True)] = None
+    prior_sd: Annotated[float | None, Quantity("prior_sd", "its standard deviation"), Allowed(0.0, above=True)] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

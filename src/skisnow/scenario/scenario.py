@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import DEGREE, STANDARD_GRAVITY, Facts, Shown, amount
-from ..parameters import Quantity, Search, Word, require_declared
+from ..parameters import Allowed, Label, Quantity, Search, Word, require_declared
 from ..ski import Ski, ski_names
 from ..ski.beam import CLAMP_LENGTH
 from ..track.course import Course, on_slope
@@ -112,54 +112,37 @@ class Scenario(Shown):
         Quantity(
             "ski.camber_rounding_mm",
             "length before each contact point over which the camber levels out; default: the ski's own",
-            label=Message("rounding of the camber"),
-            lowest=1.0,
-            highest=1000.0,
         ),
+        Label(Message("rounding of the camber")),
+        Allowed(1.0, 1000.0),
     ] = None
     stiffness_factor: Annotated[
         float,
-        Quantity(
-            "ski.stiffness_factor",
-            "factor of the ski's EI and GJ",
-            label=Message("stiffness factor"),
-            lowest=0.01,
-            highest=100.0,
-            origin="the ski as it is given",
-            search=Search(0.5, 0.1, 10.0, logarithmic=True),
-        ),
+        Quantity("ski.stiffness_factor", "factor of the ski's EI and GJ"),
+        Label(Message("stiffness factor")),
+        Allowed(0.01, 100.0, origin="the ski as it is given"),
+        Search(0.5, 0.1, 10.0, logarithmic=True),
     ] = 1.0
     clamp_length: Annotated[
         float,
-        Quantity(
-            "ski.clamp_length_m",
-            "length of ski that boot and binding keep straight",
-            label=Message("clamp length"),
-            lowest=0.0,
-            origin="choice: about a boot's sole",
-        ),
+        Quantity("ski.clamp_length_m", "length of ski that boot and binding keep straight"),
+        Label(Message("clamp length")),
+        Allowed(0.0, origin="choice: about a boot's sole"),
     ] = CLAMP_LENGTH
     footprint_stiffness: Annotated[
         float | None,
         Quantity(
             "ski.footprint_stiffness_N_per_mm2",
             "stiffness of boot and binding under each metre of the clamp length, against bending; default: rigid",
-            label=Message("footprint stiffness"),
-            lowest=0.0,
-            highest=1e4,
-            above=True,
         ),
+        Label(Message("footprint stiffness")),
+        Allowed(0.0, 1e4, above=True),
     ] = None
     damping_ratio: Annotated[
         float,
-        Quantity(
-            "ski.damping_ratio",
-            "damping ratio of the ski's first bending mode",
-            label=Message("damping ratio of the ski"),
-            lowest=0.0,
-            highest=1.0,
-            origin="choice: a lightly damped beam",
-        ),
+        Quantity("ski.damping_ratio", "damping ratio of the ski's first bending mode"),
+        Label(Message("damping ratio of the ski")),
+        Allowed(0.0, 1.0, origin="choice: a lightly damped beam"),
     ] = 0.02
     boots: Annotated[
         Boots | None,
@@ -177,16 +160,9 @@ class Scenario(Shown):
     solver: Solver = field(default_factory=Solver)
     gravity: Annotated[
         float,
-        Quantity(
-            "slope.gravity_m_per_s2",
-            "acceleration of gravity",
-            label=Message("gravity"),
-            symbol="g",
-            lowest=0.0,
-            highest=100.0,
-            above=True,
-            origin="the value that the skiing literature computes with",
-        ),
+        Quantity("slope.gravity_m_per_s2", "acceleration of gravity"),
+        Label(Message("gravity"), symbol="g"),
+        Allowed(0.0, 100.0, above=True, origin="the value that the skiing literature computes with"),
     ] = STANDARD_GRAVITY
     course: Course | None = None
     skier: Skier | None = None

@@ -12,7 +12,7 @@ from .._support.messages import Message
 from .._support.units import DEGREE
 from ..forces.shear import AngleShear, DensityShear, MachiningShear, ShearLaw
 from ..forces.shear.law import RESIDUAL_RATIO, SLIP_WEAKENING, Bearing
-from ..parameters import Condition, Quantity, Search, declared_text, require_declared
+from ..parameters import Allowed, Condition, Label, Quantity, Search, declared_text, require_declared
 from ..snow.published.moessner_2013 import STRESS_BY_ANGLE
 
 
@@ -41,27 +41,17 @@ class RigidSledge:
 
     mass: Annotated[
         float,
-        Quantity(
-            "sledge.mass_kg",
-            "mass without the skis",
-            label=Message("mass of the sledge"),
-            symbol="m",
-            lowest=0.0,
-            highest=1000.0,
-            above=True,
-        ),
+        Quantity("sledge.mass_kg", "mass without the skis"),
+        Label(Message("mass of the sledge"), symbol="m"),
+        Allowed(0.0, 1000.0, above=True),
     ]
     inertia: Annotated[
         tuple[float, float, float],
         Quantity(
-            "sledge.inertia_kg_m2",
-            "roll, pitch and yaw moments of inertia at the centre of mass, without the skis",
-            label=Message("moments of inertia"),
-            symbol="I",
-            lowest=0.0,
-            above=True,
-            origin="none is more than the sum of the others",
+            "sledge.inertia_kg_m2", "roll, pitch and yaw moments of inertia at the centre of mass, without the skis"
         ),
+        Label(Message("moments of inertia"), symbol="I"),
+        Allowed(0.0, above=True, origin="none is more than the sum of the others"),
     ]
     centre_of_mass: Annotated[
         tuple[float, float],
@@ -88,28 +78,20 @@ class RigidSledge:
     ]
     stance_width: Annotated[
         float,
-        Quantity(
-            "sledge.stance_width_m",
-            "between the middles of the skis; at least a ski's maximum width",
-            label=Message("stance width"),
-            lowest=0.0,
-            highest=3.0,
-            above=True,
-            search=Search(0.5, 0.0, 3.0),
-        ),
+        Quantity("sledge.stance_width_m", "between the middles of the skis; at least a ski's maximum width"),
+        Label(Message("stance width")),
+        Allowed(0.0, 3.0, above=True),
+        Search(0.5, 0.0, 3.0),
     ]
     edge_angle: Annotated[
         float,
         Quantity(
             "sledge.edge_angle_deg",
             "angle of both skis' bases to the sledge; positive: left edges down, a turn to the left",
-            label=Message("edge angle"),
-            symbol="ϑ",
-            lowest=-85.0,
-            highest=85.0,
-            origin="at 90° an edge bears nothing",
-            search=Search(30.0, -30.0, 30.0, about=True),
         ),
+        Label(Message("edge angle"), symbol="ϑ"),
+        Allowed(-85.0, 85.0, origin="at 90° an edge bears nothing"),
+        Search(30.0, -30.0, 30.0, about=True),
     ]
 
     __repr__ = declared_text
@@ -129,42 +111,28 @@ class Air:
 
     drag_area: Annotated[
         float,
-        Quantity(
-            "drag.drag_area_m2",
-            "drag area C_dA; 0: no drag",
-            label=Message("drag area"),
-            symbol="$C_d A$",
-            lowest=0.0,
-            highest=10.0,
-            origin="skiers 0.23 to 0.66; a warning beyond",
-            search=Search(1.0, 0.0, 3.0),
-        ),
+        Quantity("drag.drag_area_m2", "drag area C_dA; 0: no drag"),
+        Label(Message("drag area"), symbol="$C_d A$"),
+        Allowed(0.0, 10.0, origin="skiers 0.23 to 0.66; a warning beyond"),
+        Search(1.0, 0.0, 3.0),
     ]
     density: Annotated[
         float,
-        Quantity(
-            "drag.air_density_kg_per_m3",
-            "density of the air",
-            label=Message("density of the air"),
-            symbol="ρ",
-            lowest=0.0,
-            highest=2.0,
-            above=True,
-            origin="choice: 0 °C at 700 m above the sea",
-            search=Search(1.0, 0.5, 2.0),
-        ),
+        Quantity("drag.air_density_kg_per_m3", "density of the air"),
+        Label(Message("density of the air"), symbol="ρ"),
+        Allowed(0.0, 2.0, above=True, origin="choice: 0 °C at 700 m above the sea"),
+        Search(1.0, 0.5, 2.0),
     ] = 1.2
     centre_of_pressure_height: Annotated[
         float,
         Quantity(
             "drag.centre_of_pressure_height_m",
             "height of the centre of pressure above the bases; default: that of the centre of mass",
-            label=Message("height of the centre of pressure"),
-            lowest=0.0,
-            highest=3.0,
-            search=Search(0.5, 0.0, 3.0),
             needed=False,
         ),
+        Label(Message("height of the centre of pressure")),
+        Allowed(0.0, 3.0),
+        Search(0.5, 0.0, 3.0),
     ]
 
     __repr__ = declared_text
@@ -196,100 +164,78 @@ class Shear:
         Quantity(
             "shear.law",
             "law of the shear strength: S_f, S_f (1 - k ϑ), S_f of a density, or cutting with its thrust",
-            label=Message("law of shear"),
             origin="choice: the paper's own, Eqn 9",
         ),
+        Label(Message("law of shear")),
     ] = "constant"
     relative_decrease: Annotated[
         float,
-        Quantity(
-            "shear.relative_decrease_per_rad",
-            'k of law = "by-angle"; S_f is then that of a flat edge',
-            label=Message("relative decrease with the edge angle"),
-            lowest=0.0,
-            highest=0.6366,  # 2/π: beyond, an upright edge would have none
-            origin="Eqn 13, one soft snow",
-            condition=Condition("shear.law", "by-angle"),
-        ),
+        Quantity("shear.relative_decrease_per_rad", 'k of law = "by-angle"; S_f is then that of a flat edge'),
+        Label(Message("relative decrease with the edge angle")),
+        Allowed(0.0, 0.6366, origin="Eqn 13, one soft snow"),  # 2/π: beyond, an upright edge would have none
+        Condition("shear.law", "by-angle"),
     ] = STRESS_BY_ANGLE[1]
     snow_density: Annotated[
         float | None,
         Quantity(
             "shear.snow_density_kg_per_m3",
             'density for law = "by-density", whose S_f (Eqn 14) replaces the snow\'s',
-            label=Message("density of the snow"),
-            symbol="ρ",
-            lowest=151.7,  # below, Eqn 14 gives none
-            highest=917.0,
-            condition=Condition("shear.law", "by-density"),
         ),
+        Label(Message("density of the snow"), symbol="ρ"),
+        Allowed(151.7, 917.0),  # below, Eqn 14 gives none
+        Condition("shear.law", "by-density"),
     ] = None
     dynamic_shear_strength: Annotated[
         float | None,
         Quantity(
             "shear.dynamic_shear_strength_N_per_mm2",
             'S of law = "machining"; default: half of S_f, with which an upright edge without μ_t fails at S_f',
-            label=Message("dynamic shear strength"),
-            lowest=0.0,
-            above=True,
-            condition=Condition("shear.law", "machining"),
         ),
+        Label(Message("dynamic shear strength")),
+        Allowed(0.0, above=True),
+        Condition("shear.law", "machining"),
     ] = None
     transverse_friction: Annotated[
         float,
-        Quantity(
-            "shear.transverse_friction",
-            'μ_t = tan β of law = "machining", across the ski',
-            label=Message("friction across the ski"),
-            lowest=0.0,
-            highest=2.0,
-            origin="choice: as the paper compares it; not measured",
-            condition=Condition("shear.law", "machining"),
-        ),
+        Quantity("shear.transverse_friction", 'μ_t = tan β of law = "machining", across the ski'),
+        Label(Message("friction across the ski")),
+        Allowed(0.0, 2.0, origin="choice: as the paper compares it; not measured"),
+        Condition("shear.law", "machining"),
     ] = 0.0
     least_shear_plane: Annotated[
         float,
         Quantity(
             "shear.least_shear_plane_deg",
             'angle that (ϑ - β)/2 of law = "machining" does not fall below where an edge comes to lie flat',
-            label=Message("least shear plane"),
-            lowest=1.0,
-            highest=45.0,
-            origin="choice: strength and thrust grow without bound as it falls to 0",
-            condition=Condition("shear.law", "machining"),
         ),
+        Label(Message("least shear plane")),
+        Allowed(1.0, 45.0, origin="choice: strength and thrust grow without bound as it falls to 0"),
+        Condition("shear.law", "machining"),
     ] = 5.0 * DEGREE
     residual_ratio: Annotated[
         float,
         Quantity(
             "shear.residual_ratio",
             "share of the strength that is left once an edge has slipped, with any law; 1: all of it",
-            label=Message("residual ratio"),
-            lowest=0.0,
-            highest=1.0,
-            origin="choice: the strength in slip was not measured",
         ),
+        Label(Message("residual ratio")),
+        Allowed(0.0, 1.0, origin="choice: the strength in slip was not measured"),
     ] = RESIDUAL_RATIO
     slip_weakening: Annotated[
         float,
-        Quantity(
-            "shear.slip_weakening_mm",
-            "slip over which that share is reached, in proportion to it",
-            label=Message("slip weakening length"),
-            lowest=0.001,
-            highest=1000.0,
-            origin="choice: not measured",
-            condition=Condition("shear.residual_ratio", 1.0, differs=True),
-        ),
+        Quantity("shear.slip_weakening_mm", "slip over which that share is reached, in proportion to it"),
+        Label(Message("slip weakening length")),
+        Allowed(0.001, 1000.0, origin="choice: not measured"),
+        Condition("shear.residual_ratio", 1.0, differs=True),
     ] = SLIP_WEAKENING
     bearing: Annotated[
         Bearing,
         Quantity(
             "shear.bearing",
             "an edge that moves inwards holds with its whole height, or with the height of the bearing base",
-            label=Message("height that resists"),
             origin="choice: the paper's depth of the edge; no measurement decides",
         ),
+        Label(Message("height that resists")),
     ] = "whole-edge"
 
     __repr__ = declared_text

@@ -18,7 +18,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import csv_rows
 from .._support.units import Facts, Shown, ends
-from ..parameters import Condition, Quantity, Search, Word, declared_text, require_declared
+from ..parameters import Allowed, Condition, Label, Quantity, Search, Word, declared_text, require_declared
 from .raster import number_within, profile_limits
 
 if TYPE_CHECKING:
@@ -41,17 +41,11 @@ class Plane:
 
     angle: Annotated[
         float,
-        Quantity(
-            "slope.angle_deg",
-            'inclination of the plane; only with kind = "plane"',
-            label=Message("slope angle"),
-            symbol="α",
-            lowest=0.0,
-            highest=STEEPEST_DEG,
-            origin="choice: steeper is a cliff",
-            search=Search(10.0, -15.0, 15.0, about=True),
-            condition=Condition("slope.kind", "plane"),
-        ),
+        Quantity("slope.angle_deg", 'inclination of the plane; only with kind = "plane"'),
+        Label(Message("slope angle"), symbol="α"),
+        Allowed(0.0, STEEPEST_DEG, origin="choice: steeper is a cliff"),
+        Condition("slope.kind", "plane"),
+        Search(10.0, -15.0, 15.0, about=True),
     ]
 
     __repr__ = declared_text
@@ -112,10 +106,10 @@ class Profile(Shown):
         Quantity(
             "slope.profile_gap",
             "action if points of the profile are more than 5 m apart",
-            label=Message("gaps in the profile"),
             origin="choice: there are no measurements in between",
-            condition=Condition("slope.kind", "profile"),
         ),
+        Label(Message("gaps in the profile")),
+        Condition("slope.kind", "profile"),
     ] = field(default="error", kw_only=True)
     _curve: PchipInterpolator = field(init=False, repr=False)
 

@@ -16,7 +16,7 @@ from .._support.messages import Message
 from .._support.units import Facts, Shown, amount, ends
 from ..geometry import surfaces
 from ..geometry.surfaces import Grid, smoothed
-from ..parameters import Condition, Quantity, Word, require_declared
+from ..parameters import Allowed, Condition, Label, Quantity, Word, require_declared
 from .raster import PlacedValues
 from .raster_formats import read_esri_ascii, read_geotiff, read_grid_table
 from .slope import STEEPEST_DEG, Plane, Profile
@@ -87,31 +87,29 @@ class Terrain(Shown):
         Quantity(
             "slope.smooth_m",
             'length to which the grid is smoothed: a wave so long keeps half its height; only with kind = "grid"',
-            lowest=0.0,
-            highest=1000.0,
-            origin="choice: the surface as it was measured",
-            condition=Condition("slope.kind", "grid"),
         ),
+        Allowed(0.0, 1000.0, origin="choice: the surface as it was measured"),
+        Condition("slope.kind", "grid"),
     ] = field(default=0.0, kw_only=True)
     origin_x: Annotated[
         float,
         Quantity(
             "slope.origin_x_m",
             "x of the grid's file (east of a map) where the scenario's x is 0; only with kind = \"grid\"",
-            label=Message("x of the grid at the origin"),
             origin="choice: the file's own",
-            condition=Condition("slope.kind", "grid"),
         ),
+        Label(Message("x of the grid at the origin")),
+        Condition("slope.kind", "grid"),
     ] = field(default=0.0, kw_only=True)
     origin_y: Annotated[
         float,
         Quantity(
             "slope.origin_y_m",
             "y of the grid's file (north of a map) where the scenario's y is 0; only with kind = \"grid\"",
-            label=Message("y of the grid at the origin"),
             origin="choice: the file's own",
-            condition=Condition("slope.kind", "grid"),
         ),
+        Label(Message("y of the grid at the origin")),
+        Condition("slope.kind", "grid"),
     ] = field(default=0.0, kw_only=True)
     surface: Grid = field(init=False, repr=False)
 

@@ -11,7 +11,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import ShownFields
-from ..parameters import Quantity, require_declared
+from ..parameters import Allowed, Quantity, require_declared
 
 LONGEST: Final = 6.0
 """Length (m) from tip to tail beyond which no ski is tabulated: the reach of the stations that a ski file may name."""
@@ -172,63 +172,43 @@ class BaseShape:
 
     camber: Annotated[
         float,
-        ski_quantity(
-            "camber_mm", "height of the arch over the line through the contact points", (-50, 50), (0.5, 25), "0"
-        ),
+        Quantity("camber_mm", "height of the arch over the line through the contact points"),
+        Allowed(-50, 50, usual=(0.5, 25), origin="0"),
     ] = 0.0
     camber_rounding: Annotated[
         float,
-        ski_quantity(
-            "camber_rounding_mm",
-            "length before each contact point over which the arch levels out",
-            (1, 1000),
-            (20, 300),
-            "100 (modelling assumption, no source)",
-        ),
+        Quantity("camber_rounding_mm", "length before each contact point over which the arch levels out"),
+        Allowed(1, 1000, usual=(20, 300), origin="100 (modelling assumption, no source)"),
     ] = CAMBER_ROUNDING
     shovel_height: Annotated[
         float | None,
-        ski_quantity(
-            "shovel_height_mm", "height of the tip over that line", (0, 300), (5, 150), "50 (modelling assumption)"
-        ),
+        Quantity("shovel_height_mm", "height of the tip over that line"),
+        Allowed(0, 300, usual=(5, 150), origin="50 (modelling assumption)"),
     ] = None
     tail_height: Annotated[
         float | None,
-        ski_quantity(
-            "tail_height_mm", "height of the tail over that line", (0, 300), (1, 150), "8 (modelling assumption)"
-        ),
+        Quantity("tail_height_mm", "height of the tail over that line"),
+        Allowed(0, 300, usual=(1, 150), origin="8 (modelling assumption)"),
     ] = None
     tip_rocker_length: Annotated[
         float,
-        ski_quantity(
-            "tip_rocker_length_mm", "by how much the front contact point is drawn in", (0, 1500), (20, 800), "0"
-        ),
+        Quantity("tip_rocker_length_mm", "by how much the front contact point is drawn in"),
+        Allowed(0, 1500, usual=(20, 800), origin="0"),
     ] = 0.0
     tip_rocker_height: Annotated[
         float,
-        ski_quantity(
-            "tip_rocker_height_mm",
-            "height of the base at the front end of the running length",
-            (0, 200),
-            (0.5, 100),
-            "0",
-        ),
+        Quantity("tip_rocker_height_mm", "height of the base at the front end of the running length"),
+        Allowed(0, 200, usual=(0.5, 100), origin="0"),
     ] = 0.0
     tail_rocker_length: Annotated[
         float,
-        ski_quantity(
-            "tail_rocker_length_mm", "by how much the rear contact point is drawn in", (0, 1500), (20, 800), "0"
-        ),
+        Quantity("tail_rocker_length_mm", "by how much the rear contact point is drawn in"),
+        Allowed(0, 1500, usual=(20, 800), origin="0"),
     ] = 0.0
     tail_rocker_height: Annotated[
         float,
-        ski_quantity(
-            "tail_rocker_height_mm",
-            "height of the base at the rear end of the running length",
-            (0, 200),
-            (0.5, 100),
-            "0",
-        ),
+        Quantity("tail_rocker_height_mm", "height of the base at the rear end of the running length"),
+        Allowed(0, 200, usual=(0.5, 100), origin="0"),
     ] = 0.0
 
     def __post_init__(self) -> None:
@@ -323,10 +303,3 @@ class _End:
                 "{straight:.1f} mm high. Raise the {name} or flatten the rocker."
             ).tag("contradiction", name=self.name, height=height * 1e3, straight=straight * 1e3)
         return (height - straight) / self.length**2
-
-
-def ski_quantity(
-    name: str, meaning: str, allowed: tuple[float, float], usual: tuple[float, float], left_out: str
-) -> Quantity:
-    """A quantity with its allowed and its usual range, and the value without it."""
-    return Quantity(name, meaning, lowest=allowed[0], highest=allowed[1], usual=usual, origin=left_out)

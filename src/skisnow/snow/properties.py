@@ -8,7 +8,7 @@ from typing import Annotated, Final, TypeAlias
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, SmallFigure, amount, span
-from ..parameters import Quantity, Search, Word, require_declared
+from ..parameters import Allowed, Label, Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]
 
@@ -59,29 +59,17 @@ class SnowProperties(Shown):
 
     snow_hardness: Annotated[
         float,
-        Quantity(
-            "H_V_N_per_mm3",
-            "snow hardness H_V",
-            label=Message("snow hardness"),
-            symbol="$H_V$",
-            lowest=0.0,
-            above=True,
-            origin="measured 0.022 to 90; a warning beyond",
-            search=Search(3.0, 0.002, 1000.0, logarithmic=True),  # ten times beyond what was measured
-        ),
+        Quantity("H_V_N_per_mm3", "snow hardness H_V"),
+        Label(Message("snow hardness"), symbol="$H_V$"),
+        Allowed(0.0, above=True, origin="measured 0.022 to 90; a warning beyond"),
+        Search(3.0, 0.002, 1000.0, logarithmic=True),  # ten times beyond what was measured
     ]
     failure_shear_stress: Annotated[
         float | None,
-        Quantity(
-            "S_f_N_per_mm2",
-            "failure shear stress S_f",
-            label=Message("failure shear stress"),
-            symbol="$S_f$",
-            lowest=0.0,
-            above=True,
-            origin="measured 0.04 to 0.52; a warning beyond",
-            search=Search(3.0, 0.004, 5.0, logarithmic=True),
-        ),
+        Quantity("S_f_N_per_mm2", "failure shear stress S_f"),
+        Label(Message("failure shear stress"), symbol="$S_f$"),
+        Allowed(0.0, above=True, origin="measured 0.04 to 0.52; a warning beyond"),
+        Search(3.0, 0.004, 5.0, logarithmic=True),
     ]
     source: Annotated[
         str,

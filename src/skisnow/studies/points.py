@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from ..parameters import Quantity, checked_table, made
+from ..parameters import Allowed, Quantity, checked_table, made
 
 Point: TypeAlias = dict[str, Any]
 
@@ -212,7 +212,7 @@ class Range:
 
     first: Annotated[float, Quantity("from", "the first value; a range is written { from = 20, to = 70, n = 11 }")]
     last: Annotated[float, Quantity("to", "the last value; a range is written { from = 20, to = 70, n = 11 }")]
-    n: Annotated[int | None, Quantity("n", "number of values on a grid", lowest=2)] = None
+    n: Annotated[int | None, Quantity("n", "number of values on a grid"), Allowed(2)] = None
     log: Annotated[bool, Quantity("log", "whether it is even in the logarithm")] = False
 
 

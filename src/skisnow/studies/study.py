@@ -15,7 +15,7 @@ from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.units import Facts, Shown
 from .._support.user_files import is_file, read_toml
-from ..parameters import InputValue, Quantity, checked_table, made, nearest
+from ..parameters import Allowed, InputValue, Quantity, checked_table, made, nearest
 from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points
 from .subjects import CarveModel, ScenarioModel
 from .writing import WRITERS
@@ -139,8 +139,8 @@ def place_for_previous(out: Path) -> Path:
 class Sample:
     """Number of points of a sample, and the seed."""
 
-    n: Annotated[int, Quantity("n", "number of points", lowest=1)]
-    seed: Annotated[int, Quantity("seed", "a whole number that the points follow from", lowest=0)]
+    n: Annotated[int, Quantity("n", "number of points"), Allowed(1)]
+    seed: Annotated[int, Quantity("seed", "a whole number that the points follow from"), Allowed(0)]
 
 
 def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:

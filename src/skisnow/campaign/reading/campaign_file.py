@@ -13,7 +13,7 @@ from ..._support.units import MM
 from ..._support.user_files import GivenError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
-from ...parameters import Quantity, own_quantities
+from ...parameters import Allowed, Quantity, own_quantities
 from ..problems import ALWAYS_EXCLUDE, QUALITY_FLAGS, Problem, error, warning
 from ..smet import WeatherSettings
 from ..snow_micro_pen_records import SnowMicroPenSettings
@@ -29,7 +29,7 @@ class Plate:
     """A blade for shear tests."""
 
     length: Annotated[
-        float, Quantity("length_mm", "length of the blade", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
+        float, Quantity("length_mm", "length of the blade"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]
 
 
@@ -50,18 +50,16 @@ class CampaignFile:
             "gauge_resolution_mm",
             "step of the depth gauge; a reading's standard uncertainty is step/√12. Default: no depth uncertainty and "
             "no `below_resolution` flag, with a note in the report",
-            lowest=0.0,
-            above=True,
-            usual=(0.0005, 5.0),
         ),
+        Allowed(0.0, above=True, usual=(0.0005, 5.0)),
     ] = None
     load_uncertainty: Annotated[
         float | None,
         Quantity(
             "load_uncertainty_N",
             "standard uncertainty of a load; default: 0, with a note in the report, as for the next two",
-            lowest=0.0,
         ),
+        Allowed(0.0),
     ] = None
     seating: Annotated[
         float | None,
@@ -69,16 +67,14 @@ class CampaignFile:
             "seating_mm",
             "standard deviation of the depth zero from series to series, where it is known, for example from repeated "
             "seating on a plate; optional: 0.05 mm, which the series of the campaign correct",
-            lowest=0.0,
-            above=True,
-            usual=(0.001, 1.0),
         ),
+        Allowed(0.0, above=True, usual=(0.001, 1.0)),
     ] = None
     moment_uncertainty: Annotated[
-        float | None, Quantity("moment_uncertainty_Nm", "standard uncertainty of a moment", lowest=0.0)
+        float | None, Quantity("moment_uncertainty_Nm", "standard uncertainty of a moment"), Allowed(0.0)
     ] = None
     lever_arm_uncertainty: Annotated[
-        float | None, Quantity("lever_arm_uncertainty_mm", "standard uncertainty of a lever arm", lowest=0.0)
+        float | None, Quantity("lever_arm_uncertainty_mm", "standard uncertainty of a lever arm"), Allowed(0.0)
     ] = None
     pole_stiffness: Annotated[
         float | None,
@@ -86,12 +82,11 @@ class CampaignFile:
             "pole_stiffness_Nm_per_deg",
             "moment that twists the shear device's pole by a degree between where its turning angle is read and the "
             "plate; default: rigid, or read at the plate",
-            lowest=0.0,
-            above=True,
         ),
+        Allowed(0.0, above=True),
     ] = None
     load_steps: Annotated[
-        tuple[float, ...], Quantity("load_steps_N", "the campaign's own discs, for entry", lowest=0.0, above=True)
+        tuple[float, ...], Quantity("load_steps_N", "the campaign's own discs, for entry"), Allowed(0.0, above=True)
     ] = ()
     tools: Mapping[str, Tool]
     plates: Mapping[str, float]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 from ..._support.messages import Message
 from ..._support.units import ICE_DENSITY
-from ...parameters import Quantity, own_quantities
+from ...parameters import Allowed, Quantity, own_quantities
 
 if TYPE_CHECKING:
     pass
@@ -74,13 +74,15 @@ class PenetrationRow:
 
     edge_angle: Annotated[
         float,
-        Quantity("edge_angle_deg", "above 60 a warning; disc and cylinder: 0", lowest=0.0, highest=90.0, below=True),
+        Quantity("edge_angle_deg", "above 60 a warning; disc and cylinder: 0"),
+        Allowed(0.0, 90.0, below=True),
     ]
-    load: Annotated[float, Quantity("load_N", "load", lowest=0.0, above=True)]
+    load: Annotated[float, Quantity("load_N", "load"), Allowed(0.0, above=True)]
     depth: Annotated[float, _DEPTH]
     depth_after: Annotated[
         float | None,
-        Quantity("depth_after_mm", "depth read once more under the same load, after waiting: creep", lowest=0.0),
+        Quantity("depth_after_mm", "depth read once more under the same load, after waiting: creep"),
+        Allowed(0.0),
     ] = None
     snow_density: Annotated[float | None, _DENSITY] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
@@ -92,18 +94,17 @@ class PenetrationRow:
 class ShearRow:
     """The numbers of a row of shear.csv."""
 
-    edge_angle: Annotated[float, Quantity("edge_angle_deg", "edge angle", lowest=0.0, above=True, highest=90.0)]
+    edge_angle: Annotated[float, Quantity("edge_angle_deg", "edge angle"), Allowed(0.0, 90.0, above=True)]
     depth: Annotated[float, _DEPTH]
-    lever_arm: Annotated[float, Quantity("lever_arm_mm", "lever arm", lowest=0.0, above=True)]
-    moment: Annotated[float, Quantity("moment_Nm", "moment", lowest=0.0)]
+    lever_arm: Annotated[float, Quantity("lever_arm_mm", "lever arm"), Allowed(0.0, above=True)]
+    moment: Annotated[float, Quantity("moment_Nm", "moment"), Allowed(0.0)]
     turning_angle: Annotated[
         float | None,
         Quantity(
             "turning_angle_deg",
             "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
-            lowest=-360.0,
-            highest=360.0,
         ),
+        Allowed(-360.0, 360.0),
     ] = None
     snow_density: Annotated[float | None, _DENSITY] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
@@ -118,7 +119,8 @@ class DensityRow:
     snow_density: Annotated[float, _DENSITY]
     sample_depth: Annotated[
         float | None,
-        Quantity("sample_depth_mm", "depth of the sample's middle below the snow surface", lowest=0.0),
+        Quantity("sample_depth_mm", "depth of the sample's middle below the snow surface"),
+        Allowed(0.0),
     ] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None
@@ -141,7 +143,8 @@ class RecordingRow:
 
     surface: Annotated[
         float | None,
-        Quantity("surface_mm", "where the snow begins, from the first sample; blank: estimated", lowest=0.0),
+        Quantity("surface_mm", "where the snow begins, from the first sample; blank: estimated"),
+        Allowed(0.0),
     ] = None
 
 
@@ -149,7 +152,7 @@ class RecordingRow:
 class CorrectionRow:
     """The number of a row of corrections.csv."""
 
-    row: Annotated[float, Quantity("row", "line of the file", lowest=1.0)]
+    row: Annotated[float, Quantity("row", "line of the file"), Allowed(1.0)]
 
 
 BRANCH: Final = "branch"

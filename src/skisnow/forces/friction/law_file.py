@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._support.errors import ParameterError
 from ..._support.user_files import read_toml
-from ...parameters import Quantity, checked_table, made, require_declared
+from ...parameters import Allowed, Quantity, checked_table, made, require_declared
 from ...snow import MeasuredRange
 from .speed_laws import WaterFilmFriction
 
@@ -30,18 +30,16 @@ class SnowState:
         Share of liquid water in the volume (%); above 0 at 0 °C only.
     """
 
-    lubricated_friction: Annotated[float, Quantity("mu", "μ_∞, friction at high speed", lowest=0.0, highest=1.0)]
+    lubricated_friction: Annotated[float, Quantity("mu", "μ_∞, friction at high speed"), Allowed(0.0, 1.0)]
     dry_friction: Annotated[
-        float, Quantity("dry_mu", "a, the part that falls as the film forms", lowest=0.0, highest=1.0)
+        float, Quantity("dry_mu", "a, the part that falls as the film forms"), Allowed(0.0, 1.0)
     ] = 0.0
-    viscous_slope: Annotated[
-        float, Quantity("viscous_s_per_m", "c, growth with the speed", lowest=0.0, highest=0.1)
-    ] = 0.0
+    viscous_slope: Annotated[float, Quantity("viscous_s_per_m", "c, growth with the speed"), Allowed(0.0, 0.1)] = 0.0
     temperature: Annotated[
-        float | None, Quantity("temperature_C", "temperature of the snow's surface", lowest=-60.0, highest=0.0)
+        float | None, Quantity("temperature_C", "temperature of the snow's surface"), Allowed(-60.0, 0.0)
     ] = None
     liquid_water: Annotated[
-        float, Quantity("liquid_water_percent", "liquid water in the volume", lowest=0.0, highest=50.0)
+        float, Quantity("liquid_water_percent", "liquid water in the volume"), Allowed(0.0, 50.0)
     ] = 0.0
 
     def __post_init__(self) -> None:
@@ -76,8 +74,8 @@ class FrictionFile:
     """
 
     source: Annotated[str, Quantity("source", "who measured it")]
-    speeds: Annotated[tuple[float, ...], Quantity("speed_m_per_s", "slowest and fastest measured speed", lowest=0.0)]
-    film_speed: Annotated[float, Quantity("film_speed_m_per_s", "v_0", lowest=0.0, above=True)]
+    speeds: Annotated[tuple[float, ...], Quantity("speed_m_per_s", "slowest and fastest measured speed"), Allowed(0.0)]
+    film_speed: Annotated[float, Quantity("film_speed_m_per_s", "v_0"), Allowed(0.0, above=True)]
     states: tuple[SnowState, ...]
     path: str
 

@@ -15,7 +15,7 @@ from ..._support.arrays import FloatArray
 from ..._support.errors import ParameterError, require_choice
 from ..._support.messages import Message, template
 from ..._support.units import Facts, Shown, ShownFields, amount
-from ...parameters import Quantity, Word, require_declared
+from ...parameters import Allowed, Label, Quantity, Word, require_declared
 
 Discipline: TypeAlias = Literal["slalom", "giant-slalom"]
 CourseAxes: TypeAlias = Literal["metres", "east_north_up"]
@@ -97,41 +97,31 @@ class Course(Shown):
     ] = Message("given as numbers")
     discipline: Annotated[
         Discipline | None,
-        Quantity(
-            "course.discipline",
-            "whose rules the course is checked against; default: no rules",
-            label=Message("discipline"),
-        ),
+        Quantity("course.discipline", "whose rules the course is checked against; default: no rules"),
+        Label(Message("discipline")),
     ] = None
     latitude_deg: Annotated[
         float | None,
         Quantity(
-            "course.latitude_deg",
-            "latitude (WGS84) of x = y = 0, for a course in degrees; default: the first gate",
-            label=Message("latitude of the origin"),
-            lowest=-90.0,
-            highest=90.0,
+            "course.latitude_deg", "latitude (WGS84) of x = y = 0, for a course in degrees; default: the first gate"
         ),
+        Label(Message("latitude of the origin")),
+        Allowed(-90.0, 90.0),
     ] = None
     longitude_deg: Annotated[
         float | None,
-        Quantity(
-            "course.longitude_deg",
-            "longitude (WGS84) of x = y = 0, for a course in degrees",
-            label=Message("longitude of the origin"),
-            lowest=-180.0,
-            highest=180.0,
-        ),
+        Quantity("course.longitude_deg", "longitude (WGS84) of x = y = 0, for a course in degrees"),
+        Label(Message("longitude of the origin")),
+        Allowed(-180.0, 180.0),
     ] = None
     fall_line_azimuth_deg: Annotated[
         float | None,
         Quantity(
             "course.fall_line_azimuth_deg",
             "compass direction of x, for a course in degrees; such a course needs it in a scenario",
-            label=Message("direction of the fall line"),
-            lowest=-360.0,
-            highest=360.0,
         ),
+        Label(Message("direction of the fall line")),
+        Allowed(-360.0, 360.0),
     ] = None
     axes: CourseAxes = "metres"
     warnings: tuple[str, ...] = field(default=())

@@ -11,7 +11,7 @@ from typing import Annotated, Final
 from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, current_language, template
-from ...parameters import Quantity, own_quantities
+from ...parameters import Allowed, Quantity, own_quantities
 from ..projection import HIGHEST, GeodeticPoint
 from ..track import Axes, SolutionArray
 
@@ -92,9 +92,9 @@ class LocalPlace:
 class GeodeticPlace:
     """Place of a point on the earth."""
 
-    latitude: Annotated[float, Quantity("latitude_deg", "latitude", lowest=-90.0, highest=90.0)]
-    longitude: Annotated[float, Quantity("longitude_deg", "longitude", lowest=-180.0, highest=180.0)]
-    height: Annotated[float, Quantity("height_m", "height", lowest=-HIGHEST, highest=HIGHEST)]
+    latitude: Annotated[float, Quantity("latitude_deg", "latitude"), Allowed(-90.0, 90.0)]
+    longitude: Annotated[float, Quantity("longitude_deg", "longitude"), Allowed(-180.0, 180.0)]
+    height: Annotated[float, Quantity("height_m", "height"), Allowed(-HIGHEST, HIGHEST)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,10 +103,10 @@ class Motion:
 
     speed: Annotated[float, _velocity("speed_m_per_s", "speed")]
     velocity: Annotated[float, _velocity("velocity_m_per_s", "part of the velocity")]
-    odometer: Annotated[float, Quantity("odometer_m", "distance so far", lowest=-FARTHEST, highest=FARTHEST)]
-    place_sd: Annotated[float, Quantity("place_sd_m", "standard deviation of a place", lowest=0.0, highest=FARTHEST)]
+    odometer: Annotated[float, Quantity("odometer_m", "distance so far"), Allowed(-FARTHEST, FARTHEST)]
+    place_sd: Annotated[float, Quantity("place_sd_m", "standard deviation of a place"), Allowed(0.0, FARTHEST)]
     speed_sd: Annotated[
-        float, Quantity("speed_sd_m_per_s", "standard deviation of the speed", lowest=0.0, highest=FASTEST_NUMBER)
+        float, Quantity("speed_sd_m_per_s", "standard deviation of the speed"), Allowed(0.0, FASTEST_NUMBER)
     ]
 
 
