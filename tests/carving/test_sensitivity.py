@@ -73,12 +73,16 @@ class HeldSki:
         return getattr(self.ski, name)
 
     def at(self, place: FloatArray) -> SkiSections:
+        names = [field.name for field in fields(SkiSections)[1:]]
+        return SkiSections(np.asarray(place, float), *self.tables_at(place, *names))
+
+    def tables_at(self, place: FloatArray, *names: str) -> tuple[FloatArray, ...]:
         station, where = self.ski.station, np.asarray(place, float)
         row = np.clip(np.searchsorted(-station, -where) - 1, 0, len(station) - 2)
         row = self.rows.setdefault(where.shape, row)
         share = (station[row] - where) / (station[row] - station[row + 1])
-        tables = [getattr(self.ski, field.name) for field in fields(SkiSections)[1:]]
-        return SkiSections(where, *(table[row] + share * (table[row + 1] - table[row]) for table in tables))
+        tables = [getattr(self.ski, name) for name in names]
+        return tuple(table[row] + share * (table[row + 1] - table[row]) for table in tables)
 
 
 @functools.lru_cache(maxsize=4)

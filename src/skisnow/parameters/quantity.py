@@ -218,7 +218,9 @@ class Quantity:
             one = replace(self, kind="number")
             return tuple(float(one.of_kind(number)) for number in value)  # type: ignore[arg-type]
         if self.kind == "numbers" and isinstance(value, list | tuple) and (value or self.default is not None):
-            return tuple(float(one.of_kind(number)) for one, number in self.numbered(value))  # type: ignore[arg-type]
+            usual = all(type(number) in (float, int) and SMALLEST <= abs(number) <= LARGEST for number in value)
+            numbers = value if usual else [one.of_kind(number) for one, number in self.numbered(value)]
+            return tuple(float(number) for number in numbers)  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
@@ -250,7 +252,7 @@ class Quantity:
     def in_range(self, value: object) -> InputValue:
         """Give the value in its kind."""
         checked = self.of_kind(value)
-        if self.kind == "numbers" and isinstance(value, list | tuple):
+        if self.kind == "numbers" and isinstance(value, list | tuple) and not self._allows(checked):
             for one, element in self.numbered(value):
                 one.in_range(element)
         if not self._allows(checked):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -197,16 +198,20 @@ class SkiParts:
         own_stations = np.empty(0) if self.stations is None else self.stations
         if own_stations.size and np.max(-np.diff(own_stations)) <= GREATEST_SPACING + _SAME_PLACE:
             return own_stations
-        layout = self.layout
-        own = [layout.tip, *layout.widest_points, *layout.contact_points, layout.middle, 0.0, layout.tail]
-        places = np.unique(np.clip([*own, *own_stations], layout.tail, layout.tip))[::-1]
-        places = places[np.append(True, -np.diff(places) > _SAME_PLACE)]
-        counts = np.ceil(-np.diff(places) / GREATEST_SPACING - _SAME_PLACE).astype(int)
-        pieces = [
-            np.linspace(start, end, count, endpoint=False)
-            for start, end, count in zip(places[:-1], places[1:], counts, strict=True)
-        ]
-        return np.concatenate([*pieces, places[-1:]])
+        return _dense_grid(self.layout, tuple(own_stations.tolist()))
+
+
+@functools.lru_cache(maxsize=16)
+def _dense_grid(layout: Layout, stations: tuple[float, ...]) -> FloatArray:
+    own = [layout.tip, *layout.widest_points, *layout.contact_points, layout.middle, 0.0, layout.tail]
+    places = np.unique(np.clip([*own, *stations], layout.tail, layout.tip))[::-1]
+    places = places[np.append(True, -np.diff(places) > _SAME_PLACE)]
+    counts = np.ceil(-np.diff(places) / GREATEST_SPACING - _SAME_PLACE).astype(int)
+    pieces = [
+        np.linspace(start, end, count, endpoint=False)
+        for start, end, count in zip(places[:-1], places[1:], counts, strict=True)
+    ]
+    return np.concatenate([*pieces, places[-1:]])
 
 
 def moved_stations(station: FloatArray, before: Layout, after: Layout) -> FloatArray:

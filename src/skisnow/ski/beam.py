@@ -77,15 +77,24 @@ def stiffness_matrices(
     length: (n,) m, > 0.
     bending_stiffness, torsional_stiffness: (n, 4) EI and GJ (N m²) at the `GAUSS_POINTS` of each element.
     """
+    stiffness = np.concatenate([bending_stiffness, torsional_stiffness], axis=1)
+    return np.einsum("ng,ngij->nij", stiffness, _unit_stiffness(length.tobytes()))
+
+
+@functools.lru_cache(maxsize=8)
+def _unit_stiffness(lengths: bytes) -> FloatArray:
+    """Stiffness matrices for EI = 1 at each of the Gauss points, then GJ = 1: (n, 8, 6, 6)."""
+    length = np.frombuffer(lengths)
     curvature, weight = curvature_shape(GAUSS_POINTS[None, :], length[:, None]), GAUSS_WEIGHTS * length[:, None]
-    moment = (weight * bending_stiffness)[:, :, None] * curvature
-    products = [moment[:, g, :, None] * curvature[:, g, None, :] for g in range(len(GAUSS_POINTS))]
-    out: FloatArray = np.add.reduce(products)
-    rate = 1.0 / length
-    torsion = sum((weight * torsional_stiffness * rate[:, None] * rate[:, None]).T)
-    for row, column, sign in ((2, 2, 1.0), (5, 5, 1.0), (2, 5, -1.0), (5, 2, -1.0)):
-        out[:, row, column] += sign * torsion
-    return np.asarray(out)
+    out = np.zeros((len(length), 8, 6, 6))
+    out[:, :4] = weight[:, :, None, None] * curvature[:, :, :, None] * curvature[:, :, None, :]
+    out[:, 4:][:, :, [2, 5, 2, 5], [2, 5, 5, 2]] = (GAUSS_WEIGHTS / length[:, None])[:, :, None] * [
+        1.0,
+        1.0,
+        -1.0,
+        -1.0,
+    ]
+    return out
 
 
 def mass_matrices(
@@ -244,13 +253,15 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     mesh = _mesh(front, rear, clamp_length, elements, bedded=footprint_stiffness is not None)
     node, dof, size = mesh.node, mesh.dof, mesh.size
     length = node[:-1] - node[1:]
-    at = ski.at(places_within(node, GAUSS_POINTS))
-    stiffness = stiffness_matrices(length, at.bending_stiffness, at.torsional_stiffness)
+    stiffness = stiffness_matrices(
+        length, *ski.tables_at(places_within(node, GAUSS_POINTS), "bending_stiffness", "torsional_stiffness")
+    )
     if footprint_stiffness is not None:  # as a mass, which resists in the same shapes
         under = np.where(np.abs(node[:-1] + node[1:]) < clamp_length, footprint_stiffness, 0.0)[:, None]
-        stiffness = stiffness + mass_matrices(length, under + 0.0 * at.width, under * at.width**2 / 12.0)
-    here = ski.at(places_within(node, STATION_POINTS))
-    stations = replace(mesh.stations, width=here.width.ravel(), base_height=here.base_height.ravel())
+        (width,) = ski.tables_at(places_within(node, GAUSS_POINTS), "width")
+        stiffness = stiffness + mass_matrices(length, under + 0.0 * width, under * width**2 / 12.0)
+    width, base_height = ski.tables_at(places_within(node, STATION_POINTS), "width", "base_height")
+    stations = replace(mesh.stations, width=width.ravel(), base_height=base_height.ravel())
     return ClampedSki(ski, clamp_length, node, dof, size, assembled(stiffness, dof, size), stations)
 
 

@@ -251,8 +251,7 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
         if column == SIDECUT:
             return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
         return _of_table(EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column])))
-    parsed, station = parsed_keys(ski), ski.station.tobytes()
-    widths = np.array([parsed.tip_width, parsed.waist_width, parsed.tail_width], float)
+    parsed, station = parsed_keys(ski), _station_bytes(ski)
     row = _ROW.fullmatch(key)
     if row and row[1] in STIFFNESSES:
         return _with_row(parsed_part(ski, row[1]), row[1], int(row[2]) - 1, station)
@@ -272,8 +271,14 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
         for part in STIFFNESSES if row else _PARTS:
             grown = _part_growth(parsed_part(ski, part), key, step, part, station)
             tables[0] = grown[0]
+            widths = np.array([parsed.tip_width, parsed.waist_width, parsed.tail_width], float)
             tables[1 + _PARTS.index(part)] = widths @ grown[1:] if part == "width" else grown[1]
     return TableGrowth(tables, numbers)
+
+
+@functools.lru_cache(maxsize=16)
+def _station_bytes(ski: Ski) -> bytes:
+    return ski.station.tobytes()
 
 
 def _of_table(table: str, growth: FloatArray) -> TableGrowth:

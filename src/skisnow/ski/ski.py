@@ -115,9 +115,10 @@ class Ski(Shown):
         require_lengths(
             self.name, tables, running=self.running_length, sidecut=self.sidecut_length, middle=self.sidecut_middle
         )
-        require_edge(self.name, self.edge_shape, waist=self.waist_width)
-        require_narrow_waist(self.name, self.sidecut_widths)
-        require_base_at_boot(self.name, float(self.at(0.0).base_height))
+        widths = self.sidecut_widths
+        require_edge(self.name, self.edge_shape, waist=widths[1])
+        require_narrow_waist(self.name, widths)
+        require_base_at_boot(self.name, float(np.interp(0.0, self.station[::-1], self.base_height[::-1])))
 
     @property
     def edge_shape(self) -> EdgeShape:
@@ -222,6 +223,11 @@ class Ski(Shown):
         """Stations of the front and the rear end of the sidecut length (m)."""
         return self.sidecut_middle + self.sidecut_length / 2.0, self.sidecut_middle - self.sidecut_length / 2.0
 
+    def tables_at(self, station: FloatArray, *tables: str) -> tuple[FloatArray, ...]:
+        """Some tables, by name, at stations (m, any shape) between tip and tail, interpolated linearly."""
+        rising = self.station[::-1]
+        return tuple(np.interp(station, rising, getattr(self, table)[::-1]) for table in tables)
+
     @property
     def contact_points(self) -> tuple[float, float]:
         """Stations of the front and the rear contact point of the unloaded base, the ends of the running length (m)."""
@@ -231,8 +237,9 @@ class Ski(Shown):
     def sidecut_widths(self) -> tuple[float, float, float]:
         """Widths at the front end, the middle and the rear end of the sidecut length (m)."""
         front, rear = self.sidecut_ends
-        at_front, at_middle, at_rear = self.at([front, self.sidecut_middle, rear]).width
-        return float(at_front), float(at_middle), float(at_rear)
+        places = [front, self.sidecut_middle, rear]
+        at_front, at_middle, at_rear = np.interp(places, self.station[::-1], self.width[::-1]).tolist()
+        return at_front, at_middle, at_rear
 
     @property
     def tip_width(self) -> float:

@@ -152,8 +152,8 @@ class StationTable:
         """Values at stations (m). Shape of ``station``."""
         if self.station.size == 1:
             return np.full(np.shape(station), self.value[0])
-        x, y = self.station[::-1], self.value[::-1]
-        return _cubic(x, y, _slopes(x, y), station)
+        places = np.asarray(station, float)
+        return _tabulated(self.station.tobytes(), self.value.tobytes(), places.tobytes()).reshape(places.shape).copy()
 
     def growths(self, station: FloatArray) -> FloatArray:
         """Growth of the values at stations (m) with that of each row, shape (rows, n)."""
@@ -171,6 +171,13 @@ class StationTable:
 
 
 _STEP: Final = 1e-5  # relative change of one row: both errors of the difference of its slopes are about 1e-10
+
+
+@functools.lru_cache(maxsize=32)
+def _tabulated(rows: bytes, values: bytes, station: bytes) -> FloatArray:
+    """Values of a table at stations: a design changes one table and keeps the others."""
+    x, y = np.frombuffer(rows)[::-1], np.frombuffer(values)[::-1]
+    return _cubic(x, y, _slopes(x, y), np.frombuffer(station))
 
 
 def _cubic(x: FloatArray, y: FloatArray, slope: FloatArray, station: FloatArray) -> FloatArray:
