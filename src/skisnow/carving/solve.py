@@ -8,9 +8,9 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from .._support.arrays import FloatArray, IntArray
+from .._support.arrays import FloatArray
 from ..compiled import core
-from ..ski.beam import ClampedSki
+from ..ski.beam import STATION_POINTS, ClampedSki, deflection_shape, places_within, twist_shape
 from ..ski.ski import Ski
 from .laws import STEEPEST_RATIO, SnowLaws
 
@@ -123,29 +123,34 @@ def _numbers(conditions: Conditions) -> core.CarveConditions:
 
 @functools.lru_cache(maxsize=32)
 def _core_ski(model: ClampedSki) -> core.CarvedSki:
-    stations = model.stations
-    held = stations.dof < 0
-    front = int(stations.dof[np.argmax(held.any(axis=1)), 2]) + 1
-    rows = np.column_stack(
-        [
-            stations.station,
-            stations.weight,
-            stations.width,
-            stations.base_height,
-            _first_unknown(stations.dof, front),
-            np.where(held, 0.0, stations.deflection),
-            np.where(held, 0.0, stations.twist),
-        ]
-    )
-    waist = float(model.ski.at(0.0).width)
+    known, front = _mesh_rows(model.node.tobytes(), model.dof.tobytes())
+    rows = known.copy()
+    rows[:, 2], rows[:, 3] = model.stations.width, model.stations.base_height
+    waist = float(model.ski.tables_at(np.zeros(1), "width")[0][0])
     return core.carved_ski(rows, front, model.stiffness, waist, model.ski.running_length, *_bent_onto_snow(model))
 
 
-def _first_unknown(dof: IntArray, front: int) -> FloatArray:
-    """First unknown of each station's element; six held unknowns are between those before and behind the clamp."""
+@functools.lru_cache(maxsize=16)
+def _mesh_rows(nodes: bytes, dofs: bytes) -> tuple[FloatArray, int]:
+    """Rows of the stations for the core, without width and height of the base, and unknowns before the clamp.
+
+    The first unknown is that of the station's element; six held unknowns are between those before and behind the clamp.
+    """
+    node, dof = np.frombuffer(nodes), np.repeat(np.frombuffer(dofs, np.int64).reshape(-1, 6), 2, axis=0)
+    length, held = (node[:-1] - node[1:])[:, None], dof < 0
+    front = int(dof[np.argmax(held.any(axis=1)), 2]) + 1
     before, behind = dof[:, 0], dof[:, 3]
     first = np.where(before >= front, before + 6, np.where(behind >= front, behind + 3, front))
-    return np.where((before >= 0) & (before < front), before, first).astype(float)
+    deflection = deflection_shape(STATION_POINTS, length).reshape(-1, 6)
+    columns = [
+        places_within(node, STATION_POINTS).ravel(),
+        np.repeat(length / 2.0, 2),
+        np.zeros((len(dof), 2)),
+        np.where((before >= 0) & (before < front), before, first),
+        np.where(held, 0.0, deflection),
+        np.where(held, 0.0, np.tile(twist_shape(STATION_POINTS), (len(length), 1))),
+    ]
+    return np.column_stack(columns), front
 
 
 def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
@@ -158,18 +163,19 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
     free = dof[:, 0] >= 0
     front, rear = (_CONFORMING_SHARE * end for end in _ends(ski))
     inside = np.clip(node, rear, front)
-    places = np.concatenate([inside + _NEAR, inside - _NEAR, inside, [0.0]])
-    at = ski.at(places)
+    width, height = ski.tables_at(
+        np.concatenate([inside + _NEAR, inside - _NEAR, inside, [0.0]]), "width", "base_height"
+    )
 
     def bent(table: FloatArray) -> FloatArray:
-        before, behind, here, boot = np.split(table, np.arange(1, 4) * len(inside))
+        before, behind, here = table[:-1].reshape(3, -1)
         slope = (before - behind) / (2.0 * _NEAR)
         u = np.zeros(model.size)
-        u[dof[free, 0]] = (here - boot + slope * (node - inside))[free]
+        u[dof[free, 0]] = (here - table[-1] + slope * (node - inside))[free]
         u[dof[free, 1]] = -slope[free]  # the elements run from tip to tail
         return u
 
-    return bent(at.width / 2.0), bent(at.base_height)
+    return bent(width / 2.0), bent(height)
 
 
 def _ends(ski: Ski) -> tuple[float, float]:
