@@ -98,6 +98,22 @@ def test_rows_that_are_read_are_nobody_elses_meanwhile(place: Path) -> None:
     KeptRows.opened(place, "f").close()
 
 
+@pytest.mark.parametrize(
+    "change", ["replace(sql, 'primary key', 'xxxxxxxxxxx')", "replace(sql, 'checksum', 'checksux')"]
+)
+def test_a_file_whose_tables_have_changed_is_damaged(change: str, place: Path) -> None:
+    """Without its key a point has no number."""
+    kept = KeptRows.opened(place, "f")
+    kept.add([(3, "{}")])
+    kept.close()
+    with closing(sqlite3.connect(place)) as database:
+        database.execute("pragma writable_schema = on")
+        database.execute(f"update sqlite_master set sql = {change} where name = 'rows'")
+        database.commit()
+    with raises(ParameterError, "damaged"):
+        KeptRows.opened(place, "f")
+
+
 @pytest.mark.parametrize("damage", [b"what hours have found", b"SQLite format 3\0" + b"\1" * 5000])
 def test_a_file_that_is_none_of_rows_is_reported_and_left(damage: bytes, place: Path) -> None:
     place.write_bytes(damage)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import OutputError, ParameterError
-from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_schema, require_sound_pages
+from ..sqlite_file import connect, first_damage, place_reason, primary_code, require_sound_pages
 from ..staging import cannot_write
 from ..user_files import own_json
 
@@ -24,7 +24,6 @@ _TABLES: Final = """
 create table about (name text primary key, value text not null) without rowid;
 create table rows (number integer primary key, row text not null, checksum integer not null);
 """
-_SCHEMA: Final = {"about": ("name", "value"), "rows": ("number", "row", "checksum")}
 _FORM: Final = "skisnow rows 3"
 _CHECKSUM: Final = "checksum"
 """Name in the table `about` of the checksum of all its other rows."""
@@ -123,7 +122,9 @@ class KeptRows:
                     run(statement)
                 whole = {**about, _CHECKSUM: _checksum_of(about)}
                 self._database.executemany("insert into about values (?, ?)", whole.items())
-            require_schema(self._database, _SCHEMA)
+            empty = KeptRows()
+            if _statements(self._database) != _statements(empty._database):
+                raise sqlite3.DatabaseError("it has other tables")
             if self.about().get("form") != _FORM:
                 raise sqlite3.DatabaseError("it has another form")
             require_sound_pages(self._database)
@@ -227,6 +228,11 @@ def row_text(row: Row | list[Any]) -> str:
 def json_text(value: Any) -> str:
     """JSON on one line."""
     return json.dumps(value, ensure_ascii=True, separators=(",", ":"))
+
+
+def _statements(database: sqlite3.Connection) -> list[tuple[str, str]]:
+    """Names of all tables and the statements that made them."""
+    return database.execute("select name, sql from sqlite_master where sql is not null order by name").fetchall()
 
 
 def _checksum(number: int, text: str) -> int:
