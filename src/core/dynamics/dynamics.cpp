@@ -316,7 +316,7 @@ void Dynamics::begin() {
   start_ = total_energies();
   narrowed_ = 0;
   counts_ = Counts();
-  last_step_ = 0.0;
+  last_step_ = free_ = 0.0;
   time = 0.0;
   share_ = 1.0;
   step_ = rule_.fixed ? rule_.first : on_ladder(rule_.first);

@@ -107,6 +107,7 @@ class Dynamics {
   SnowAccount losses_;
   double exchanged_ = 0.0;  // energy (J) until the last step
   int narrowed_ = 0;
+  double free_ = 0.0;  // iterations that do not count against a run
   // skis as separate bodies; boots that move; the body without skis
   std::vector<MovingSki> skis_;
   std::vector<BootMotion> motions_;

@@ -213,7 +213,7 @@ void Dynamics::pass(Stream& stream, Motion& of) {
   for (auto* each : {&of.losses_.penetration, &of.losses_.shear, &of.losses_.rate, &of.losses_.friction})
     stream.number(each->total), stream.number(each->open);
   for (auto* each : {&of.start_.kinetic, &of.start_.potential, &of.start_.elastic}) stream.number(*each);
-  stream.whole(of.narrowed_, 0, 64);
+  stream.whole(of.narrowed_, 0, 64), stream.number(of.free_);
   auto& counts = of.counts_;
   for (auto* each : {&counts.steps, &counts.rejected, &counts.looks, &counts.factored, &counts.iterations})
     stream.whole(*each, 0, MOST_LINES);

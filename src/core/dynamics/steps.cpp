@@ -19,6 +19,9 @@ constexpr double MOST_OPEN = 2e-3, LEAST_OPEN = 0.01;
 constexpr double STEP_OPEN = 2e-4;  // of the energy exchanged, open after one step, which is repeated shorter
 constexpr double SHORT = 5.0;       // steps that are not repeated, over the shortest
 constexpr int MOST_NARROWED = 12;   // rungs by which steps get shorter: three octaves
+// iterations of Newton's method for each simulated second that do not count, and those beyond, after which a run ends,
+// since it would take hours: more than a million a second in very strong and soft snow, 10,000 to 50,000 otherwise
+constexpr double FREE_ITERATIONS = 1e5, MOST_ITERATIONS_BEYOND = 1e4;
 
 }  // namespace
 
@@ -81,6 +84,7 @@ Dynamics::Tried Dynamics::after_controlled(const Formula& f, double h, bool solv
     step_ = on_ladder(h * std::clamp(wanted, 0.1, 0.8));
     return step_ < rule_.shortest ? Tried::GIVEN_UP : Tried::AGAIN;
   }
+  free_ = std::min(free_ + FREE_ITERATIONS * step_, double(counts_.iterations));
   if (h * wanted > UP * step_)
     step_ = std::min(longest(), on_ladder(step_ * 1.19));
   else if (h * wanted < DOWN * step_)
@@ -96,6 +100,7 @@ Advance Dynamics::advance(double until, long most) {
   for (long tries = 0; time < until; tries++) {
     if (tries == most) return Advance::PAUSED;
     if (tries > 0 && std::chrono::steady_clock::now() - entered > LONGEST_STAY) return Advance::PAUSED;
+    if (!rule_.fixed && double(counts_.iterations) - free_ > MOST_ITERATIONS_BEYOND) return Advance::STEP_TOO_SMALL;
     const double left = until - time;
     // equal steps on the time that is left
     double h = left / std::max(1.0, std::ceil(left / step_ - ROUNDING));

@@ -81,8 +81,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
         "smaller tolerance."
     ),
     "step_too_small": Message(
-        "The error control required steps below 0.1 µs: the motion is too stiff or too rough. Increase the "
-        "tolerance, or reduce k_u/H_V."
+        "The error control required steps below 0.1 µs, or steps of microseconds for too long: the motion is too "
+        "stiff or too rough. Increase the tolerance, or reduce k_u/H_V or S_f/H_V."
     ),
     "not_finite": Message("The numbers diverged. Use a smaller step, or the error control."),
     "interrupted": Message("The run was stopped; the results so far are kept."),

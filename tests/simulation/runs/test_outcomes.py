@@ -122,6 +122,17 @@ def test_step_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(run.time) >= 1
 
 
+@pytest.mark.slow
+def test_run_of_countless_short_steps_ends() -> None:
+    """In soft, strong snow that creeps, each step of some microseconds takes ten iterations."""
+    changes: dict[str, Any] = {"snow.H_V_N_per_mm3": 0.0046, "snow.S_f_N_per_mm2": 11.7, "snow.delayed_share": 8.9}
+    changes |= {"slope.gravity_m_per_s2": 14.6, "snow.penetration": "elastic", "start.speed_m_per_s": 0.18}
+    changes |= {"shear.law": "machining", "shear.transverse_friction": 0.31}
+    run = simulate(load_scenario("carved-46m", changes=changes | {"solver.method": "fast", "solver.elements": 8}))
+    assert run.outcome == "step_too_small"
+    assert 0.0 < run.time[-1] < 0.05
+
+
 @pytest.mark.parametrize(
     ("changes", "solver", "apart"),
     [
