@@ -41,8 +41,8 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
     except RecursionError:
         raise too_deep().of(title) from None
     except ValueError as error:
-        raise GivenError(
-            "This is not JSON text: {reason}. Correct that place.", code="not_json", title=title, reason=str(error)
+        raise GivenError("This is not JSON text: {reason}. Correct that place.", title=title).tag(
+            "not_json", reason=str(error)
         ) from error
     return value
 
@@ -56,23 +56,20 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     entries = dict(pairs)
     if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
-        raise GivenError("the key {key} is twice in one object. Remove one.", code="repeated_key", key=shown(twice))
+        raise GivenError("the key {key} is twice in one object. Remove one.").tag("repeated_key", key=shown(twice))
     return entries
 
 
 def _whole(digits: str) -> int:
     if len(digits) > _MOST_DIGITS:
-        raise GivenError(
-            "a whole number has {count} digits; allowed is ±{largest}. Correct it.",
-            code="number_too_large",
-            count=len(digits),
-            largest=LARGEST_WHOLE,
+        raise GivenError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
+            "number_too_large", count=len(digits), largest=LARGEST_WHOLE
         )
     return int(digits)
 
 
 def _refuse_constant(word: str) -> None:
-    raise GivenError("{word} is not a number of JSON. Write null or a finite number.", code="not_json", word=word)
+    raise GivenError("{word} is not a number of JSON. Write null or a finite number.").tag("not_json", word=word)
 
 
 T = TypeVar("T", bound="DataclassInstance")
@@ -85,30 +82,23 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
     """
     values = read_json(path)
     if not isinstance(values, dict):
-        raise GivenError("{path} is damaged: it is not a JSON object. Remove it.", code="damaged", path=path)
+        raise GivenError("{path} is damaged: it is not a JSON object. Remove it.").tag("damaged", path=path)
     hints = get_type_hints(kind)
     for name in values if only_known else ():
         if name not in hints:
-            raise GivenError(
-                "{path} is damaged: {key!r} is not one of its keys. Remove it.",
-                code="damaged",
-                path=path,
-                key=name[:60],
+            raise GivenError("{path} is damaged: {key!r} is not one of its keys. Remove it.").tag(
+                "damaged", path=path, key=name[:60]
             )
     fields_given = {name: value for name, value in values.items() if name in hints}
     for entry in fields(kind):
         if entry.name not in fields_given and entry.default is MISSING and entry.default_factory is MISSING:
-            raise GivenError(
-                "{path} is damaged: the key {key} is missing. Remove it.", code="damaged", path=path, key=entry.name
+            raise GivenError("{path} is damaged: the key {key} is missing. Remove it.").tag(
+                "damaged", path=path, key=entry.name
             )
     for name, value in fields_given.items():
         if not _fits(value, hints[name]):
-            raise GivenError(
-                "{path} is damaged: {key} is {value!r}, of another type. Remove it.",
-                code="damaged",
-                path=path,
-                key=name,
-                value=str(value)[:60],
+            raise GivenError("{path} is damaged: {key} is {value!r}, of another type. Remove it.").tag(
+                "damaged", path=path, key=name, value=str(value)[:60]
             )
     return kind(**fields_given)
 
@@ -183,11 +173,8 @@ class _Builder:
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
         self._count += 1
         if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
-            raise GivenError(
-                "More than {count} elements, or {depth} within each other, are not read.",
-                code="too_large",
-                count=MOST_ELEMENTS,
-                depth=DEEPEST,
+            raise GivenError("More than {count} elements, or {depth} within each other, are not read.").tag(
+                "too_large", count=MOST_ELEMENTS, depth=DEEPEST
             )
         namespace, _, local = name.rpartition("}")
         element = Element(namespace, local, {key.rpartition("}")[2]: value for key, value in attributes.items()})
@@ -205,8 +192,8 @@ class _Builder:
         self._open.pop()
 
     def document_type(self, *_what: object) -> None:
-        raise GivenError(
-            "A document type is declared, which is rejected: it may have endless entities.", code="document_type"
+        raise GivenError("A document type is declared, which is rejected: it may have endless entities.").tag(
+            "document_type"
         )
 
 
@@ -219,22 +206,16 @@ def xml_tree(data: bytes) -> Element:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise GivenError(
-            "This is not XML, or it is damaged ({reason}).",
-            line=error.lineno,
-            code="not_xml",
-            reason=expat.ErrorString(error.code),
+        raise GivenError("This is not XML, or it is damaged ({reason}).", line=error.lineno).tag(
+            "not_xml", reason=expat.ErrorString(error.code)
         ) from error
     except GivenError:
         raise
     except (LookupError, ValueError) as error:  # Python's codec of the encoding that the first line declares
         what = str(error)[:_LONGEST_REASON]
-        raise GivenError(
-            "The text has an encoding that cannot be read ({reason}). Save it as UTF-8.",
-            line=1,
-            code="not_text",
-            reason=what,
+        raise GivenError("The text has an encoding that cannot be read ({reason}). Save it as UTF-8.", line=1).tag(
+            "not_text", reason=what
         ) from error
     if builder.root is None:
-        raise GivenError("The file has no element.", code="not_xml")
+        raise GivenError("The file has no element.").tag("not_xml")
     return builder.root

@@ -9,7 +9,7 @@ import stat
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, templated
 from ..messages import Message
@@ -30,32 +30,26 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
                     "{path} cannot be read: it is a pipe, a device or the like, no plain file. Check the path.",
                     path=path,
                 )
-            raise GivenError(problem, code="cannot_read")
+            raise GivenError(problem).tag("cannot_read")
         with place.open("rb") as stream:
             data = stream.read(most_bytes + 1)
     except GivenError:
         raise
     except OSError as error:
-        raise GivenError(
-            "{path} cannot be read: {reason}. Check the path.",
-            code="cannot_read",
-            path=path,
-            reason=error.strerror or error,
+        raise GivenError("{path} cannot be read: {reason}. Check the path.").tag(
+            "cannot_read", path=path, reason=error.strerror or error
         ) from error
     except UnicodeEncodeError as error:
-        raise GivenError(
-            "{path!r} cannot be read: its name is not valid text. Correct it.", code="cannot_read", path=path
+        raise GivenError("{path!r} cannot be read: its name is not valid text. Correct it.").tag(
+            "cannot_read", path=path
         ) from error
     except ValueError as error:  # the system's paths end at a NUL character
-        raise GivenError(
-            "{path!r} is not a path: it has a NUL character. Correct it.", code="invalid_character", path=path
+        raise GivenError("{path!r} is not a path: it has a NUL character. Correct it.").tag(
+            "invalid_character", path=path
         ) from error
     if len(data) > most_bytes:
-        raise GivenError(
-            "{path} is too large: at most {limit:g} MiB are read of such a file.",
-            code="too_large",
-            path=path,
-            limit=most_bytes / 2**20,
+        raise GivenError("{path} is too large: at most {limit:g} MiB are read of such a file.").tag(
+            "too_large", path=path, limit=most_bytes / 2**20
         )
     return data
 
@@ -74,12 +68,8 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise GivenError(
-            "{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.",
-            code="not_text",
-            path=path,
-            reason=error.reason,
-            byte=error.start + 1,
+        raise GivenError("{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.").tag(
+            "not_text", path=path, reason=error.reason, byte=error.start + 1
         ) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
@@ -93,16 +83,20 @@ class GivenError(ParameterError):
     sentence: the whole message, if it is not made of the others.
     """
 
-    def __init__(
-        self, what: str, *, code: str = "", line: int | None = None, title: str = "", sentence: str = "", **fields: Any
-    ) -> None:
-        what = templated(what, fields)
-        super().__init__(sentence or _placed(what, line, title), code=code)
-        self.what, self.line = what, line
+    def __init__(self, what: str, *, line: int | None = None, title: str = "", sentence: str = "") -> None:
+        super().__init__(sentence or _placed(what, line, title))
+        self.what, self.line, self.title, self.sentence = what, line, title, sentence
+
+    def tag(self, code: str, /, **fields: Any) -> Self:
+        """The same error with its code, and with fields in the template of its problem."""
+        self.what = templated(self.what, fields)
+        self.args = (self.sentence or _placed(self.what, self.line, self.title),)
+        self.code = code
+        return self
 
     def of(self, title: str) -> GivenError:
         """The same error with the title of the file."""
-        return GivenError(self.what, code=self.code, line=self.line, title=title)
+        return GivenError(self.what, line=self.line, title=title).tag(self.code)
 
 
 def _placed(what: str, line: int | None, title: str) -> str:
@@ -152,11 +146,11 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
                 place=named(place),
                 largest=LARGEST_WHOLE,
             )
-            raise GivenError(problem, code="number_too_large")
+            raise GivenError(problem).tag("number_too_large")
     elif isinstance(value, float):
         if not infinite and not math.isfinite(value):
-            raise GivenError(
-                "{place} is beyond the numbers, ±1.8e308. Correct it.", code="number_too_large", place=named(place)
+            raise GivenError("{place} is beyond the numbers, ±1.8e308. Correct it.").tag(
+                "number_too_large", place=named(place)
             )
     elif isinstance(value, dict | list):
         if len(place) >= DEEPEST:
@@ -171,29 +165,23 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
 
 def too_deep(line: int | None = None) -> GivenError:
     """The error for brackets within brackets within brackets."""
-    return GivenError(
-        "brackets are nested more than {deepest} deep. Remove some.", line=line, code="nested_too_deep", deepest=DEEPEST
+    return GivenError("brackets are nested more than {deepest} deep. Remove some.", line=line).tag(
+        "nested_too_deep", deepest=DEEPEST
     )
 
 
 def _require_text(text: str, place: Place, longest: int) -> None:
     if len(text) > longest:
-        raise GivenError(
-            "{place} has {count} characters; allowed are {longest}. Shorten it.",
-            code="text_too_long",
-            place=named(place),
-            count=len(text),
-            longest=longest,
+        raise GivenError("{place} has {count} characters; allowed are {longest}. Shorten it.").tag(
+            "text_too_long", place=named(place), count=len(text), longest=longest
         )
     if text.isascii():
         sound = "\0" not in text
     else:
         sound = not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
     if not sound:
-        raise GivenError(
-            "{place} has a NUL character or half a letter, which no text has. Remove it.",
-            code="invalid_character",
-            place=named(place),
+        raise GivenError("{place} has a NUL character or half a letter, which no text has. Remove it.").tag(
+            "invalid_character", place=named(place)
         )
 
 
@@ -252,11 +240,8 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     """
     try:
         if len(text) > MOST_TOML_BYTES:
-            raise GivenError(
-                "the text has {count} characters; allowed are {longest}.",
-                code="too_large",
-                count=len(text),
-                longest=MOST_TOML_BYTES,
+            raise GivenError("the text has {count} characters; allowed are {longest}.").tag(
+                "too_large", count=len(text), longest=MOST_TOML_BYTES
             )
         _require_short(text)
         values = tomllib.loads(text)
@@ -272,7 +257,7 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
             if title
             else Message("This is not TOML: {reason}. Correct that place.", reason=str(error))
         )
-        raise GivenError(str(error), code="not_toml", line=int(line[1]) if line else None, sentence=sentence) from error
+        raise GivenError(str(error), line=int(line[1]) if line else None, sentence=sentence).tag("not_toml") from error
     return values
 
 
@@ -293,11 +278,8 @@ def _require_short(text: str) -> None:
         elif first not in "\"'#":
             dots += word.count(".")
             if dots > MOST_DOTS:
-                raise GivenError(
-                    "a key has more than {count} dots. Shorten it.",
-                    line=_line(text, token),
-                    code="key_too_long",
-                    count=MOST_DOTS,
+                raise GivenError("a key has more than {count} dots. Shorten it.", line=_line(text, token)).tag(
+                    "key_too_long", count=MOST_DOTS
                 )
             if len(word) > LONGEST_KEY:
                 problem = Message(
@@ -305,7 +287,7 @@ def _require_short(text: str) -> None:
                     count=len(word),
                     longest=LONGEST_KEY,
                 )
-                raise GivenError(problem, code="key_too_long", line=_line(text, token))
+                raise GivenError(problem, line=_line(text, token)).tag("key_too_long")
 
 
 def _line(text: str, token: re.Match[str]) -> int:

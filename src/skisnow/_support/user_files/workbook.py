@@ -57,11 +57,8 @@ def workbook_sheets(
         warnings.simplefilter("ignore")  # of parts that are not read: validations, drawings
         book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
         if len(book.worksheets) > MOST_SHEETS:
-            raise GivenError(
-                "The workbook has {count} sheets; at most {limit} are read. Remove some.",
-                code="too_large",
-                count=len(book.worksheets),
-                limit=MOST_SHEETS,
+            raise GivenError("The workbook has {count} sheets; at most {limit} are read. Remove some.").tag(
+                "too_large", count=len(book.worksheets), limit=MOST_SHEETS
             )
         places: dict[str, list[tuple[int, int]]] = {} if fractions is None else fractions
         return {
@@ -153,9 +150,8 @@ def _undamaged(doing: Callable[[], Any]) -> Any:
     except Exception as error:
         raise GivenError(
             "This is not a workbook that can be read, or it is damaged. Open it in a spreadsheet program, "
-            "and save it as .xlsx.",
-            code="not_readable",
-        ) from error
+            "and save it as .xlsx."
+        ).tag("not_readable") from error
 
 
 def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> Rows:
@@ -166,11 +162,8 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
     def read() -> None:
         for cells in sheet.iter_rows(values_only=True):
             if len(rows) >= MOST_ROWS:
-                raise GivenError(
-                    "The sheet {sheet!r} has more than {limit} rows. Remove some.",
-                    code="too_large",
-                    limit=MOST_ROWS,
-                    sheet=sheet.title,
+                raise GivenError("The sheet {sheet!r} has more than {limit} rows. Remove some.").tag(
+                    "too_large", limit=MOST_ROWS, sheet=sheet.title
                 )
             texts = [_text(value) for value in cells]
             for value in cells:
@@ -182,13 +175,8 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
             if len(texts) > MOST_COLUMNS:
                 raise GivenError(
                     "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
-                    "Remove the unused ones.",
-                    code="too_large",
-                    row=len(rows) + 1,
-                    sheet=sheet.title,
-                    count=len(texts),
-                    limit=MOST_COLUMNS,
-                )
+                    "Remove the unused ones."
+                ).tag("too_large", row=len(rows) + 1, sheet=sheet.title, count=len(texts), limit=MOST_COLUMNS)
             rows.append(texts)
 
     _undamaged(read)
@@ -218,19 +206,16 @@ def _moment(value: date | time) -> str:
 
 def _require_sound(data: bytes) -> None:
     if len(data) > MOST_WORKBOOK_BYTES:
-        raise GivenError(
-            "The workbook is too large: at most {limit} MiB are read. Save it as CSV.",
-            code="too_large",
-            limit=MOST_WORKBOOK_BYTES >> 20,
+        raise GivenError("The workbook is too large: at most {limit} MiB are read. Save it as CSV.").tag(
+            "too_large", limit=MOST_WORKBOOK_BYTES >> 20
         )
     if data.startswith(_OLD_KIND):
         raise GivenError(
-            "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password.",
-            code="not_readable",
-        )
+            "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password."
+        ).tag("not_readable")
     if data.count(b"PK\1\2") > MOST_PARTS:
-        raise GivenError(
-            "The workbook has more than {limit} parts, which no table has.", code="too_large", limit=MOST_PARTS
+        raise GivenError("The workbook has more than {limit} parts, which no table has.").tag(
+            "too_large", limit=MOST_PARTS
         )
     archive: zipfile.ZipFile = _undamaged(lambda: zipfile.ZipFile(io.BytesIO(data)))
     with archive:
@@ -247,10 +232,8 @@ def _require_small(archive: zipfile.ZipFile) -> None:
             if unpacked > MOST_UNPACKED_BYTES:
                 most = MOST_UNPACKED_BYTES >> 20
                 raise GivenError(
-                    "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV.",
-                    code="too_large",
-                    limit=most,
-                )
+                    "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV."
+                ).tag("too_large", limit=most)
             if looked_at is not None:
                 looked_at.take(piece)
         if looked_at is not None:
@@ -284,19 +267,15 @@ class _Part:
 
     def _refuse_document_type(self, *_: object) -> None:
         raise GivenError(
-            "The workbook has a document type in its part {part}, which no spreadsheet program writes.",
-            code="not_readable",
-            part=self._name,
-        )
+            "The workbook has a document type in its part {part}, which no spreadsheet program writes."
+        ).tag("not_readable", part=self._name)
 
     def _begin(self, name: str, attributes: dict[str, str]) -> None:
         self._elements += 1
         self._depth += 1
         if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
-            raise GivenError(
-                "The part {part} of the workbook is larger than any table. Save its sheets as CSV.",
-                code="too_large",
-                part=self._name,
+            raise GivenError("The part {part} of the workbook is larger than any table. Save its sheets as CSV.").tag(
+                "too_large", part=self._name
             )
         local = name.rpartition(" ")[2]
         if local == "c":
@@ -310,8 +289,5 @@ class _Part:
         if name.endswith(" c") and self._in_cell == {"f"}:
             raise GivenError(
                 "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
-                "spreadsheet program and save it.",
-                code="formula_without_value",
-                cell=self._cell[:20],
-                part=self._name,
-            )
+                "spreadsheet program and save it."
+            ).tag("formula_without_value", cell=self._cell[:20], part=self._name)
