@@ -153,10 +153,6 @@ def kept_in(partial: Path, copy: Path) -> int:
         return 0
 
 
-def children_of(process: int) -> list[int]:
-    return [int(word) for word in Path(f"/proc/{process}/task/{process}/children").read_text("ascii").split()]
-
-
 def alive(process: int) -> bool:
     try:
         return Path(f"/proc/{process}/stat").read_text("ascii").rsplit(")", 1)[1].split()[0] != "Z"
@@ -178,7 +174,7 @@ def test_killed_and_interrupted_studies_go_on_to_the_same_bytes(tmp_path: Path, 
     partial = broken.parent / "tables" / "table.csv.partial"
     first = started(broken, "--workers", "2")
     wait_for(lambda: kept_in(partial, tmp_path / "copy") > 3 or first.poll() is not None)
-    workers = children_of(first.pid)
+    workers = [int(word) for word in Path(f"/proc/{first.pid}/task/{first.pid}/children").read_text("ascii").split()]
     os.kill(first.pid, how)
     _, err = first.communicate(timeout=300)
     assert first.returncode == code, err.decode()

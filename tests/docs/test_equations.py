@@ -33,12 +33,6 @@ def equations(tokens: Sequence[Token]) -> Iterator[str]:
         yield from equations(token.children or ())
 
 
-def all_equations() -> list[tuple[str, str]]:
-    pages = sorted(path for path in DOCS.rglob("*.md") if "_build" not in path.parts)
-    read = MarkdownIt("commonmark").enable("table").use(dollarmath_plugin)
-    return [(page.name, text) for page in pages for text in equations(read.parse(page.read_text(encoding="utf-8")))]
-
-
 def parts(markup: str) -> Counter[tuple[str, ...]]:
     """Fractions, roots, scripts with their bases, accents and rows of matrices, each with the text of its parts."""
     found: Counter[tuple[str, ...]] = Counter()
@@ -56,7 +50,9 @@ def text_of(element: ET.Element) -> str:
 
 
 def test_both_converters_see_the_same_parts_in_every_equation() -> None:
-    written = all_equations()
+    pages = sorted(path for path in DOCS.rglob("*.md") if "_build" not in path.parts)
+    read = MarkdownIt("commonmark").enable("table").use(dollarmath_plugin)
+    written = [(page.name, text) for page in pages for text in equations(read.parse(page.read_text(encoding="utf-8")))]
     assert len(written) > 100
     apart = {}
     for page, text in written:

@@ -36,7 +36,14 @@ def test_every_command_is_in_a_fenced_block(page: str) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="needs bash")
 @pytest.mark.parametrize("page", [page for page in PAGES if any(not block.is_doctest for block in blocks(page))])
 def test_the_commands_of_a_page_run(page: str, tmp_path: Path) -> None:
-    environment = _environment(tmp_path)
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for name, module in (("skisnow", "-m skisnow "), ("python", "")):
+        tool = tools / name
+        tool.write_text(f'#!/bin/sh\nexec "{sys.executable}" {module}"$@"\n', encoding="utf-8")
+        tool.chmod(0o755)
+    own = {"XDG_DATA_HOME": str(tmp_path / "data"), "XDG_STATE_HOME": str(tmp_path / "state"), "COLUMNS": "200"}
+    environment = os.environ | own | {"PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
     folder = tmp_path / "folder"
     folder.mkdir()
     for part in ("examples", "openbench"):  # copies: a study writes its table next to its file
@@ -45,18 +52,6 @@ def test_the_commands_of_a_page_run(page: str, tmp_path: Path) -> None:
     for block in blocks(page):
         if block.is_run and block not in doctests[1:]:
             _run(block, folder, environment, page)
-
-
-def _environment(tmp_path: Path) -> dict[str, str]:
-    """Own data folder, and `skisnow` and `python` of this interpreter first in the path."""
-    tools = tmp_path / "bin"
-    tools.mkdir()
-    for name, module in (("skisnow", "-m skisnow "), ("python", "")):
-        tool = tools / name
-        tool.write_text(f'#!/bin/sh\nexec "{sys.executable}" {module}"$@"\n', encoding="utf-8")
-        tool.chmod(0o755)
-    own = {"XDG_DATA_HOME": str(tmp_path / "data"), "XDG_STATE_HOME": str(tmp_path / "state"), "COLUMNS": "200"}
-    return os.environ | own | {"PATH": f"{tools}{os.pathsep}{os.environ['PATH']}"}
 
 
 def _run(block: Block, folder: Path, environment: dict[str, str], page: str) -> None:

@@ -81,12 +81,6 @@ def read(reference: Reported) -> _Reader:
     return _Reader(reference.html)
 
 
-def _value(text: str) -> float:
-    mantissa, _, power = text.replace("−", "-").partition("×10")
-    exponent = power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
-    return float(mantissa) * 10.0 ** int(exponent or 0)
-
-
 def _agrees(printed: str, value: float | None, digits: int) -> bool:
     """Whether a printed number is the value rounded to that many significant digits (half a unit of the last)."""
     if value is None:
@@ -94,7 +88,9 @@ def _agrees(printed: str, value: float | None, digits: int) -> bool:
     if value == 0:
         return printed == "0"
     last = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
-    return abs(_value(printed) - value) <= 0.5000001 * last
+    mantissa, _, power = printed.replace("−", "-").partition("×10")
+    exponent = power.translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    return abs((float(mantissa) * 10.0 ** int(exponent or 0)) - value) <= 0.5000001 * last
 
 
 def _estimate(cell: str) -> tuple[str, list[str]]:

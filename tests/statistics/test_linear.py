@@ -229,10 +229,6 @@ def wampler5() -> tuple[FloatArray, FloatArray]:
     return sum(x**j for j in range(6)) + 100.0 * deviation, np.stack([x**j for j in range(1, 6)], axis=1)
 
 
-def with_ones(predictors: FloatArray) -> FloatArray:
-    return np.column_stack((np.ones(len(predictors)), predictors))
-
-
 @pytest.mark.parametrize("data", [filip_like, wampler5])
 def test_every_linear_regression_warns_by_the_condition_number(
     data: Callable[[], tuple[FloatArray, FloatArray]],
@@ -240,7 +236,7 @@ def test_every_linear_regression_warns_by_the_condition_number(
     y, X = data()
     regressions: tuple[Callable[[], object], ...] = (
         lambda: linear_fit(y, X),
-        lambda: regress(y, with_ones(X)),
+        lambda: regress(y, np.column_stack((np.ones(len(X)), X))),
         lambda: cluster_intervals(y, X, np.arange(len(y)) % 3),
     )
     for fit in regressions:

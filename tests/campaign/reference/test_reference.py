@@ -15,7 +15,7 @@ import pytest
 import skisnow
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.campaign.reading import read_campaign
-from skisnow.campaign.reference import ReferenceCampaign, ReferenceNoise, reference_campaign, write_reference
+from skisnow.campaign.reference import ReferenceNoise, reference_campaign, write_reference
 from skisnow.campaign.reference.design import FURTHER_SHEAR_SITES, PENETRATION_SITES
 from skisnow.campaign.screening import screen_penetration
 
@@ -31,10 +31,6 @@ QUIET = ReferenceNoise(
 )
 SEEDS = range(8)
 L, W = 200.0, 62.0  # mm, the paper's tool
-
-
-def series_depths_mm(drawn: ReferenceCampaign) -> np.ndarray:
-    return drawn.penetration.penetration_depth.reshape(-1, 7) * 1e3
 
 
 def volume_mm3(depth_mm: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -117,7 +113,7 @@ def test_without_errors_every_reading_obeys_the_papers_law() -> None:
 def test_layering_bends_the_law_and_keeps_its_end() -> None:
     noise = dataclasses.replace(QUIET, layering_sd=0.15)
     drawn = reference_campaign(5, noise=noise)
-    depth = series_depths_mm(drawn)
+    depth = drawn.penetration.penetration_depth.reshape(-1, 7) * 1e3
     volume = volume_mm3(depth, drawn.penetration.edge_angle[:, np.newaxis])
     np.testing.assert_allclose(drawn.snow_hardness / 1e9 * volume[:, -1], 492.0, rtol=1e-12)
     slope = np.log(12.0 / 492.0) / np.log(volume[:, 0] / volume[:, -1])  # of ln F against ln V

@@ -41,19 +41,15 @@ def folder(tmp_path: Path) -> Path:
     return write(tmp_path / "Brenner 2012", FILES)
 
 
-def flip_in_file(place: Path, data: bytes) -> None:
-    """Change one bit of the file on the disk, inside a BLOB, where the database's own check does not look."""
-    raw = bytearray(place.read_bytes())
-    at = raw.index(data)
-    raw[at] ^= 1
-    place.write_bytes(raw)
-
-
 def test_a_flipped_bit_is_found_named_and_repaired(folder: Path, place: Path, tmp_path: Path) -> None:
     with Store.open(place) as store:
         added = store.add(folder)
         assert store.verify() == ()
-    flip_in_file(place, FILES["windows.csv"])
+    data = FILES["windows.csv"]
+    raw = bytearray(place.read_bytes())
+    at = raw.index(data)
+    raw[at] ^= 1
+    place.write_bytes(raw)
     with Store.open(place) as store:
         findings = store.verify()
         assert [(finding.campaign, finding.path) for finding in findings] == [(added.id, "windows.csv")]
