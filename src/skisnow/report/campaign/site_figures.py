@@ -108,6 +108,7 @@ def _panel(axes: Axes, rows: list[Json], names: Mapping[str, str], values: Float
     letters = axes.secondary_yaxis("right")
     letters.set_yticks(places, [row["letters"] for row in rows])
     letters.tick_params(length=0)
+    letters.spines["right"].set_visible(False)
 
 
 MOST_DRAWN: Final = 24

@@ -133,7 +133,8 @@ _FIGURES: Final = {
         template(
             "(a, b) Depth of the edge below the undisturbed surface and (c, d) normal force of the snow per length, "
             "over time. White: the edge is above the snow, or the snow does not press: behind the place of the largest "
-            "load the afterbody runs in the groove that the forebody cut."
+            "load the afterbody runs in the groove that the forebody cut. Up to one value in 200 is beyond a scale and "
+            "has its last colour."
         ),
         template("Maps of edge depth and normal force per length over position along the ski and time, for both skis."),
     ),

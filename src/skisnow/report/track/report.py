@@ -257,8 +257,12 @@ def _draw_distances(axes: Axes, comparison: Comparison) -> None:
         axes.yaxis.set_major_formatter(plain_number)
     else:
         axes.set_ylim(bottom=0.0)
-    axes.set_xlabel(Message("distance along the measured track (m)"))
-    axes.set_ylabel(Message("distance of the\nsimulated track (m)"))
+    if comparison.axes in _AXIS_WORDS:  # two files: both may be measured
+        axes.set_xlabel(Message("distance along {track} (m)", track=figure_text(comparison.names[1], longest=40)))
+        axes.set_ylabel(Message("distance between\nthe tracks (m)"))
+    else:
+        axes.set_xlabel(Message("distance along the measured track (m)"))
+        axes.set_ylabel(Message("distance of the\nsimulated track (m)"))
 
 
 def _thinned(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
@@ -279,12 +283,15 @@ FITTED: Final = {"start": Message("start"), "heading": Message("heading"), "time
 
 def _handles(comparison: Comparison) -> list[Line2D]:
     simulated, measured = (figure_text(name, longest=40) for name in comparison.names)
-    label = Message("simulated: {simulated}", simulated=simulated)
+    label: str = Message("simulated: {simulated}", simulated=simulated)
     if comparison.fitted is not None:
         what = [FITTED.get(name, name) for name in comparison.fitted.what]
         label = Message("simulated: {simulated}, {fitted} fitted", simulated=simulated, fitted=what)
+    elif comparison.axes in _AXIS_WORDS:
+        label = simulated
+    own = measured if comparison.axes in _AXIS_WORDS else Message("measured: {measured}", measured=measured)
     handles = [
-        Line2D([], [], label=Message("measured: {measured}", measured=measured), **MEASURED),
+        Line2D([], [], label=own, **MEASURED),
         Line2D([], [], label=label, **SIMULATED),
     ]
     if comparison.fitted is not None:
