@@ -54,7 +54,7 @@ class _Coded(Exception):  # noqa: N818 -- of errors and warnings
     def at(self, place: object) -> Self:
         """The same error with its file, key or other place before the message."""
         fields = {name: value for name, value in self.fields.items() if name not in ("place", "problem")}
-        return type(self)(Message("{place}: {problem}", place=place, problem=self.message, **fields), code=self.code)
+        return type(self)(Message("{place}: {problem}", place=place, problem=self.message, **fields)).tag(self.code)
 
 
 class SkisnowError(_Coded):
