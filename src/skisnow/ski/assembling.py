@@ -170,7 +170,8 @@ class SkiParts:
         base_height = self.base(station) if callable(self.base) else self.base.height_at(station, self.layout)
         mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
         if self.mass_per_length is None:
-            mass_per_length = width * (self.mass / -np.trapezoid(width, station))
+            area = -np.trapezoid(width, station) or 1.0  # without an area the tables are rejected below
+            mass_per_length = width * (self.mass / area)
         return Ski(
             name=self.name,
             source=self.source,
