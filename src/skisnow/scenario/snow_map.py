@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Final
 
@@ -246,7 +247,8 @@ def read_snow_layers(path: str | Path) -> SnowLayers:
     path: CSV with ``depth_mm``, the top of each layer, the first 0, and ``hardness_share`` (hardness over H_V) or
         ``force_N``, whose mean over the depth of the file stands for H_V.
     """
-    rows = list(csv_rows(path, ("depth_mm",), further=("hardness_share", "force_N"), action=_LAYERS_ACTION))
+    every = csv_rows(path, ("depth_mm",), further=("hardness_share", "force_N"), action=_LAYERS_ACTION)
+    rows = list(islice(every, MOST_LAYERS + 1))
     names = [name for name in ("hardness_share", "force_N") if rows and name in rows[0].cells]
     if len(names) != 1 or len(rows) > MOST_LAYERS:
         raise ParameterError(

@@ -114,28 +114,29 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
         text = decode(data)
         named = named_separator(text.text[:1000])
         separators = [named] if named in SEPARATOR_NAMES else list(SEPARATOR_NAMES)
-        candidates = [
-            (_records(CsvText(data, text.codec, text.foreign_encoding, mark, named is not None)), mark)
-            for mark in separators
-        ]
+        texts = [CsvText(data, text.codec, text.foreign_encoding, mark, named is not None) for mark in separators]
+        begins = [max(map(count, _records(each, most=_HEADING_ROWS)), default=0) for each in texts]
+        best = texts[begins.index(max(begins))]
+        return _records(best), best.separator
     except UnreadableTextError as failure:
         raise ParameterError("{file}: allowed: {allowed}. {action}").tag(
             "unreadable_file", file=name, allowed=failure.allowed, action=failure.action
         ) from failure
-    return max(candidates, key=lambda candidate: max(map(count, candidate[0][:_HEADING_ROWS]), default=0))
 
 
 def _headings(cells: Sequence[str]) -> int:
     return max(sum(bool(stated_column(form, cell.strip())) for cell in cells) for form in TABLES)
 
 
-def _records(text: CsvText) -> Rows:
+def _records(text: CsvText, *, most: int | None = None) -> Rows:
     rows: Rows = []
     for lines, records in text.records():
         for line, cells in zip(lines, records, strict=True):
             rows.extend([] for _ in range(line - 1 - len(rows)))
-            rows.append([re.sub(r"\s+", " ", cell).strip() for cell in cells])
-    return rows
+            rows.append([" ".join(cell.split()) for cell in cells])
+        if most is not None and len(rows) >= most:
+            break
+    return rows[:most]
 
 
 _HEADING_ROWS: Final = 1000
