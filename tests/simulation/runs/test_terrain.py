@@ -105,17 +105,19 @@ def run_in_pipe(changes: dict[str, float]) -> Run:
 
 @pytest.mark.slow
 def test_without_loss_speed_is_height_over_rollers() -> None:
-    """Along the bottom of the pipe, on elastic snow, without friction and drag: v² = v₀² + 2 g (z₀ - z).
+    """Along the bottom of the pipe, on elastic snow that holds no shear, without friction and drag: v² = v₀² - 2 g Δz.
 
-    Beside it there are a bounce on the snow's springs, and the pitch of the sledge: some joules of 1500.
+    v and z are those of the centre of mass, 12 cm above the boots: it is slower than they are in a hollow. Beside it
+    there are a bounce on the snow's springs, and the pitch of the sledge: a joule of 1500.
     """
     straight = {"start.heading_deg": 0.0, "sledge.edge_angle_deg": 0.0, "run.duration_s": 2.0}
-    run = run_in_pipe(straight | {"snow.unloading_ratio": 1.0})
+    run = run_in_pipe(straight | {"snow.unloading_ratio": 1.0, "snow.S_f_N_per_mm2": 1e-4})
     assert np.abs(run.place[:, 1]).max() < 1e-6
     assert np.ptp(run.place[:, 2]) > 1.5
-    by_height = run.speed[0] ** 2 + 2.0 * 9.81 * (run.place[0, 2] - run.place[:, 2])
-    np.testing.assert_allclose(run.speed, np.sqrt(by_height), atol=0.05)
-    assert run.speed[-1] == pytest.approx(math.sqrt(by_height[-1]), abs=0.02)
+    centre = run.place + 0.12 * run.attitude[:, :, 2]
+    speed = np.linalg.norm(np.gradient(centre, run.time, axis=0, edge_order=2), axis=1)
+    by_height = speed[0] ** 2 + 2.0 * 9.81 * (centre[0, 2] - centre[:, 2])
+    np.testing.assert_allclose(speed, np.sqrt(by_height), atol=0.015)
 
 
 def test_energy_closes_along_a_bank() -> None:
