@@ -291,11 +291,14 @@ class _Section:
         slope_change = (self.line.passed[0] - self.on_ski) * (self.line.passed[1] - self.climb)
         if slope_change >= 0.0:
             return []
+        (before, rise), (now, fall) = (self.unbent(s) for s in (self.line.passed[0], self.on_ski))
+        mean = 0.5 * (self.line.passed[0] - self.on_ski) * (rise + fall)
+        bent = (before - now - mean) * float(self.pose.rotation[:, 2] @ self.line.out)  # 0 for a parabola
         width = [edge.place for edge in self.edges[::-1]]
         fallen = [edge.depth - hold.depth for edge, hold in zip(self.edges, self.line.holds, strict=True)]
         moved = [hold.place - edge.place for edge, hold in zip(self.edges, self.line.holds, strict=True)]
         # d'(w) = 0 at 1 - since, which is linear across: only the places that pass their deepest on the way
-        since = [0.5 + each / slope_change for each in reversed(fallen)]
+        since = [0.5 + (each - bent) / slope_change for each in reversed(fallen)]
         slope = (since[1] - since[0]) / (width[1] - width[0])
         ends = sorted(width[0] + (each - since[0]) / slope for each in (0.0, 1.0)) if slope else [-math.inf, math.inf]
         if not slope and not 0.0 < since[0] < 1.0:
@@ -309,6 +312,11 @@ class _Section:
             aside = float(np.interp(y, width, moved[::-1]))
             out.append((y + back * aside, float(self.touch.base(y)) - 0.5 * slope_change * back**2))
         return out
+
+    def unbent(self, s: float) -> tuple[float, float]:
+        """Height and slope of the unbent base at a station."""
+        _, height, _, slope = (float(np.interp(s, self.whole.table, column)) for column in self.whole.columns)
+        return height, slope
 
     def stood(self, k: int) -> Hold | None:
         """An edge at the last accepted pose, if it was in the snow."""

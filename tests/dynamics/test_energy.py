@@ -53,13 +53,14 @@ def test_the_balance_closes(changes: dict[str, float]) -> None:
     assert min(friction, drag, damping) > 0.0
 
 
-@pytest.mark.parametrize(("hardness", "within"), [(0.03, 2e-3), (0.2, 5e-3)])
+@pytest.mark.parametrize(("hardness", "within"), [(0.03, 3e-4), (0.2, 2e-3)])
 def test_what_the_snow_takes_is_in_its_grooves(hardness: float, within: float) -> None:
     """Straight on with a ski whose edges are straight: a flare, and an edge that comes from the side, press the groove
-    without a force of their own. A line enters under the tip at once: what that leaves goes down with the spacing."""
+    without a force of their own. A line enters under the tip at once: what that leaves goes down with the spacing.
+    Grooves are pressed at the deepest place on the way, work is summed at ends of steps: 1 % apart at 3e-8."""
     scenario = given(sledge__edge_angle_deg=0.0, start__heading_deg=0.0, snow__H_V_N_per_mm3=hardness)
     straight = replace(scenario.ski, width=np.full_like(scenario.ski.width, 0.07))
-    dynamics = sledge(replace(scenario, ski=straight), StepControl(tolerance=3e-7), spacing=0.01)
+    dynamics = sledge(replace(scenario, ski=straight), StepControl(tolerance=3e-9), spacing=0.005)
     dynamics.find_equilibrium()
     dynamics.begin(ahead(scenario.start.speed))
     before = in_snow(dynamics)

@@ -161,7 +161,7 @@ class SnowContact {
   void find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to);
   void march_where_needed(int k, const Situation& to);
   void remember(int k, GrooveLines& lines, bool is_eased) const;
-  void press_base(const Base& s, std::int64_t line, GrooveLines& lines) const;
+  void press_base(int k, std::int64_t line, GrooveLines& lines) const;
 };
 
 // A state of a contact sealed, and a contact taken to one. All throw std::invalid_argument, and change nothing.

@@ -97,6 +97,7 @@ bool press_undelayed(const Pressing& pressing, const DelayedGround& delayed, Gro
 
 // Update of a section when its pose is accepted.
 struct Touch {
+  const Runner& runner;
   const Base& s;
   int i;
   const Snow& snow;
@@ -112,20 +113,20 @@ struct Touch {
   // [deepest] The base where it was deepest since it was marked last. Over the way w from 0 to 1 the depth at each
   // share of the width is a parabola d₀ + (d₁ - d₀) w + b w (1 - w), b half the way times the change of the climb.
   // Where its vertex at 1 - u lies on the way, it is u² b deeper than d₁. Without it the ground misses b/6 in the mean.
+  // The slope at the end is that of the base there: past a kink, after which the base is straight, there is no vertex.
   bool press_deepest(Ground& ground) const {
     const int deeper = edge_depth(0) > edge_depth(1) ? 0 : 1;
     const double bend =
         0.5 * (lines.values[MARK_STATION][slot] - s[STATION][i]) * (s[DEPTH_CLIMB][i] - lines.values[MARK_CLIMB][slot]);
     if (!was_in_snow(deeper) || !(edge_depth(deeper) > 0.0) || !(bend > 0.0)) return false;
+    const double to_end = bend + s[LINE_NORMAL_2][i] * rise_beside_mean();
     const double left = s[LEFT_X][i], right = s[RIGHT_X][i], per_width = 1.0 / (left - right);
     double u[2], aside[2];
     for (int k = 0; k < 2; k++)
-      u[k] = 0.5 * (bend + of_line(LEFT_MARK_DEPTH, k) - edge_depth(k)) / bend,
+      u[k] = 0.5 * (to_end + of_line(LEFT_MARK_DEPTH, k) - edge_depth(k)) / bend,
       aside[k] = of_line(LEFT_MARK, k) - edge_place(k);
     const auto at = [&](const double* of, double x) { return (of[0] * (x - right) + of[1] * (left - x)) * per_width; };
-    const auto place_of = [&](double share) {
-      return ((share - u[1]) * left + (u[0] - share) * right) / (u[0] - u[1]);
-    };
+    const auto place_of = [&](double v) { return ((v - u[1]) * left + (u[0] - v) * right) / (u[0] - u[1]); };
     const double low = std::max(s[WET_FROM][i], std::min(place_of(0.0), place_of(1.0)));
     const double high = std::min(s[WET_TO][i], std::max(place_of(0.0), place_of(1.0)));
     if (!(high - low > THIN)) return false;
@@ -139,6 +140,18 @@ struct Touch {
       out.depth[out.count] = depth + share * share * bend;
     }
     return press_undelayed(out, lines.delayed[std::size_t(slot)], ground);
+  }
+
+  // How much higher the unbent base is at the mark than here beyond the mean of both slopes: 0 for a parabola.
+  double rise_beside_mean() const {
+    const double a = lines.values[MARK_STATION][slot], b = s[STATION][i];
+    const auto unbent = [&](double station, int column) {
+      const double place = std::clamp((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0);
+      const double whole = std::floor(std::min(place, runner.places - 2.0));
+      const double* row = runner.table.data() + ROW * std::size_t(whole) + column;
+      return row[0] + (place - whole) * (row[ROW] - row[0]);
+    };
+    return unbent(a, 2) - unbent(b, 2) - 0.5 * (a - b) * (unbent(a, 3) + unbent(b, 3));
   }
 
   // The wet base and the way of one of its edges in the snow since it was marked last.
@@ -194,15 +207,16 @@ struct Touch {
 }  // namespace
 
 // The ground of a line takes the base that touches it.
-void SnowContact::press_base(const Base& s, std::int64_t line, GrooveLines& lines) const {
+void SnowContact::press_base(int k, std::int64_t line, GrooveLines& lines) const {
+  const Base& s = sections(k).base;
   const int i = s.index(line);
-  if (s.touches(i)) Touch{s, i, *snow_, lines, lines.slot(line)}.press_base();
+  if (s.touches(i)) Touch{runner(k), s, i, *snow_, lines, lines.slot(line)}.press_base();
 }
 
 // All grounds take the base; then the marks follow it.
 void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
   const Sections& s = sections(k);
-  for (std::int64_t n = lines.first; n < lines.end; n++) press_base(s.base, n, lines);
+  for (std::int64_t n = lines.first; n < lines.end; n++) press_base(k, n, lines);
   kernels_->mark(*snow_, s.base, nullptr, is_eased ? &s.edge : nullptr, lines);
 }
 
@@ -297,7 +311,7 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
     kernels_->find_sections(runner(k), on_way_, lines, is_followed.data(), s.base);
-    for (const std::int64_t n : needed_) press_base(s.base, n, lines);
+    for (const std::int64_t n : needed_) press_base(k, n, lines);
     kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
     if (drags_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }

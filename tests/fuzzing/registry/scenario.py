@@ -231,7 +231,7 @@ READERS = (
     Reader(
         name="terrain.prj", target="terrain.prj", files=lambda: {"terrain.asc": _ESRI, "terrain.prj": _SYSTEM},
         read=lambda folder: _used_terrain(folder / "terrain.asc"), mutations=TEXT,
-        covers=("scenario.raster_formats:_coordinates_of_prj",),
+        covers=("scenario.raster_formats:read_esri_ascii",),
     ),
     _of("heights.tif", _geotiff, _used_terrain, BINARY, "scenario.raster_formats:read_geotiff", needs=("rasterio",)),
     _of("map.csv", _MAP, _used_map, TABLE, "scenario.snow_map:read_snow_map"),
