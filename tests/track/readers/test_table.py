@@ -153,6 +153,8 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("time_s,x_m,y\n0,1,2\n", ["missing_column", "column y_m"]),
         ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "'latt'"]),
         ("x_m,y_m\n0,1\n", ["missing_column", "column time_s"]),
+        ("Time,Lat,Lon,Alt\n0,46,7,900\n", ["missing_column", "column alt_m", "'Alt'"]),
+        ("time_s,x_m,y_m,Speed [m/s]\n0,1,2,3\n", ["missing_column", "column speed_m_per_s"]),
         ("Zeit [s];x [m];y (m)\n0;1,5;2\n", ["Likely time_s for 'Zeit [s]', x_m for 'x [m]', y_m for 'y (m)'."]),
         ("Zeit,Breite,Länge,Höhe_m\n0,46,7,9\n", ["time for 'Zeit', lat for 'Breite', lon for 'Länge', alt_m for"]),
         ("time_s,x_m,y_m\n0,1,2\n1,one,2\n", ["not_a_number", "row 3, column x_m", "'one'", "decimal point"]),

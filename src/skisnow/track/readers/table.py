@@ -121,6 +121,10 @@ class _Table:
                 raise self._missing(column)
         if not any(column in self.header for column in TIMES):
             raise self._missing("time" if geodetic else "time_s")
+        optional = {(GEODETIC if geodetic else LOCAL)[2]} | ({SPEEDS[0]} if not {*SPEEDS} & {*self.header} else set())
+        for column in columns_by_synonym(self.header).values():
+            if column in optional:  # heights or speeds would be lost
+                raise self._missing(column)
         return geodetic
 
     def _missing(self, column: str) -> Exception:
