@@ -21,7 +21,6 @@ PACKAGES = {
     "skisnow.forces.shear": "Shear laws",
     "skisnow.forces.friction": "Friction laws",
     "skisnow.forces.drag": "Drag",
-    "skisnow.forces.cutting": "Machining",
     "skisnow.design": "Design",
     "skisnow.studies": "Studies",
     "skisnow.scenario": "Scenarios",

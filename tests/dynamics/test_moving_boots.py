@@ -11,7 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact
 from skisnow.dynamics import Body, BootMotion, BootPose, Dynamics, Ended, StepControl
-from skisnow.geometry.boot_axes import angles_of, axes_of
+from skisnow.geometry.vectors import angles_of, axes_of
 from skisnow.simulation.sledge_body import sledge_body
 from tests.coded import raises
 

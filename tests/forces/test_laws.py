@@ -16,11 +16,10 @@ from tests.coded import raises, warns
 
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow.forces import friction, penetration, shear
-from skisnow.forces.cutting import cutting_stress, cutting_thrust
 from skisnow.forces.drag import AirDrag
 from skisnow.forces.friction import ConstantFriction
 from skisnow.forces.penetration import AreaLaw, BilinearLaw, HypoplasticPoint, MeanPressureLaw
-from skisnow.forces.shear import MachiningShear
+from skisnow.forces.shear import MachiningShear, cutting_stress, cutting_thrust
 
 from ..versions import SAME_PIXELS
 

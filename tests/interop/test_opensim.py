@@ -10,7 +10,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.cli import main
-from skisnow.geometry.boot_axes import axes_of
+from skisnow.geometry.vectors import axes_of
 from skisnow.interop.opensim import (
     BootMarkers,
     Markers,

@@ -19,7 +19,7 @@ from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField, c_header, c_library
 from skisnow.dynamics import Body, Dynamics, Ended, FlexibleSki, StepControl
-from skisnow.geometry.boot_axes import axes_of
+from skisnow.geometry.vectors import axes_of
 from skisnow.interop.mujoco import SnowForces, ski_mjcf
 
 mujoco: Any = pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'skisnow[peers]'")

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from skisnow._support.units import DEGREE
-from skisnow.geometry.boot_axes import axes_of
+from skisnow.geometry.vectors import axes_of
 from skisnow.replay import (
     Replay,
     moving_replay_model,

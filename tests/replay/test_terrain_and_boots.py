@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skisnow.geometry.boot_axes import axes_of
+from skisnow.geometry.vectors import axes_of
 from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_bytes, replay_of_file, replay_of_run
 from skisnow.replay.meshes import _normals, grid_mesh, snow_mesh
 from skisnow.replay.replay import ski_edges

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.geometry.boot_axes import angles_of, axes_of
+from skisnow.geometry.vectors import angles_of, axes_of
 from skisnow.scenario import load_scenario, scenario_file
 from skisnow.scenario.boots import ANGLES, OF_SLOPE, SIDES, Boots, read_boots
 from skisnow.scenario.plausibility import implausible_values

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from skisnow.dynamics.motion import MOMENT
-from skisnow.geometry.boot_axes import axes_of
+from skisnow.geometry.vectors import axes_of
 from skisnow.scenario import Plane, Profile, Terrain, load_scenario
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run

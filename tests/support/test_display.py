@@ -11,9 +11,9 @@ import pytest
 import skisnow
 from skisnow import SnowProperties, Track
 from skisnow._support.units import Facts, Shown, SmallFigure, field_facts
-from skisnow._support.vectors import applied, combined, cross, unit
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
+from skisnow.geometry.vectors import applied, combined, cross, unit
 from skisnow.identification import Identified, Parameter
 from skisnow.report.turn.chain import EnsembleRun
 from skisnow.report.turn.figures import TimedTrack

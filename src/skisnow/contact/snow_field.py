@@ -15,7 +15,7 @@ from ..compiled import core
 from ..forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import PointLaw
-from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
+from ..forces.penetration.law import DAMPING, DELAYED_SHARE, DELAYED_SPACING, RETARDATION_TIME
 from ..forces.shear import AngleShear, ConstantShear, DensityShear, MachiningShear, NaturalDensityShear, ShearLaw
 from ..forces.shear.law import RESIDUAL_RATIO, SHEAR_DISPLACEMENT, SLIP_WEAKENING, Bearing
 from ..geometry.surfaces import Grid, Plane

@@ -1,16 +1,19 @@
-"""A rigid body on flexible skis: masses, stiffness and loads, as arrays."""
+"""A rigid body on flexible skis: masses, stiffness and loads, as arrays; poses and motions of its boots."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.units import ShownFields
+from .._support.units import DEGREE, Facts, Shown, ShownFields, amount
 from ..compiled import core
+from ..geometry.vectors import angles_of, axes_of, cross
 
 
 def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
@@ -132,3 +135,142 @@ class Body(ShownFields):
         )
         skis = [each.compiled() for each in self.skis]
         return core.body(inertia, self.mass, moment, skis, gravity, self.drag, self.drag_height)
+
+
+FARTHEST_TURN: Final = 1.0
+"""Angle (rad) by which a boot may turn within one motion: rotation vectors are single up to π."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class BootPose(Shown):
+    """Pose and motion of a boot in the frame of the body that carries it.
+
+    Attributes
+    ----------
+    place
+        (m), (3,): ahead, left, up.
+    axes
+        Axes of the ski: ahead, left across the base, off the base as rows, (3, 3).
+    velocity, turning
+        (m/s) and (rad/s), (3,) each.
+
+    See Also
+    --------
+    skisnow.simulate
+    skisnow.BootMoment
+    """
+
+    place: FloatArray
+    axes: FloatArray
+    velocity: FloatArray = field(default_factory=lambda: np.zeros(3))
+    turning: FloatArray = field(default_factory=lambda: np.zeros(3))
+
+    def __post_init__(self) -> None:
+        for name, shape in (("place", (3,)), ("axes", (3, 3)), ("velocity", (3,)), ("turning", (3,))):
+            object.__setattr__(self, name, shaped(f"BootPose: {name}", getattr(self, name), shape))
+        off = _off_rotation(self.axes.tolist())
+        if off > 1e-9:
+            raise ParameterError("BootPose: axes are off by {off:.1e} from right-handed orthonormal ones").tag(
+                "not_a_rotation", off=off
+            )
+
+    def _facts(self) -> Facts:
+        edge, pitch, heading = (amount(angle / DEGREE, "°") for angle in angles_of(self.axes))
+        place = ", ".join(f"{each:.4g}" for each in self.place)
+        speed, turning = (float(np.linalg.norm(each)) for each in (self.velocity, self.turning))
+        rows = (
+            ("place", f"({place}) m"),
+            ("angles", f"edge {edge}, pitch {pitch}, heading {heading}"),
+            ("motion", f"{amount(speed, 'm/s')}, {amount(turning, 'rad/s')}"),
+        )
+        return Facts("of a boot", rows)
+
+    @classmethod
+    def of(cls, place: npt.ArrayLike, edge_angle: float, pitch: float = 0.0, heading: float = 0.0) -> BootPose:
+        """A boot at rest at a place (m), by its angles (rad)."""
+        return cls(np.asarray(place, float), axes_of(edge_angle, pitch, heading))
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class BootMotion(ShownFields):
+    """A boot on its way from one pose to another: place and rotation are cubics that meet both with their rates.
+
+    Attributes
+    ----------
+    start, end
+        Times (s), ``end`` after ``start``.
+    first, last
+        The poses there.
+
+    Raises
+    ------
+    ParameterError
+        It ends before it starts, or turns by more than a radian.
+    """
+
+    start: float
+    end: float
+    first: BootPose
+    last: BootPose
+    _turn: FloatArray = field(init=False, repr=False)  # rotation vector from the first axes to the last, in the first
+
+    def __post_init__(self) -> None:
+        if not self.start < self.end:
+            raise ParameterError("BootMotion: it starts at {start!r} s and ends at {end!r} s, not later").tag(
+                "out_of_range", start=self.start, end=self.end
+            )
+        object.__setattr__(self, "_turn", rotation_vector(self.first.axes @ self.last.axes.T))
+        turn = math.hypot(*self._turn.tolist())
+        if turn > FARTHEST_TURN:
+            raise ParameterError(
+                "BootMotion: the boot turns by {degrees:.3g} degrees between {start:g} s and {end:g} s; at most "
+                "{limit:.3g} are allowed. Give poses in between"
+            ).tag(
+                "out_of_range",
+                degrees=math.degrees(turn),
+                start=self.start,
+                end=self.end,
+                limit=math.degrees(FARTHEST_TURN),
+            )
+
+    @property
+    def numbers(self) -> FloatArray:
+        """Row of 31 numbers for the core: start, place (4, 3), rotation vector (3, 3), axes (3, 3)."""
+        span, first, last = self.end - self.start, self.first, self.last
+        turn = self._turn
+        rate_last = _rate_of_vector(turn, last.axes @ last.turning)
+        place = _cubic(span, first.place, last.place, first.velocity, last.velocity)
+        angle = _cubic(span, np.zeros(3), turn, first.axes @ first.turning, rate_last)
+        return np.concatenate([[self.start], place.ravel(), angle[1:].ravel(), first.axes.ravel()])
+
+
+def _off_rotation(axes: list[list[float]]) -> float:
+    """Largest deviation from a right-handed orthonormal frame: the third axis is the product of the first two."""
+    (a, b, c), (d, e, f), third = axes
+    lengths = (a * a + b * b + c * c - 1.0, d * d + e * e + f * f - 1.0, a * d + b * e + c * f)
+    product = (b * f - c * e, c * d - a * f, a * e - b * d)
+    return max(abs(each) for each in (*lengths, *(x - y for x, y in zip(product, third, strict=True))))
+
+
+def rotation_vector(rotation: FloatArray) -> FloatArray:
+    """Rotation vector (3,) of a rotation matrix (3, 3) by less than π."""
+    (a, b, c), (d, e, f), (g, h, i) = rotation.tolist()
+    twist = (0.5 * (h - f), 0.5 * (c - g), 0.5 * (d - b))
+    sine = math.hypot(*twist)
+    scale = math.atan2(sine, 0.5 * (a + e + i - 1.0)) / sine if sine > 1e-12 else 1.0
+    return np.array([scale * each for each in twist])
+
+
+def _rate_of_vector(turn: FloatArray, spin: FloatArray) -> FloatArray:
+    """Rate of a rotation vector (rad/s) from the angular velocity in the turned axes: inverse of the right Jacobian."""
+    angle = math.hypot(*turn.tolist())
+    twice = 1.0 / angle**2 - 0.5 / (angle * math.tan(0.5 * angle)) if angle > 1e-3 else 1.0 / 12.0
+    vector = turn.tolist()
+    once = cross(vector, spin.tolist())
+    return spin + 0.5 * np.array(once) + twice * np.array(cross(vector, once))
+
+
+def _cubic(span: float, start: FloatArray, end: FloatArray, rate: FloatArray, rate_end: FloatArray) -> FloatArray:
+    """Coefficients (4, 3) of the cubic in time that meets both ends with their rates, constant first."""
+    way = (end - start) / span
+    return np.array([start, rate, (3.0 * way - 2.0 * rate - rate_end) / span, (rate + rate_end - 2.0 * way) / span**2])

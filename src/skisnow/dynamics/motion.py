@@ -15,8 +15,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from ..compiled import core
 from ..contact import ContactState, SnowContact
-from .body import Body, FlexibleSki, shaped
-from .boots import BootMotion
+from .body import Body, BootMotion, FlexibleSki, shaped
 
 STEPS_AT_ONCE: Final = 1000
 """Steps after which compiled code comes back, so that an interrupt is heard."""

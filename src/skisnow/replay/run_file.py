@@ -14,7 +14,7 @@ from .._support.errors import ParameterError, SkisnowError, require_range
 from .._support.messages import Message, template
 from .._support.units import DEGREE
 from .._support.user_files import GivenError, json_value
-from ..geometry.boot_axes import axes_of
+from ..geometry.vectors import axes_of
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
 from ..scenario.scenario import course_on_slope

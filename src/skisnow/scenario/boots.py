@@ -20,7 +20,7 @@ from .._support.spreadsheet_text import column_names, decimal_mark, most_frequen
 from .._support.units import DEGREE, Facts, Shown, ends
 from .._support.user_files import plain_text
 from .._support.user_files.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
-from ..geometry.boot_axes import axes_of
+from ..geometry.vectors import axes_of
 from ..parameters import nearest
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from .._support.messages import Message
 from ..forces.friction import FrictionFile, FrictionLaw, LinearFriction
 from ..forces.friction.law import ActsOn, Direction
 from ..forces.penetration import LayeredPoint, PointLaw, ProfilePoint
-from ..forces.penetration.rate import DAMPING, DELAYED_SHARE, RETARDATION_TIME
+from ..forces.penetration.law import DAMPING, DELAYED_SHARE, RETARDATION_TIME
 from ..forces.shear.law import SHEAR_DISPLACEMENT
 from ..parameters import (
     APART,

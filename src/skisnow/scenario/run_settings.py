@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, TypeAlias
 
 from .._support.messages import Message
-from ..forces.penetration.rate import DELAYED_SPACING
+from ..forces.penetration.law import DELAYED_SPACING
 from ..parameters import Allowed, Condition, Label, Quantity, Search, declared_text, require_declared
 from ..ski.beam import MOST_ELEMENTS
 

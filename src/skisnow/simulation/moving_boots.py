@@ -13,7 +13,7 @@ from .._support.errors import ParameterError
 from .._support.units import Facts, Shown, amount, field_facts, name_with_values
 from ..contact import SnowField
 from ..dynamics import BootMotion, BootPose, Dynamics
-from ..geometry.boot_axes import angles_of
+from ..geometry.vectors import angles_of
 from ..scenario.boots import Boots
 
 

@@ -11,12 +11,12 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from .._support.vectors import cross
 from ..contact import Laws, Runner, SnowContact, SnowField
 from ..contact.snow_field import PART_ALONG
 from ..dynamics import Dynamics, Ended, StepControl
 from ..dynamics.motion import LONGEST_STEP, DynamicsState
 from ..geometry.surfaces import Grid
+from ..geometry.vectors import cross
 from ..scenario import Plane, Scenario, SnowMap, Solver
 from ..scenario.terrain import down_and_left, heights_of, normals_of, reach_of, surface_of
 from ..ski.beam import clamped

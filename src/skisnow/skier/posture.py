@@ -9,9 +9,8 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.vectors import combined, cross, minus, plus, times
 from ..dynamics import BootPose
-from ..geometry.boot_axes import axes_of
+from ..geometry.vectors import axes_of, combined, cross, minus, plus, times
 from ..scenario.skier import Skier
 from .seen import Seen
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 from .._support.arrays import FloatArray
-from .._support.vectors import Vector, applied, combined, cross, dot, minus, plus, times, unit
+from ..geometry.vectors import Vector, applied, combined, cross, dot, minus, plus, times, unit
 
 BEARING: Final = 0.2
 """Share of the weight below which the loads tell nothing (modelling assumption: a leap has all but begun)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,16 @@ from ..._support.arrays import FloatArray
 from ...geometry import Tool
 from ...snow import MeasuredRange
 from ..parameter_checks import PENETRATION_EDGE_ANGLE, edge_angles
+
+DAMPING: Final = 0.0
+"""c of p = H_V ε + c ε̇ (N s/m³) (modelling assumption, not in the paper's law)."""
+DELAYED_SHARE: Final = 0.0
+"""H_V/H₂: the delayed depth under a load that stays, over the depth at once (modelling assumption: none)."""
+RETARDATION_TIME: Final = 0.1
+"""c₂/H₂ (s), in which 1 - 1/e of the delayed depth has come (modelling assumption; only for a delayed depth)."""
+DELAYED_SPACING: Final = 1e-3
+"""Spacing of places across a groove that keep their delayed depth (m) (modelling assumption, see tests of convergence).
+"""
 
 
 class PenetrationLaw(abc.ABC):

@@ -3,7 +3,7 @@
 from typing import Final
 
 from .law import ShearLaw
-from .machining import IceCuttingShear, MachiningShear
+from .machining import IceCuttingShear, MachiningShear, cutting_stress, cutting_thrust
 from .stress_laws import AngleShear, ConstantShear, DensityShear, NaturalDensityShear
 
 LAWS: Final[tuple[type[ShearLaw], ...]] = (
@@ -25,4 +25,6 @@ __all__ = [
     "MachiningShear",
     "NaturalDensityShear",
     "ShearLaw",
+    "cutting_stress",
+    "cutting_thrust",
 ]

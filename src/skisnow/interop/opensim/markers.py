@@ -16,7 +16,7 @@ from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import require_ending, write_file
 from ..._support.units import DEGREE, Facts, Shown, amount
 from ..._support.user_files import plain_text
-from ...geometry.boot_axes import angles_of
+from ...geometry.vectors import angles_of
 from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots
 from .table import MOST_BYTES, number_of, require_rising
 

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from ..._support.messages import Message
 from ..._support.units import CONFIDENCE, DEGREE
 from ...estimation.regressions import HARDNESS_KEY, STRESS_KEY
-from ...forces.cutting import cutting_stress
+from ...forces.shear import cutting_stress
 from ...statistics.combined_uncertainty import expanded_factor
 from ..figures.drawing import Drawing, LeftOut
 from ..figures.style import BLACK, SitePlot, SiteStyle, error_bars, logarithmic, masks, scatter, spans_a_decade
