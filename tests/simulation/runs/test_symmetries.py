@@ -305,7 +305,12 @@ def turned(degrees: float, **changes: object) -> Run:
 
 
 @pytest.mark.parametrize(
-    ("degrees", "end"), [(0.5, (41.6075, 24.6194)), (1.0, (27.7411, 33.1881)), (3.0, (14.3869, 32.3952))]
+    ("degrees", "end"),
+    [
+        (0.5, (41.6075, 24.6194)),
+        pytest.param(1.0, (27.7411, 33.1881), marks=pytest.mark.slow),
+        pytest.param(3.0, (14.3869, 32.3952), marks=pytest.mark.slow),
+    ],
 )
 def test_it_ends_where_the_shear_moves_across_at_once(degrees: float, end: tuple[float, float]) -> None:
     """The former rule moved the place of the shear across the base over ±2°. Over ±0.02° its ends are these.
