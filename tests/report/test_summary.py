@@ -22,6 +22,7 @@ from skisnow.report.campaign.summary import summary
 from skisnow.report.campaign.verdicts import verdict, verdicts
 from skisnow.report.charts import series_curves
 from skisnow.report.figures.drawing import Drawing, LeftOut
+from skisnow.report.figures.style import thinned
 from skisnow.report.formatting import interval, significant
 
 from .conftest import Reported, analysis_of, first_series, results_of
@@ -279,6 +280,20 @@ def test_the_figure_shows_each_site_with_mean_interval_and_letters(reference: Re
         assert isinstance(bars, LineCollection)
         ends = [segment[:, 0] for segment in bars.get_segments()]
         np.testing.assert_allclose(ends, [each["interval"] for each in rows])
+
+
+def test_of_many_experiments_those_are_drawn_that_the_caption_says(
+    reference: Reported, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("skisnow.report.figures.style.MOST_POINTS", 30)
+    data = ReportData(reference.analysis)
+    drawing = sites(data, ())
+    assert isinstance(drawing, Drawing)
+    step = thinned(len(data.hardness) + len(data.stress)).step
+    assert step > 10 and str(step) in drawing.whole_caption
+    for axes, values in zip(drawing.figure.axes, (data.hardness, data.stress), strict=True):
+        clouds = [line for line in axes.lines if line.get_marker() == "."]
+        assert sum(np.size(cloud.get_xdata()) for cloud in clouds) == len(values[::step])
 
 
 def test_one_site_has_neither_figure_nor_verdict(campaign: Campaign) -> None:

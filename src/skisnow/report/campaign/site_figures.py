@@ -17,12 +17,14 @@ from ..figures.style import (
     BLUE,
     COLOURS,
     GREY,
+    RASTERISE_FROM,
     SiteStyle,
     legend_below,
     logarithmic,
     mark_synthetic,
     new_figure,
     spans_a_decade,
+    thinned,
 )
 from ..formatting import figure_text, prose
 from .data import Json, ReportData, TextArray, numbers, pairs
@@ -64,10 +66,11 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
     row_mm = _TWO_LINES_MM if any("\n" in name for name in names.values()) else _ROW_MM
     figure = new_figure(width_mm=85.0 * len(panels), height_mm=_MARGIN_MM + row_mm * most)
     figure.set_layout_engine("constrained", wspace=0.08)
+    points = len(data.hardness) + len(data.stress)
     for place, (key, label) in enumerate(panels, start=1):
         axes = figure.add_subplot(1, len(panels), place)
         single = (data.hardness, data.penetration_site) if key == _SITES[0][0] else (data.stress, data.shear_site)
-        _panel(axes, rows[key], names, *single)
+        _panel(axes, rows[key], names, *single, points)
         axes.set_xlabel(label)
     mark_synthetic(data, axes)
     caption = prose(
@@ -75,7 +78,6 @@ def sites(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
         "a letter are not shown to differ (5 %, Holm’s correction for the number of pairs)."
     )
     alt = Message("Mean of each site with its interval, in the order of the means, with letters of groups.")
-    points = len(data.hardness) + len(data.stress)
     return Drawing(name, caption, alt, figure, wide=len(panels) > 1, points=points)
 
 
@@ -87,12 +89,16 @@ def _site_lines(site: str, count: int) -> str:
     return "\n".join(lines if len(lines) <= 2 else textwrap.wrap(figure_text(site, longest=_LINE), _LINE))
 
 
-def _panel(axes: Axes, rows: list[Json], names: Mapping[str, str], values: FloatArray, site: TextArray) -> None:
+def _panel(
+    axes: Axes, rows: list[Json], names: Mapping[str, str], values: FloatArray, site: TextArray, points: int
+) -> None:
+    """points: experiments of the whole figure."""
     rows = sorted(rows, key=lambda row: row["mean"])
+    many, drawn = points > RASTERISE_FROM, (values[thinned(points)], site[thinned(points)])
     for place, row in enumerate(rows):
-        mine = values[(site == row["site"]) & (values > 0)]
+        mine = drawn[0][(drawn[1] == row["site"]) & (drawn[0] > 0)]
         spread = 0.4 * (np.arange(len(mine)) * _GOLDEN_SHARE % 1.0) - 0.2
-        axes.plot(mine, place + spread, ".", color=GREY, markersize=2.0, alpha=0.6, zorder=1)
+        axes.plot(mine, place + spread, ".", color=GREY, markersize=2.0, alpha=0.6, zorder=1, rasterized=many)
     places = np.arange(len(rows))
     ends = pairs(rows, "interval")
     axes.hlines(places, ends[:, 0], ends[:, 1], color=BLUE, linewidth=1.6, zorder=2)
