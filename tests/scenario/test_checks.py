@@ -29,7 +29,7 @@ def changed(part: str, **values: Any) -> Scenario:
         (
             "sledge",
             {"edge_angle": np.radians(90.0)},
-            coded("out_of_range", low=-85.0, high=85.0, value="90.0", allowed="from -85 to 85", unit="°"),
+            coded("out_of_range", low=-85.0, high=85.0, value="90.0", allowed="from −85 to 85", unit="°"),
         ),
         ("sledge", {"edge_angle": np.nan}, coded("out_of_range", value="nan")),
         ("sledge", {"stance_width": 0.05}, "contradiction"),

@@ -191,7 +191,7 @@ def test_keys_that_contradict_the_table(with_table: Written, changes: dict[str, 
         (
             ROWS.replace("0.8,", "800,"),
             coded(
-                "out_of_range", unit="mm", value=0.8, problem="line 2, station_m is 800.0; allowed is from -3 to 3 m"
+                "out_of_range", unit="mm", value=0.8, problem="line 2, station_m is 800.0; allowed is from −3 to 3 m"
             ),
         ),
         (ROWS.replace(",68,", ",120,"), coded("invalid_ski", waist=120.0)),

@@ -55,6 +55,7 @@ def test_values_are_written_as_in_the_language(value: object, english: str, germ
 def test_a_format_keeps_the_decimal_sign_of_the_language() -> None:
     assert Message("{depth:.2f} mm", depth=1.0).text("de") == "1,00 mm"
     assert Message("{value!r}", value="1.5").text("de") == "'1.5'"
+    assert Message("{low:-g} to {high:-g}", low=-180.5, high=5.0) == "−180.5 to 5"
 
 
 def test_messages_in_messages_are_translated_and_text_is_not() -> None:

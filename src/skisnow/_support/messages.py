@@ -215,7 +215,7 @@ class LocalFormatter(Formatter):
 
     def _number(self, value: Any, spec: str) -> str:
         text = format(value, spec or ("" if isinstance(value, int) else ".12g"))
-        if text.startswith("-") and ("+" in spec or self._language != ENGLISH):
+        if text.startswith("-") and ("+" in spec or spec[:1] == "-" or self._language != ENGLISH):
             text = f"−{text[1:]}"
         if self._sign == ".":
             return text

@@ -236,10 +236,15 @@ def _resolution_limit(campaign: Campaign) -> Message:
     )
 
 
+def _number(value: float) -> Message:
+    """The value, with the decimal sign of the language in which a problem is shown."""
+    return Message("{value:.10g}", value=value)
+
+
 def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
     tests = campaign.shear
     assert tests is not None
-    depth = f"{tests.penetration_depth[index] / MM:.10g}"
+    depth = _number(tests.penetration_depth[index] / MM)
     column, value, allowed = {
         "cancelled": ("status", tests.cancelled[index], _UNFLAGGED_STATUS),
         "zero_depth": ("depth_mm", depth, _UNFLAGGED_ZERO),
@@ -273,8 +278,8 @@ class _FlaggedReadings:
         return Problem("mark", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
 
     def _depth(self, reading: int) -> str:
-        """Depth in mm, as text without the unit."""
-        return f"{self._tests.penetration_depth[reading] / MM:.10g}"
+        """Depth in mm, without the unit."""
+        return _number(self._tests.penetration_depth[reading] / MM)
 
     def _cancelled(self, index: int) -> _Cause:
         return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNFLAGGED_STATUS
@@ -290,7 +295,7 @@ class _FlaggedReadings:
         return (
             reading,
             "load_N",
-            f"{load[step + 1]:.10g}",
+            _number(load[step + 1]),
             Message("more than the {load:.10g} N of the reading before", load=load[step]),
         )
 
@@ -326,7 +331,7 @@ class _FlaggedReadings:
         first, end = self._tests.first[index : index + 2].tolist()
         reading = first + int(np.flatnonzero(find_creep(self._campaign, self._tests)[first:end])[0])
         assert self._tests.depth_after is not None
-        value = f"{self._tests.depth_after[reading] / MM:.10g}"
+        value = _number(self._tests.depth_after[reading] / MM)
         allowed = Message(
             "at most {creep_steps:g} steps of the gauge or {creep_share:.0%} more than {depth} mm",
             creep_steps=CREEP_STEPS,
@@ -340,14 +345,15 @@ class _FlaggedReadings:
         return (
             reading,
             "load_N",
-            f"{self._unloading.load[reading]:.10g}",
+            _number(self._unloading.load[reading]),
             Message("less than the load of the reading before"),
         )
 
     def _unloading_sinks(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_sinks")
-        depth = f"{self._unloading.penetration_depth[reading] / MM:.10g}"
-        return reading, "depth_mm", depth, "at most the depth of the reading before and one step of the gauge"
+        depth = _number(self._unloading.penetration_depth[reading] / MM)
+        allowed = Message("at most the depth of the reading before and one step of the gauge")
+        return reading, "depth_mm", depth, allowed
 
     def _rebound_unresolved(self, index: int) -> _Cause:
         return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNFLAGGED_REBOUND

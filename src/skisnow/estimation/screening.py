@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray, index_names
+from .._support.messages import Message
 from .._support.units import N_PER_MM3, ShownFields
 from ..campaign.problems import Problem
 from ..campaign.records import Campaign, PenetrationTests
@@ -114,7 +115,9 @@ def quality_flags(
     if tests is None:
         return problems
     H_V = hardness_at_largest_load(readings_of(tests, campaign.tools, geometry=geometry), DEFINITIONS["H_V"])
-    values = {name: f"H_V = {H:.4g} N/mm³" for name, H in zip(tests.experiment, H_V / N_PER_MM3, strict=True)}
+    values = {
+        name: Message("H_V = {H_V:.4g} N/mm³", H_V=H) for name, H in zip(tests.experiment, H_V / N_PER_MM3, strict=True)
+    }
     return [
         replace(problem, value=values[problem.experiment or ""]) if problem.code == "hardness_outlier" else problem
         for problem in problems

@@ -321,21 +321,21 @@ _OF_ANOTHER_KIND: Final = {
 _NOT_ALLOWED: Final = template("{name} is {value}; allowed is {allowed}")
 _NOT_ALLOWED_IN_UNIT: Final = template("{name} is {value}; allowed is {allowed} {unit}")
 _RANGES: Final = {
-    (False, False, False): template("from {low:g} to {high:g}"),
-    (True, False, False): template("above {low:g} to {high:g}"),
-    (False, True, False): template("from {low:g} to below {high:g}"),
-    (True, True, False): template("above {low:g} to below {high:g}"),
-    (False, False, True): template("whole numbers from {low:g} to {high:g}"),
-    (True, False, True): template("whole numbers above {low:g} to {high:g}"),
-    (False, True, True): template("whole numbers from {low:g} to below {high:g}"),
-    (True, True, True): template("whole numbers above {low:g} to below {high:g}"),
+    (False, False, False): template("from {low:-g} to {high:-g}"),
+    (True, False, False): template("above {low:-g} to {high:-g}"),
+    (False, True, False): template("from {low:-g} to below {high:-g}"),
+    (True, True, False): template("above {low:-g} to below {high:-g}"),
+    (False, False, True): template("whole numbers from {low:-g} to {high:-g}"),
+    (True, False, True): template("whole numbers above {low:-g} to {high:-g}"),
+    (False, True, True): template("whole numbers from {low:-g} to below {high:-g}"),
+    (True, True, True): template("whole numbers above {low:-g} to below {high:-g}"),
 }
 """By whether the lowest value is excluded, the highest one, and whether only whole numbers are allowed."""
 _HALF_RANGES: Final = {
-    (False, False): template("{low:g} or more"),
-    (True, False): template("above {low:g}"),
-    (False, True): template("whole numbers {low:g} or more"),
-    (True, True): template("whole numbers above {low:g}"),
+    (False, False): template("{low:-g} or more"),
+    (True, False): template("above {low:-g}"),
+    (False, True): template("whole numbers {low:-g} or more"),
+    (True, True): template("whole numbers above {low:-g}"),
 }
 
 

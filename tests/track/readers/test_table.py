@@ -164,7 +164,7 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("time_s,x_m,y_m\n,1,2\n", ["not_a_number", "row 2, column time_s"]),
         ("time,lat,lon\n27.12.2022 15:51:14,46,7\n", ["not_a_time", "row 2, column time", "27.12.2022"]),
         ("time,lat,lon\n2022-12-27T15:51:14Z,46,7\n2022-12-27T15:51:15,46,7\n", ["not_a_time", "row 3", "zone"]),
-        ("time,lat,lon\n0,46,7\n1,400,7\n", ["out_of_range", "row 3, column lat", "'400'", "from -90 to 90"]),
+        ("time,lat,lon\n0,46,7\n1,400,7\n", ["out_of_range", "row 3, column lat", "'400'", "from −90 to 90"]),
         ("time,lat,lon\n0,46,181\n", ["out_of_range", "row 2, column lon"]),
         ("time_s,x_m,y_m\n0,1e300,2\n", ["out_of_range", "row 2, column x_m"]),
         ("time_s,x_m,y_m,speed_mps\n0,1,2,36000\n", ["out_of_range", "row 2, column speed"]),

@@ -11,6 +11,7 @@ import pytest
 from nicegui import ui
 
 from skisnow._support.errors import StoreError
+from skisnow._support.messages import translated
 from skisnow.campaign.store import NewEntry
 from skisnow.report.charts import SeriesCurve
 from skisnow.web import page_requests as answering
@@ -227,6 +228,14 @@ def test_a_session_computes_a_site_by_itself(desk: Desk) -> None:
         add(desk, id_, DROP_CONE, "c", test="c", site=site, repeat=repeat, drop_cone_depth_mm="12")
     session.refresh()
     assert [test.name for test in session.tests_of_site("B")] == ["2"]  # a test is where its first row is
+
+
+def test_a_flag_has_the_numbers_of_the_language(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "2.84"), ("60", "2.6"))
+    flag = EditSession(desk.lab, id_).quick_results("A").flags[PENETRATION, "1"]["depth_shrinks"]
+    assert "Gefunden: 2,6;" in translated(flag, "de") and "2,84 mm" in translated(flag, "de")
+    assert "Found: 2.6;" in flag
 
 
 def waited(page: Sheet, load: str, text: str) -> None:
