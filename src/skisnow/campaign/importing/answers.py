@@ -192,6 +192,7 @@ WORDS = {
     "ignore": Message("rows and notes without a doubt"),
 }
 """Required statement of each option, or of each key of --cells."""
+IMPORT_OR_NOT: Final = {"yes": Message("yes (import it)"), "no": Message("no (leave it out)")}
 
 
 def ask(
@@ -207,8 +208,9 @@ def ask(
     """Question with its error, which names the option."""
     answer = key if option == "ignore" else f"{key}={proposed or 'ANSWER'}" if key else proposed or "ANSWER"
     text = f'--{option} "{answer}"'
+    words = [IMPORT_OR_NOT.get(choice, choice) if key in {"hidden", "struck"} else choice for choice in choices]
     action = (
-        Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=list(choices))
+        Message("State it in the file or by {option}. Choices: {choices}.", option=text, choices=words)
         if choices
         else Message("State it in the file or by {option}.", option=text)
     )

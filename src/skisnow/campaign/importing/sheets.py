@@ -22,8 +22,8 @@ _LETTERS: Final = 26
 HIDDEN: Final = "hidden"
 STRUCK: Final = "struck"
 EXCLUDED: Final = {
-    HIDDEN: Message("a hidden row, column or sheet; yes imports it, no leaves it out"),
-    STRUCK: Message("a cell that is struck through; yes imports its row, no leaves it out"),
+    HIDDEN: Message("a hidden row, column or sheet"),
+    STRUCK: Message("a cell that is struck through"),
 }
 
 

@@ -14,6 +14,7 @@ from ..._support.messages import Message, template
 from ...campaign.importing import Answers, ColumnChoice, ImportedTable, Proposal, Question
 from ...campaign.importing.columns import number_columns
 from ...campaign.importing.sheets import FROM_NOTES
+from ...campaign.problems import Problem
 from ...campaign.reading.headings import units_for
 from ..elements import Outcome, Words, add_head, add_items, button, choice, field
 from ..layout import error_sentence, framed, heading, sentence
@@ -127,7 +128,7 @@ class _Import:
         with ui.element("div").classes("card ask"):
             if question.choices:
                 sentence(words)
-            sentence(question.problem.value or "", "quiet")
+            sentence(_place_words(question.problem), "quiet")
             if question.option == "ignore":
                 button(words, lambda: self._answer(question.option, question.key, "yes"))
             elif question.choices:
@@ -203,6 +204,14 @@ def _with_unit(column: ColumnChoice) -> str:
     if unit == stored:
         return Message("{heading}, in {unit}", **fields)
     return Message("{heading}, {unit} to {stored}", **fields, stored=stored)
+
+
+def _place_words(problem: Problem) -> str:
+    """Place of a question in the file, with the text there."""
+    value = problem.value or ""
+    if problem.row is None:
+        return value
+    return Message("{sheet}, row {row}: {value}", sheet=problem.file, row=problem.row, value=value)
 
 
 def _question_words(question: Question) -> Message:
