@@ -43,6 +43,7 @@ LABELS: Final = {
     "lever_arm_mm": Message("Lever arm (mm)"),
     "moment_Nm": Message("Moment (N m)"),
     "turning_angle_deg": Message("Turning angle (°)"),
+    "sample_depth_mm": Message("Depth of the sample's middle (mm)"),
     "snow_density_kg_per_m3": Message("Density (kg/m³)"),
     "drop_cone_depth_mm": Message("Drop-cone depth (mm)"),
     "remark": Message("Remark"),
@@ -146,13 +147,22 @@ def estimate_words(value: float | None, pair: list[float] | None, unit: str = ""
     return Message("{value}, {ends}", value=words, ends=interval(pair))
 
 
+def plain_number(text: str) -> str:
+    """A typed number with a decimal point and a hyphen as its sign, as it is stored.
+
+    >>> plain_number(" −2,5")
+    '-2.5'
+    """
+    return text.strip().replace(",", ".").replace("−", "-")
+
+
 def typed_number(what: str, text: str) -> float:
     """A finite number with a decimal point or comma.
 
     Raises ParameterError: the text is not a number; the message begins with `what`.
     """
     try:
-        value = float(text.strip().replace(",", ".").replace("−", "-"))
+        value = float(plain_number(text))
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -162,6 +172,7 @@ def typed_number(what: str, text: str) -> float:
     return value
 
 
+_STORED_NUMBER: Final = re.compile(r"-?\d+\.?\d*(e[+-]?\d+)?|\.\d+")
 COOKIE: Final = "skisnow-language"
 _OF_PAGES: Final = WeakKeyDictionary[Client, str]()
 
@@ -204,8 +215,14 @@ def said(text: str, client: Client | None = None) -> str:
 
 
 def number_said(number: str, client: Client | None = None) -> str:
-    """A stored number with the decimal mark of the page's language; the page accepts both marks."""
-    return number.replace(".", decimal_sign(language_of(client)))
+    """A stored number with the signs of the page's language, which accepts the stored ones, too; other text unchanged.
+
+    >>> number_said("-3.61"), number_said("2026-02-14")
+    ('−3.61', '2026-02-14')
+    """
+    if not _STORED_NUMBER.fullmatch(number):
+        return number
+    return number.replace(".", decimal_sign(language_of(client))).replace("-", "−")
 
 
 def minute_words(at: datetime | str) -> str:

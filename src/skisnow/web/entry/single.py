@@ -17,7 +17,7 @@ from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason
 from .readings import checked_fields, faults, is_other, refuse
 from .table_view import LiveResults, Places, TableView
 
-OPTIONAL: Final = {"shear.csv": ("spot", TURNING)}
+OPTIONAL: Final = {"shear.csv": ("spot", TURNING), "density.csv": ("sample_depth_mm",)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
 """Columns that are prefilled with the values of the test before."""
 ONCE: Final = ("site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm_mm")

@@ -1,7 +1,12 @@
 """Tests of one row: contents of their page, what is stored, corrected and refused."""
 
+from pathlib import Path
+
 import pytest
 from nicegui import ui
+
+from skisnow.campaign import read_campaign
+from skisnow.web.transfer import write_entry
 
 from ..desk import Desk, Sheet, values
 from .shared import (
@@ -36,6 +41,7 @@ NAMES = {
     "arm": "Lever arm (mm)",
     "moment": "Moment (N m)",
     "density": "Density (kg/m³)",
+    "sample": "Depth of the sample's middle (mm)",
     "cone": "Drop-cone depth (mm)",
     "repeat": "Repeat",
     "spot": "Measurement point",
@@ -77,7 +83,18 @@ def test_enter_stores_a_test_of_one_row_too(desk: Desk) -> None:
     page.fill("Density (kg/m³)", "350")
     page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
     assert page.scripts[-1] == "lab.answered(2, true)"
-    assert stored(desk, id_, DENSITY, "1") == [{"sample": "1", "site": "A", KG_PER_M3: "350"}]
+    assert stored(desk, id_, DENSITY, "1") == [{"sample": "1", "site": "A", "sample_depth_mm": "", KG_PER_M3: "350"}]
+
+
+def test_the_depth_of_a_density_sample_reaches_the_campaign(desk: Desk, tmp_path: Path) -> None:
+    id_ = begun(desk)
+    page = desk.open(f"/enter/{id_}?table=density.csv")
+    store(page, site="A", density="350", sample="12,5")
+    assert page.outcome() == "good"
+    write_entry(desk.lab, id_, tmp_path / "export")
+    samples = read_campaign(tmp_path / "export").density
+    assert samples is not None
+    assert samples.sample_depth.tolist() == [0.0125]
 
 
 def test_a_test_that_was_sent_before_is_stored_once_and_answered_as_then(desk: Desk) -> None:
