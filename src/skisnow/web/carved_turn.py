@@ -141,7 +141,7 @@ class Slider:
 
     def _show(self, value: str, shown: str = "") -> None:
         self.value = value
-        self._shown.set_text(f"{self._called}: {number_said((shown or value).replace('-', '−'))}")
+        self._shown.set_text(f"{self._called}: {number_said(shown or value)}")
 
     def put(self, value: float, spec: str) -> None:
         """Take a value between the stops, shown by ``spec``, and move to the nearest stop."""

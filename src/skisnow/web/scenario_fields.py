@@ -12,7 +12,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .elements import choice, field, named
 from .layout import sentence
-from .words import number_said, reworded, said
+from .words import number_said, plain_number, reworded, said
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -26,7 +26,7 @@ ON: Final = "true"
 OFF: Final = "false"
 _OF_FILES: Final = re.compile(r'"|\b[a-z]+_[a-z]+\b|omit |default: ')
 """Clauses of a meaning about keys of a file, which do not apply to a form."""
-_COMMA: Final = re.compile(r"[-+]?\d*,\d+")
+_NUMBER: Final = re.compile(r"[-+−]?\d*[.,]?\d*(e[-+−]?\d+)?")
 _DIGITS: Final = 6
 """Significant digits of a value in a field."""
 
@@ -80,8 +80,8 @@ def written(value: Any) -> str:
 
 
 def with_point(text: str) -> str:
-    """A number with a decimal comma as on the command line; other texts unchanged."""
-    return text.replace(",", ".") if _COMMA.fullmatch(text) else text
+    """A number with a decimal comma or a minus sign as on the command line; other texts unchanged."""
+    return plain_number(text) if _NUMBER.fullmatch(text) else text
 
 
 class ScenarioField:

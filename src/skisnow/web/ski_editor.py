@@ -149,7 +149,7 @@ class SkiEditor:
                 for i, station in enumerate(self._stations):
                     with ui.element("tr"):
                         with ui.element("th").props("scope=row"):
-                            Words(number_said(f"{station:.3f}".replace("-", "−"), self._table.client))
+                            Words(number_said(f"{station:.3f}", self._table.client))
                         for column in CELLS:
                             with ui.element("td"):
                                 self._cell(column, i, station)

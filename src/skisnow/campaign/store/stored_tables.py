@@ -214,6 +214,7 @@ def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitCo
 def _number_cell(rule: Quantity, text: str, conversion: UnitConversion) -> str:
     if not text and not rule.needed:
         return ""
+    text = text.replace("−", "-")
     mark = "," if "," in text and "." not in text else "."
     value = number(text, mark)
     if math.isnan(value) or bool(rule.outside(conversion.convert(np.array([value])))[0]):

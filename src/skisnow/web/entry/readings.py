@@ -19,7 +19,7 @@ from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
 from ..edit_session import EditSession
 from ..elements import Words
 from ..page_requests import LONGEST
-from ..words import in_words, label, load_words, number_said, said
+from ..words import in_words, label, load_words, number_said, plain_number, said
 
 CHANGED: Final = Message("changed, not stored")
 STORED: Final = Message("stored")
@@ -99,10 +99,10 @@ def stored_depth(row: Reading | None) -> str:
 def is_other(typed: str, stored: str) -> bool:
     """True if a typed number has another text than the stored one, whichever decimal sign it has.
 
-    >>> is_other("2,25", "2.25"), is_other("", "2.25")
-    (False, True)
+    >>> is_other("2,25", "2.25"), is_other("", "2.25"), is_other("A, left", "A, left")
+    (False, True, False)
     """
-    return typed.strip().replace(",", ".") != stored
+    return stored not in {typed.strip(), plain_number(typed)}
 
 
 def show_state(label: ui.label, words: str) -> None:

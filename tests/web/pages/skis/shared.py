@@ -43,7 +43,7 @@ def cells_of(ski: Ski) -> list[str]:
         lines.append(f"{station:.3f}".replace("-", "−"))
         for words, (attribute, factor) in zip(CALLED, COLUMNS.values(), strict=True):
             value = float(np.interp(-station, -ski.station, getattr(ski, attribute))) / factor
-            text = f"{round(value, 6):.4g}".replace("-0", "-0" if round(value, 6) else "0")
+            text = f"{round(value, 6) + 0.0:.4g}".replace("-", "−")
             lines.append(f"field {words} at {station:.3f} m = {text!r} numeric")
     return lines
 
