@@ -23,7 +23,6 @@ from .._support.messages import (
     translated,
     use_language_of_pages,
 )
-from .._support.units import KILOGRAM_FORCE
 from ..report.formatting import interval, significant
 
 LABELS: Final = {
@@ -71,15 +70,6 @@ def label(column: str, *, unit: str = "") -> str:
     """
     words = LABELS.get(column, column)
     return re.sub(r" \([^)]*\)$", f" ({unit})", str(words)) if unit else words
-
-
-def load_words(load: str) -> tuple[str, str]:
-    """A load (N) with its unit, and as the mass of the discs in kg.
-
-    >>> load_words("98.0665")
-    ('98.0665 N', '10 kg')
-    """
-    return f"{load} N", f"{float(load) / KILOGRAM_FORCE:.3g} kg"
 
 
 def in_words(message: str) -> str:

@@ -12,14 +12,16 @@ from nicegui.events import GenericEventArguments
 
 from ..._support.errors import ParameterError, SkisnowError, StoreError
 from ..._support.messages import Message
+from ..._support.units import KILOGRAM_FORCE
 from ...campaign.reading.headings import UnitConversion
 from ...campaign.reading.table_forms import BRANCH, TableForm
 from ...campaign.store import NewEntry, Reading
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
+from ...report.formatting import significant
 from ..edit_session import EditSession
 from ..elements import Words
 from ..page_requests import LONGEST
-from ..words import in_words, label, load_words, number_said, plain_number, said
+from ..words import in_words, label, number_said, plain_number, said
 
 CHANGED: Final = Message("changed, not stored")
 STORED: Final = Message("stored")
@@ -48,8 +50,8 @@ class Step(NamedTuple):
 
 def add_load(load: str) -> None:
     """Label of a load in N; lab.js shows it in kg if the user says so."""
-    in_newtons, in_kilograms = load_words(load)
-    Words(number_said(in_newtons)).classes("load").props["data-kg"] = number_said(in_kilograms)
+    in_kilograms = significant(float(load) / KILOGRAM_FORCE)
+    Words(f"{number_said(load)} N").classes("load").props["data-kg"] = f"{in_kilograms} kg"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -216,6 +216,8 @@ def test_a_series_in_german_has_commas(desk: Desk) -> None:
     leave(page, fields[1].props["aria-label"])  # is not a correction
     assert len(history(desk, id_)) == 2
     assert not any(each.props.get("label") == "Warum" for each in page.of(ui.input))
+    loads = [each for each in page.of(ui.label) if "data-kg" in each.props][:2]
+    assert [(each.text, each.props["data-kg"]) for each in loads] == [("20 N", "2,04 kg"), ("40,5 N", "4,13 kg")]
 
 
 def test_what_is_no_depth_is_rejected_at_its_field_and_said_once(desk: Desk) -> None:
