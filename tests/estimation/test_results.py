@@ -15,7 +15,8 @@ from skisnow.campaign import Campaign, read_campaign, write_reference
 from skisnow.cli.shell import json_schema
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.result_rows import experiment_results
-from skisnow.estimation.results import _strengths_by_density, results_json
+from skisnow.estimation.results import _published_relations, results_json
+from skisnow.snow.published.hand_hardness import RESISTANCE_SOURCE
 from tests.coded import raises
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
@@ -230,8 +231,13 @@ def test_each_entry_of_a_list_has_a_line_of_its_own() -> None:
     assert text.split(b"\n") == [*wanted, b"}", b""]
 
 
-def test_a_recording_without_a_density_does_not_count() -> None:
-    recordings = SimpleNamespace(site=["A", "A"], settings=SimpleNamespace(relation="relation"))
-    pen = SimpleNamespace(recordings=recordings, snow_density=np.array([300.0, math.nan]))
-    (row,) = _strengths_by_density(SimpleNamespace(campaign=SimpleNamespace(density=None), snow_micro_pen=pen))  # type: ignore[arg-type]
-    assert (row["n"], row["snow_density_kg_per_m3"]) == (1, 300.0)
+def test_a_recording_without_a_density_has_a_hardness() -> None:
+    recordings = SimpleNamespace(site=["A", "A", "A"], settings=SimpleNamespace(relation="relation"))
+    evaluated = [SimpleNamespace(is_used=used, resistance=100e3) for used in (True, True, False)]
+    pen = SimpleNamespace(
+        recordings=recordings, snow_density=np.array([300.0, math.nan, math.nan]), evaluated=evaluated
+    )
+    analysis: Any = SimpleNamespace(campaign=SimpleNamespace(density=None), snow_micro_pen=pen)
+    (row,) = _published_relations(analysis)
+    assert (row["n"], row["snow_density_kg_per_m3"], row["penetration_resistance_kPa"]) == (2, 300.0, 100.0)
+    assert (row["hand_hardness"], row["hardness_relation"]) == ("1F+", RESISTANCE_SOURCE)

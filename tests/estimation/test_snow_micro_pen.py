@@ -226,6 +226,11 @@ def test_recordings_without_plate_tests_are_a_campaign(tmp_path: Path) -> None:
     (relation,) = analysis.results["published_relations"]
     assert (relation["source"], relation["n"]) == ("calonne-2020", 1)
     assert relation["snow_density_kg_per_m3"] == pytest.approx(row["snow_density_kg_per_m3"])
+    assert relation["penetration_resistance_kPa"] == pytest.approx(row["penetration_resistance_kPa"])
+    assert (relation["hand_hardness"], relation["hand_hardness_index"]) == ("P-", pytest.approx(3.52, abs=0.01))
+    assert "hand hardness P- (index 3.52) (van Herwijnen and Pielmeier 2016)" in summary(analysis.results)
+    notebook = analysis._repr_html_()
+    assert "P-" in notebook and "not H_V" in notebook and "<svg" in notebook
 
 
 @pytest.mark.usefixtures("undrawn")
@@ -251,6 +256,8 @@ def test_samples_of_pits_alone_have_a_profile_and_a_strength_by_the_published_re
     assert (pits["site"], pits["source"], pits["n"], pits["snow_density_kg_per_m3"]) == ("A", "density.csv", 2, 500.0)
     assert pits["S_f_N_per_mm2"] == pytest.approx(0.108)
     assert (soft["site"], soft["n"], soft["S_f_N_per_mm2"]) == ("B", 1, None)
+    assert (pits["hand_hardness"], soft["hand_hardness"]) == (None, "P-")  # 500 kg/m³ is harder than a knife
+    assert soft["hand_hardness_index"] == pytest.approx((96 / 1.51) ** (1 / 3.15))
     jsonschema.validate(analysis.results, json_schema("results"))
     assert "0.108 N/mm²" in summary(analysis.results)
     (axes,) = analysis.plot("snow_profiles").axes

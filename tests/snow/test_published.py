@@ -11,7 +11,7 @@ from tests.coded import Coded, coded, raises
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow._support.units import N_PER_MM2, N_PER_MM3
 from skisnow.snow import MeasuredRange, SnowProperties, published_names, published_snow
-from skisnow.snow.published import domine_2011, federolf_2006, moessner_2013
+from skisnow.snow.published import domine_2011, federolf_2006, hand_hardness, moessner_2013
 
 LITERATURE = Path(__file__).resolve().parents[3] / "shared" / "data" / "literature"
 
@@ -25,6 +25,26 @@ def test_equation_13_in_radians() -> None:
 def test_equation_14_and_domine_at_500() -> None:
     assert float(moessner_2013.failure_shear_stress_from_density(500.0)) == pytest.approx(0.108e6)
     assert float(domine_2011.failure_shear_stress_from_density(500.0)) == pytest.approx((51.35 - 11.5323) ** 2)
+
+
+def test_hand_hardness_is_the_power_law_of_the_eight_pairs() -> None:
+    """The coefficients minimise the sum of squares over the pairs: its gradient is 0, the rmse 0.17."""
+    index, resistance_kPa = np.array(hand_hardness.PAIRS).T
+    force = 1e3 * resistance_kPa * hand_hardness.TIP_AREA
+    fitted = np.array([hand_hardness.index_from_resistance(1e3 * each) for each in resistance_kPa])
+    residual = index - fitted
+    assert np.sum(residual * fitted) == pytest.approx(0.0, abs=1e-5)
+    assert np.sum(residual * fitted * np.log(force)) == pytest.approx(0.0, abs=1e-5)
+    assert math.sqrt(np.mean(residual**2)) == pytest.approx(0.171, abs=0.001)
+    assert math.isnan(hand_hardness.index_from_resistance(315e3))
+
+
+def test_hand_hardness_of_rounded_grains_returns_the_density() -> None:
+    for density in (160.0, 300.0, 448.0):
+        assert 154.0 + 1.51 * hand_hardness.index_from_density(density) ** 3.15 == pytest.approx(density)
+    assert all(math.isnan(hand_hardness.index_from_density(density)) for density in (100.0, 154.2, 449.0))
+    codes = [hand_hardness.code_of(third / 3) for third in range(2, 19)]
+    assert codes[:4] + codes[-3:] == ["F-", "F", "F+", "4F-", "K+", "I-", "I"]
 
 
 def test_only_about_55_degrees_reproduces_all_six_converted_values() -> None:

@@ -205,14 +205,23 @@ class Analysis(Shown):
             ("S_f", _own(self.own_stress, "N/mm²")),
             ("model", "none" if selected is None else f"{selected.model.id}, rmse {amount(selected.rmse, 'N')}"),
             ("sites", ", ".join(dict.fromkeys(row.site for row in self.site_means)) or "none"),
+            *(_by_relation(row) for row in self.results.get("published_relations", ())),
         ]
         return Facts(f"of {self.campaign.name!r}", tuple(rows))
 
     def _small_figure(self) -> SmallFigure | None:
         tests = self.campaign.penetration
         if tests is None:
-            return None
+            return self.snow_micro_pen._small_figure() if self.snow_micro_pen else None
         return SmallFigure("depth (mm)", "load (N)", [(tests.penetration_depth / MM, tests.load)], points=True)
+
+
+def _by_relation(row: dict[str, Any]) -> tuple[str, str]:
+    """Hardness of a site without plate tests, by its relation."""
+    resistance, index = row["penetration_resistance_kPa"], row["hand_hardness_index"]
+    measured = "" if resistance is None else f"{amount(resistance, 'kPa')}, "
+    hand = "outside of the range" if index is None else f"{row['hand_hardness']} (index {index:.2g})"
+    return f"hardness at {row['site']}", f"{measured}hand hardness {hand} by {row['hardness_relation']}; not H_V"
 
 
 def _own(mean: OwnValue, unit: str) -> str:

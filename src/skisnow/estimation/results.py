@@ -7,15 +7,16 @@ rounded.
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
-from math import fsum, isfinite
+from math import fsum, isfinite, isnan, nan
 from typing import Any, TypeAlias
 
 import orjson
 
 from .._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
+from ..snow.published import hand_hardness
 from ..snow.published.moessner_2013 import SNOW_DENSITY_RANGE, failure_shear_stress_from_density
 from .analysis import Analysis
 from .errors_in_depth import VolumeFactor
@@ -77,35 +78,53 @@ def results_dict(analysis: Analysis) -> Json:
     if analysis.snow_micro_pen is not None:
         results["snow_micro_pen"] = snow_micro_pen_results(analysis.snow_micro_pen)
     if analysis.penetration is None and analysis.shear is None:
-        results["published_relations"] = list(_strengths_by_density(analysis))
+        results["published_relations"] = list(_published_relations(analysis))
     if analysis.weather is not None and analysis.campaign.weather is not None:
         results["weather"] = weather_results(analysis.campaign.weather, analysis.weather)
     cleaned: Json = without_nan(results)
     return cleaned
 
 
-def _strengths_by_density(analysis: Analysis) -> Iterator[Json]:
-    """Density of each site by samples and by recordings, and S_f by Eqn 14; None outside of its measured range."""
+def _published_relations(analysis: Analysis) -> Iterator[Json]:
+    """Density, hand hardness and S_f of each site by samples and by recordings; None outside of a relation's range."""
     samples, pen = analysis.campaign.density, analysis.snow_micro_pen
-    values: dict[tuple[str, str], list[float]] = {}
+    densities: dict[tuple[str, str], list[float]] = {}
+    resistances: dict[str, list[float]] = {}
     if samples is not None:
         for site, value, why in zip(samples.site, samples.snow_density.tolist(), samples.cancelled, strict=True):
-            values.setdefault((site, "density.csv"), []).extend([] if why else [value])
+            densities.setdefault((site, "density.csv"), []).extend([] if why else [value])
     if pen is not None:
-        for site, value in zip(pen.recordings.site, pen.snow_density.tolist(), strict=True):
-            values.setdefault((site, pen.recordings.settings.relation), []).extend([value] if isfinite(value) else [])
+        relation = pen.recordings.settings.relation
+        for site, density, recording in zip(pen.recordings.site, pen.snow_density.tolist(), pen.evaluated, strict=True):
+            if recording.is_used:
+                resistances.setdefault(site, []).append(recording.resistance)
+                densities.setdefault((site, relation), []).append(density)
+    for (site, source), values in sorted(densities.items()):
+        if values:
+            resistance = _mean(resistances.get(site, ())) if source != "density.csv" else nan
+            yield {"site": site, "source": source, "n": len(values), **_by_relations(_mean(values), resistance)}
+
+
+def _mean(values: Sequence[float]) -> float:
+    finite = [value for value in values if isfinite(value)]
+    return fsum(finite) / len(finite) if finite else nan
+
+
+def _by_relations(density: float, resistance: float) -> Json:
+    """Hand hardness from the resistance where there is one, otherwise from the density; S_f by Eqn 14."""
     low, high = SNOW_DENSITY_RANGE
-    for (site, source), numbers in sorted(values.items()):
-        if numbers:
-            mean = fsum(numbers) / len(numbers)
-            stress = float(failure_shear_stress_from_density(mean)) / N_PER_MM2 if low <= mean <= high else None
-            yield {
-                "site": site,
-                "source": source,
-                "n": len(numbers),
-                "snow_density_kg_per_m3": mean,
-                "S_f_N_per_mm2": stress,
-            }
+    stress = float(failure_shear_stress_from_density(density)) / N_PER_MM2 if low <= density <= high else nan
+    source, index = hand_hardness.RESISTANCE_SOURCE, hand_hardness.index_from_resistance(resistance)
+    if isnan(resistance):
+        source, index = hand_hardness.DENSITY_SOURCE, hand_hardness.index_from_density(density)
+    return {
+        "snow_density_kg_per_m3": density,
+        "penetration_resistance_kPa": resistance / 1e3,
+        "hardness_relation": source,
+        "hand_hardness_index": index,
+        "hand_hardness": None if isnan(index) else hand_hardness.code_of(index),
+        "S_f_N_per_mm2": stress,
+    }
 
 
 def _campaign(analysis: Analysis) -> Json:

@@ -116,21 +116,45 @@ def _displacement(data: ReportData) -> Markup | None:
 
 
 def _by_relation(data: ReportData) -> Markup | None:
-    """Density of each site and S_f by the published relation, in a campaign without plate tests."""
+    """Density, hardness and S_f of each site by published relations, in a campaign without plate tests."""
     rows = data.results.get("published_relations")
     if not rows:
         return None
+    outside = Message("outside of its range at each site")
     return prose(
-        "Density: {densities}. Shear strength S_f by the published relation with density, not measured here: "
-        "{stresses}.",
+        "By published relations, not by plate tests: hardness {hardness}; shear strength S_f {stresses}. Density: "
+        "{densities}. No relation gives H_V.",
+        hardness=Markup("; ").join(map(_hardness_by_relation, rows)),
         densities=_of_sites(rows, "snow_density_kg_per_m3", "kg/m³"),
-        stresses=_of_sites([row for row in rows if row["S_f_N_per_mm2"]], "S_f_N_per_mm2", "N/mm²")
-        or Message("outside of its range at each site"),
+        stresses=_of_sites(rows, "S_f_N_per_mm2", "N/mm²") or outside,
+    )
+
+
+def _hardness_by_relation(row: Json) -> Markup:
+    """Penetration resistance where it was recorded, and hand hardness with the name of its relation."""
+    resistance, index = row["penetration_resistance_kPa"], row["hand_hardness_index"]
+    if resistance is None and index is None:
+        sentence = template("{site} outside of its range ({relation})")
+    elif resistance is None:
+        sentence = template("{site} hand hardness {code}, index {index} ({relation})")
+    elif index is None:
+        sentence = template("{site} {resistance} kPa of the SnowMicroPen, no hand hardness for it ({relation})")
+    else:
+        sentence = template(
+            "{site} {resistance} kPa of the SnowMicroPen, hand hardness {code}, index {index} ({relation})"
+        )
+    return prose(
+        sentence,
+        site=row["site"],
+        resistance="" if resistance is None else _strong(resistance),
+        code=Markup("<strong>{}</strong>").format(row["hand_hardness"]),
+        index="" if index is None else significant(index),
+        relation=row["hardness_relation"],
     )
 
 
 def _of_sites(rows: list[Json], key: str, unit: str) -> Markup:
-    values = [Markup("{} {} {}").format(row["site"], _strong(row[key]), unit) for row in rows]
+    values = [Markup("{} {} {}").format(row["site"], _strong(row[key]), unit) for row in rows if row[key] is not None]
     return Markup("; ").join(values)
 
 

@@ -138,13 +138,15 @@ def _recordings(results: Json, tag: str) -> Iterator[str]:
 
 
 def _by_relation(row: Json) -> str:
-    """Density of a site, and S_f by the published relation."""
-    density = (
-        f"density at {row['site']} ({row['source']}): {plain(row['snow_density_kg_per_m3'])} kg/m³, n = {row['n']}"
-    )
-    stress = row["S_f_N_per_mm2"]
+    """Density, hardness and S_f of a site by published relations."""
+    density, stress, index = (row[key] for key in ("snow_density_kg_per_m3", "S_f_N_per_mm2", "hand_hardness_index"))
+    known = "none" if density is None else f"{plain(density)} kg/m³"
+    hand = "outside its range" if index is None else f"{row['hand_hardness']} (index {plain(index)})"
     given = "outside its range" if stress is None else f"{plain(stress)} N/mm²"
-    return f"{density}; S_f by the published relation with density, not measured: {given}"
+    return (
+        f"density at {row['site']} ({row['source']}): {known}, n = {row['n']}; by published relations, not by plate "
+        f"tests: hand hardness {hand} ({row['hardness_relation']}), S_f {given}; none gives H_V"
+    )
 
 
 def _ratio_in_words(row: Json) -> str:

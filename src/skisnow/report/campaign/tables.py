@@ -12,6 +12,7 @@ from ..._support.arrays import FloatArray
 from ..._support.messages import Message
 from ...campaign import QUALITY_FLAGS
 from ...estimation.comparisons import own_mean
+from ...snow.published import hand_hardness
 from ...snow.published.moessner_2013 import SNOW_DENSITY_RANGE
 from ..table import Column, Table, record_table
 from .data import Json, ReportData, TextArray
@@ -264,22 +265,32 @@ def snow_micro_pen_table(data: ReportData) -> Table:
 
 
 def published_relations_table(data: ReportData) -> Table:
-    """Density of each site and S_f by the published relation, for a campaign without plate tests."""
+    """Density, hardness and S_f of each site by published relations, for a campaign without plate tests."""
     columns = (
         Column("site", Message("Site"), "text"),
         Column("source", Message("density by"), "text"),
         Column("n", "n", "count"),
         Column("snow_density_kg_per_m3", "ρ", unit="kg/m³"),
+        Column("penetration_resistance_kPa", Message("penetration resistance"), unit="kPa"),
+        Column("hand_hardness_index", Message("hand hardness index")),
+        Column("hand_hardness", Message("hand hardness"), "text"),
+        Column("hardness_relation", Message("hardness by"), "text"),
         Column("S_f_N_per_mm2", Message("S_f by the published relation"), unit="N/mm²"),
     )
     low, high = SNOW_DENSITY_RANGE
+    softest, hardest = (end / 1e3 for end in hand_hardness.RESISTANCE_RANGE)
     note = Message(
-        "Not measured here: S_f = −0.047 + 0.00031 ρ (Mössner and others 2013, Eqn 14; rmse 0.059 N/mm²) is given "
-        "within its range of {low:g} to {high:g} kg/m³. No published relation gives H_V from the density.",
+        "By relations, not by plate tests. No published relation gives H_V: from the density it was sought and not "
+        "found (p = 0.99, Mössner and others 2013). Hand hardness is that of the international classification (Fierz "
+        "and others 2009): from the penetration resistance of {softest:.3g} to {hardest:.3g} kPa, otherwise from the "
+        "density of rounded grains, F- to K+; neither was fitted to groomed snow. S_f = −0.047 + 0.00031 ρ (Mössner "
+        "and others 2013, Eqn 14; rmse 0.059 N/mm²) is given for {low:g} to {high:g} kg/m³.",
+        softest=softest,
+        hardest=hardest,
         low=low,
         high=high,
     )
-    caption = Message("Density of each site, and shear strength by a published relation.")
+    caption = Message("Density of each site, hardness and shear strength by published relations.")
     return record_table("published_relations", caption, columns, data.results["published_relations"], note=note)
 
 
