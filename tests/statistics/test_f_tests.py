@@ -12,6 +12,7 @@ from tests.coded import raises
 from skisnow._support.errors import ParameterError
 from skisnow.statistics import expanded_factor, nested_f_test, one_way_anova, welch_satterthwaite
 from skisnow.statistics.combined_uncertainty import random_effects_mean
+from skisnow.statistics.f_tests import NestedTest
 
 from ..versions import EXACT_QUANTILES
 
@@ -30,33 +31,26 @@ def test_against_statsmodels() -> None:
     np.testing.assert_allclose([test.F, test.p, test.df1, test.df2], [F, p, df1, 46], rtol=1e-12)
 
 
-def from_rmse(full: float, reduced: float, p_full: int, p_reduced: int) -> float:
+def from_rmse(full: float, reduced: float, p_full: int, p_reduced: int) -> NestedTest:
     sums = READINGS * full**2, READINGS * reduced**2  # rmse over n
     test = nested_f_test(*sums, n=READINGS, n_parameters_full=p_full, n_parameters_reduced=p_reduced)
     assert (test.df1, test.df2) == (p_full - p_reduced, READINGS - p_full)
-    return test.F
+    return test
 
 
 def test_values_that_follow_from_the_printed_rmse() -> None:
     # (Mössner and others 2013) H_V with linear a and b 53.6 N, with linear b alone 53.8, constant b 54.9, b = 1 56.1
-    assert from_rmse(53.6, 53.8, 4, 2) == pytest.approx(6.2, abs=0.05)
-    assert from_rmse(53.8, 54.9, 2, 1) == pytest.approx(68, abs=0.5)
-    assert from_rmse(53.8, 56.1, 2, 0) == pytest.approx(72, abs=0.5)
+    for models, F, within in (
+        ((53.6, 53.8, 4, 2), 6.2, 0.05),
+        ((53.8, 54.9, 2, 1), 68.0, 0.5),
+        ((53.8, 56.1, 2, 0), 72.0, 0.5),
+    ):
+        test = from_rmse(*models)
+        assert pytest.approx(F, abs=within) == test.F
+        assert test.p < 0.01  # the simpler model is rejected
     # printed to 0.1 N: what the rounding leaves open
-    assert from_rmse(53.65, 53.75, 4, 2) == pytest.approx(3.1, abs=0.05)
-    assert from_rmse(53.55, 53.85, 4, 2) == pytest.approx(9.3, abs=0.05)
-
-
-def test_all_those_simpler_models_are_rejected() -> None:
-    for full, reduced, p_full, p_reduced in ((53.6, 53.8, 4, 2), (53.8, 54.9, 2, 1), (53.8, 56.1, 2, 0)):
-        test = nested_f_test(
-            full**2 * READINGS,
-            reduced**2 * READINGS,
-            n=READINGS,
-            n_parameters_full=p_full,
-            n_parameters_reduced=p_reduced,
-        )
-        assert test.p < 0.01
+    assert pytest.approx(3.1, abs=0.05) == from_rmse(53.65, 53.75, 4, 2).F
+    assert pytest.approx(9.3, abs=0.05) == from_rmse(53.55, 53.85, 4, 2).F
 
 
 def test_two_numerator_degrees_of_freedom_have_an_elementary_p() -> None:
