@@ -8,10 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow._support.errors import ParameterError
 from skisnow.contact import SnowContact, SnowField
-from skisnow.forces.penetration import MeanPressurePoint
-from tests.coded import raises
 
 from .conftest import edged, straight
 
@@ -220,18 +217,6 @@ def test_snow_without_it_has_the_same_bits() -> None:
         contact.update(*flat(2e-3), 1e-3)
         found.append(contact.force(*flat(1.9e-3, lean=0.01), moving(3.0, 0.1, -0.2), 1e-3).wrench)
     assert np.array_equal(found[0], found[1])
-
-
-def test_another_penetration_law_has_no_rate() -> None:
-    law = MeanPressurePoint(2e7, 1e5, unloading_ratio=5.0)
-    with raises(ParameterError, "contradiction"):
-        SnowField(H, 0.0, 5.0, penetration=law, damping=C)
-
-
-@pytest.mark.parametrize(("name", "value"), [("damping", -1.0), ("delayed_share", -0.1), ("retardation_time", 0.0)])
-def test_numbers_out_of_range_are_refused(name: str, value: float) -> None:
-    with pytest.raises(ParameterError, match=f"SnowField: {name} is {value!r}"):
-        SnowField(H, S, 10.0, **{name: value})  # type: ignore[arg-type]
 
 
 RADIUS, SPEED = 12.0, 10.0

@@ -13,9 +13,7 @@ import pytest
 from skisnow import Scenario
 from skisnow.dynamics import Body, Ended
 
-from .balance import left_over, snow_forces
-from .bodies import on_one_ski, on_three_skis
-from .sledges import ahead, body_of, given, sledge
+from .sledges import ahead, body_of, given, left_over, on_one_ski, on_three_skis, sledge, snow_forces
 
 FLAT: Final = given(
     sledge__edge_angle_deg=0.0, start__heading_deg=0.0, drag__drag_area_m2=0.0, snow__H_V_N_per_mm3=0.03,

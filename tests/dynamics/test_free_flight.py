@@ -12,8 +12,7 @@ import pytest
 
 from skisnow.dynamics import Body, Dynamics, Ended, StepControl
 
-from .bodies import rigid
-from .sledges import body_of, fixed, given, sledge
+from .sledges import body_of, fixed, given, rigid, sledge
 
 FloatArray = npt.NDArray[np.float64]
 DURATION: Final = 0.3
