@@ -242,6 +242,22 @@ def test_densities_beside_experiments_reach_caaml_once(campaign: Path, tmp_path:
         assert [layer.snow_density for layer in read_caaml(tmp_path / "out.caaml").densities] == expected
 
 
+def test_a_sample_with_a_thickness_goes_from_its_top_down(campaign: Path, tmp_path: Path) -> None:
+    """Middles 50 and 150 mm; the second has no thickness: its middle stands for its top, as the comment says."""
+    (campaign / "density.csv").write_text(
+        "sample,site,snow_density_kg_per_m3,sample_depth_mm,sample_thickness_mm\n"
+        "1,A,420,50,60\n2,A,450,150,\n3,B,300,30,60\n",
+        encoding="utf-8",
+    )
+    out = tmp_path / "out.caaml"
+    for site, expected, is_assumed in (("A", [(0.02, 0.06), (0.15, None)], True), ("B", [(0.0, 0.06)], False)):
+        assert main(["convert", str(campaign), str(out), "--site", site, "--time", "2026-02-01"]) == 0
+        pit = read_caaml(out)
+        assert [(layer.top, layer.thickness) for layer in pit.densities] == expected
+        assert ("sample's middle" in pit.comment) is is_assumed
+        assert "Densities without a depth" not in pit.comment
+
+
 def test_a_campaign_becomes_netcdf(campaign: Path, tmp_path: Path) -> None:
     assert main(["convert", str(campaign), str(tmp_path / "out.nc")]) == 0
     assert (tmp_path / "out.nc").read_bytes()[:4] == b"CDF\x02"

@@ -240,12 +240,16 @@ class ShearTests(Shown):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class DensitySamples(Shown):
-    """Samples of a density cutter: ρ in kg/m³, depth in m or NaN. ``further`` as in `PenetrationTests`."""
+    """Samples of a density cutter: ρ in kg/m³, depth of the middle and thickness in m or NaN.
+
+    ``further`` as in `PenetrationTests`.
+    """
 
     sample: tuple[str, ...]
     site: tuple[str, ...]
     snow_density: FloatArray
     sample_depth: FloatArray
+    sample_thickness: FloatArray
     cancelled: tuple[str, ...]
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -143,7 +143,8 @@ def _density(samples: DensitySamples) -> Iterator[_Variable]:
     of = "density_sample"
     yield from _texts(of, name=samples.sample, site=samples.site, cancelled=samples.cancelled)
     yield _Variable(f"{of}_snow_density", of, samples.snow_density, "kg m-3", "density of the snow")
-    yield _Variable(f"{of}_depth", of, samples.sample_depth, "m", "depth below the snow surface")
+    yield _Variable(f"{of}_depth", of, samples.sample_depth, "m", "depth of the middle below the snow surface")
+    yield _Variable(f"{of}_thickness", of, samples.sample_thickness, "m", "vertical extent")
     yield _Variable(f"{of}_row", of, samples.row, "1", "line of the file")
     yield from _further(of, samples.further)
 

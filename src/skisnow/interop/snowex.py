@@ -16,7 +16,7 @@ from .._support.errors import ParameterError
 from .._support.spreadsheet_text import csv_text
 from .._support.staging import write_file
 from .._support.units import CM, MM
-from ..campaign.records import Campaign, DensitySamples, PenetrationTests, ShearTests
+from ..campaign.records import Campaign, DensitySamples
 from ..campaign.snow_micro_pen import SnowMicroPenProfile
 from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
 from ..estimation import Analysis
@@ -140,15 +140,17 @@ def _known(value: float | None) -> str:
 
 BLOCK: Final = 1.0 * MM
 """Forces of a SnowMicroPen are given as means over it (modelling assumption): a pit holds hundreds, not thousands."""
-_NO_DEPTH: Final = "Densities and temperatures were noted without a depth and are placed at the surface."
+_NO_DEPTH: Final = "{} without a depth are placed at the surface."
+_NO_THICKNESS: Final = "The depth of densities without a thickness is that of the sample's middle."
 
 
 def site_pit(analysis: Analysis, site: str) -> SnowPit:
     """Snow pit of a site of a campaign.
 
-    Densities of density.csv and of experiments, and the mean ``snow_temperature_C``, have no depth in a campaign and
-    are put at the surface, as the comment states. Forces are those of the used recordings of a SnowMicroPen, from the
-    surface down.
+    Densities of experiments, those of density.csv without ``sample_depth_mm``, and the mean ``snow_temperature_C`` are
+    put at the surface. The top of a sample is half its ``sample_thickness_mm`` above its middle; without a thickness
+    the middle is given as its top. The comment states both. Forces are those of the used recordings of a SnowMicroPen,
+    from the surface down.
 
     Raises ParameterError: the campaign has no such site; the message names those that it has.
     """
@@ -162,12 +164,14 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     densities = tuple(_densities(campaign, site))
     profiles = tuple(_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
-    is_at_surface = bool(temperatures) or not all(density.top for density in densities)
+    assumed = [_NO_DEPTH.format("Temperatures")] if temperatures else []
+    assumed += [_NO_DEPTH.format("Densities")] if not all(each.top or each.thickness for each in densities) else []
+    assumed += [_NO_THICKNESS] if any(density.top and density.thickness is None for density in densities) else []
     return SnowPit(
         name=site,
         time=min((cell for cell in _cells(campaign, site, "time") if cell[:4].isdigit()), default=""),
         observer=", ".join(campaign.observers),
-        comment=f"{campaign.name}. {_NO_DEPTH}" if is_at_surface else campaign.name,
+        comment=". ".join((campaign.name, " ".join(assumed))) if assumed else campaign.name,
         region=campaign.place,
         latitude_deg=None if first is None else first.latitude_deg,
         longitude_deg=None if first is None else first.longitude_deg,
@@ -217,20 +221,26 @@ def _notes(campaign: Campaign, site: str, column: str) -> list[float]:
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
     """Every sample of density.csv; then densities of experiments that are not among them, each once."""
-    tables = campaign.density, campaign.penetration, campaign.shear
-    sampled, *beside = ([] if table is None else list(_densities_of(table, site)) for table in tables)
-    known = {density for _, density in sampled}
-    others = {density: None for densities in beside for _, density in densities if density not in known}
-    yield from (LayerDensity(depth, density) for depth, density in (*sampled, *((0.0, other) for other in others)))
+    sampled = () if campaign.density is None else tuple(_samples(campaign.density, site))
+    yield from sampled
+    known = {sample.snow_density for sample in sampled}
+    for tests in (campaign.penetration, campaign.shear):
+        if tests is not None:
+            for name, density, reason in zip(tests.site, tests.snow_density.tolist(), tests.cancelled, strict=True):
+                if name == site and not reason and math.isfinite(density) and density not in known:
+                    known.add(density)
+                    yield LayerDensity(0.0, density)
 
 
-def _densities_of(table: DensitySamples | PenetrationTests | ShearTests, site: str) -> Iterator[tuple[float, float]]:
-    """Depth (0 where it is unknown) and density of each test or sample of the site that was not cancelled."""
-    depth = table.sample_depth if isinstance(table, DensitySamples) else np.zeros(len(table.site))
-    rows = zip(table.site, np.nan_to_num(depth).tolist(), table.snow_density.tolist(), table.cancelled, strict=True)
-    for name, top, density, reason in rows:
-        if name == site and not reason and math.isfinite(density):
-            yield top, density
+def _samples(table: DensitySamples, site: str) -> Iterator[LayerDensity]:
+    """The site's samples that were not cancelled, from top to bottom where the thickness is known."""
+    columns = (table.sample_depth, table.sample_thickness, table.snow_density)
+    rows = zip(table.site, table.cancelled, *(column.tolist() for column in columns), strict=True)
+    for name, reason, depth, thickness, density in rows:
+        if name == site and not reason:
+            is_placed = math.isfinite(depth) and math.isfinite(thickness)
+            top = max(depth - 0.5 * thickness, 0.0) if is_placed else np.nan_to_num(depth).item()
+            yield LayerDensity(top, density, thickness if is_placed else None)
 
 
 def _recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:

@@ -43,6 +43,7 @@ LABELS: Final = {
     "moment_Nm": Message("Moment (N m)"),
     "turning_angle_deg": Message("Turning angle (°)"),
     "sample_depth_mm": Message("Depth of the sample's middle (mm)"),
+    "sample_thickness_mm": Message("Thickness of the sample (mm)"),
     "snow_density_kg_per_m3": Message("Density (kg/m³)"),
     "drop_cone_depth_mm": Message("Drop-cone depth (mm)"),
     "remark": Message("Remark"),

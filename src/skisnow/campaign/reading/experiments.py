@@ -231,6 +231,7 @@ def density_samples(table: Table) -> DensitySamples:
         site=table.names["site"].cells(),
         snow_density=table.numbers["snow_density_kg_per_m3"],
         sample_depth=table.numbers["sample_depth_mm"] * MM,
+        sample_thickness=table.numbers["sample_thickness_mm"] * MM,
         cancelled=_cancelled_together(table),
         row=table.row,
         further=table.further,

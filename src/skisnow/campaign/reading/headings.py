@@ -296,6 +296,7 @@ SYNONYMS: Final[dict[str, tuple[str, ...]]] = {
         "snow_density_kg_per_m3": "snow density, density, dichte, schneedichte, rho, densite, densita",
         "drop_cone_depth_mm": "drop cone depth, drop cone, kegeltiefe, fallkegel, kegel, konustiefe, cone",
         "sample_depth_mm": "sample depth, depth of sample, probentiefe",
+        "sample_thickness_mm": "sample thickness, thickness of sample, probendicke, probenhohe",
         "repeat": "repeat, wiederholung, durchgang, repetition, ripetizione",
         "air_temperature_C": "air temperature, lufttemperatur, temperatur luft, temperature de l air, luft, air",
         "snow_temperature_C": "snow temperature, schneetemperatur, temperatur schnee, schnee, snow",

@@ -122,6 +122,11 @@ class DensityRow:
         Quantity("sample_depth_mm", "depth of the sample's middle below the snow surface"),
         Allowed(0.0),
     ] = None
+    sample_thickness: Annotated[
+        float | None,
+        Quantity("sample_thickness_mm", "vertical extent of the sample"),
+        Allowed(0.0, above=True),
+    ] = None
     drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
     air_temperature: Annotated[float | None, _AIR] = None
     snow_temperature: Annotated[float | None, _SNOW] = None

@@ -178,6 +178,7 @@ def density(generator: np.random.Generator) -> DensitySamples:
         site=tuple(site.name for site in sites),
         snow_density=np.rint(value),
         sample_depth=np.full(len(sites), np.nan),
+        sample_thickness=np.full(len(sites), np.nan),
         cancelled=("",) * len(sites),
         row=_rows(len(sites)),
     )
