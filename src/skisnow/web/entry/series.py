@@ -18,7 +18,7 @@ from ..words import label, number_said
 from .changes import changes, focus_button
 from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
 from .series_corrections import AfterWaiting, SeriesCorrections
-from .table_view import LiveResults, Places, SeriesList, TableView
+from .table_view import EntryList, LiveResults, Places, TableView
 
 ON_ENTER: Final = "(event) => lab.reading(event, emit)"
 ON_BLUR: Final = "(event) => lab.leaving(event, emit)"
@@ -27,7 +27,7 @@ ON_BLUR: Final = "(event) => lab.leaving(event, emit)"
 class SeriesForm:
     """The form of one series at a time."""
 
-    def __init__(self, view: TableView, live_results: LiveResults, places: Places, series_list: SeriesList) -> None:
+    def __init__(self, view: TableView, live_results: LiveResults, places: Places, entry_list: EntryList) -> None:
         self._view = view
         self._live_results = live_results
         self._places = places
@@ -37,7 +37,7 @@ class SeriesForm:
         self._corrections = SeriesCorrections(view, self._readings, lambda: self.show(self._shown, self._head))
         self._refused: dict[Step, str] = {}
         self._waiting: AfterWaiting | None = None
-        self._list = series_list
+        self._list = entry_list
 
     # The head of a series
 

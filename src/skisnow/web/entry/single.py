@@ -6,16 +6,16 @@ from typing import Final
 
 from nicegui import ui
 
-from ..._support.messages import Message, joined
+from ..._support.messages import Message
 from ...campaign.reading.experiments import TURNING
 from ...campaign.store import Reading, ReplayedTest
-from ..elements import Words, choice, field, named
+from ..elements import choice, field
 from ..layout import heading, sentence
 from ..page_requests import asking_button, entering, form
 from ..words import label, number_said
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
-from .table_view import LiveResults, Places, TableView
+from .table_view import EntryList, LiveResults, Places, TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot", TURNING), "density.csv": ("sample_depth_mm",)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
@@ -27,8 +27,10 @@ ONCE: Final = ("site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm
 class SingleForm:
     """Form of one row, with the list of rows."""
 
-    def __init__(self, view: TableView, live_results: LiveResults, places: Places) -> None:
+    def __init__(self, view: TableView, live_results: LiveResults, places: Places, entry_list: EntryList) -> None:
         self._view = view
+        self._list = entry_list
+        entry_list.open_row = self._open_row
         self._live_results = live_results
         self._places = places
         table = view.form
@@ -49,6 +51,12 @@ class SingleForm:
         if self._is_unanswered():
             return False
         self.begin()
+        return True
+
+    def _open_row(self, name: str, row: str) -> bool:
+        if self._is_unanswered():
+            return False
+        self.show(name, row=row)
         return True
 
     def show(self, name: str, *, row: str = "") -> None:
@@ -101,7 +109,7 @@ class SingleForm:
                     lambda: self.show(correcting[0].name, row=_number(correcting[1])),
                     is_unanswered=self._is_unanswered,
                 )
-            self._list()
+        self._list.show(correcting[0].name if correcting else "")
         self._focus_first()
 
     def _address(self) -> str:
@@ -215,36 +223,6 @@ class SingleForm:
     def _leave(self, test: ReplayedTest, row: Reading) -> None:
         self._view.say(LEFT_AS_IT_WAS)
         self._draw(row.cells, (test, row))
-
-    def _list(self) -> None:
-        tests = self._view.tests()
-        if not tests:
-            return
-        heading(Message("So far"), 3)
-        with ui.element("ul").classes("so-far"):
-            for test in reversed(tests[-30:]):
-                for row in reversed(test.rows):
-                    with ui.element("li"):
-                        self._so_far(test, row)
-
-    def _so_far(self, test: ReplayedTest, row: Reading) -> None:
-        columns = [column for column in self._columns if row.cells.get(column)]
-        cells = {label(column): number_said(row.cells[column]) for column in columns}
-        words = joined([Message("{column} {text}", column=name, text=text) for name, text in cells.items()], " · ")
-        if test.cancelled:
-            words = Message("{cells} · cancelled: {reason}", cells=words, reason=test.cancelled)
-        Words(words)
-
-        def look() -> bool:
-            if self._is_unanswered():
-                return False
-            self.show(test.name, row=_number(row))
-            return True
-
-        named(
-            asking_button(Message("Correct"), look, "small"),
-            Message("Correct {split}", split=" ".join(test.name.split())),
-        )
 
 
 def _number(row: Reading) -> str:

@@ -19,7 +19,7 @@ from ...campaign.store.stored_tables import FORMS
 from ...report.formatting import significant
 from ..elements import StatusLine, Words, add_items, choice, field, link, named
 from ..layout import error_sentence, heading
-from ..page_requests import current_request, entering
+from ..page_requests import asking_button, current_request, entering
 from ..widgets import BEHIND, ChartLine, LineChart
 from ..words import (
     TABLES,
@@ -35,10 +35,10 @@ from ..words import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from ...campaign.reading.table_forms import TableForm
-    from ...campaign.store import ReplayedTest
+    from ...campaign.store import Reading, ReplayedTest
     from ...report.charts import SeriesCurve
     from ..edit_session import EditSession, QuickResults, TestKey
 
@@ -173,13 +173,17 @@ class TableView:
 MOST: Final = 40
 
 
-class SeriesList:
-    """Tests of a table by site below the form: angle, result, flags, who and when; results are added as they come."""
+class EntryList:
+    """Tests of a table by site below the form: angle, result, flags, who and when; results are added as they come.
+
+    A line of a penetration test is a link; one of another table is a row, which ``open_row`` shows by its entry.
+    """
 
     def __init__(self, view: TableView) -> None:
         self._view = view
         self._place = ui.element("div")
         self.current = ""
+        self.open_row: Callable[[str, str], bool] | None = None
         self._results: dict[str, tuple[str, list[str]]] = {}
         """Result in short and codes of the flags by test."""
         self._drawn: object = None
@@ -213,8 +217,11 @@ class SeriesList:
     def show(self, current: str) -> None:
         """Draw the list again if a test is new or changed; ``current``: name of the test in the form."""
         self.current = current
-        tests = list(reversed(self._shown()))
-        lines = [(test.name, test.rows[0].cells["site"], *self._words(test)) for test in tests]
+        lines = [
+            (test.name, row.cells["site"], str(row.entered.sequence), *self._words(test, row))
+            for test in reversed(self._shown())
+            for row in (reversed(test.rows) if self.open_row else test.rows[:1])
+        ]
         if self._drawn == (current, lines):
             return
         self._drawn = current, lines
@@ -222,29 +229,35 @@ class SeriesList:
         if not lines:
             return
         with self._place:
-            heading(Message("Series so far"), 3)
+            heading(Message("So far") if self.open_row else Message("Series so far"), 3)
             for site in dict.fromkeys(line[1] for line in lines):
                 heading(site, 4)
                 with ui.element("ul").classes("so-far"):
-                    for name, _, text, about in (line for line in lines if line[1] == site):
+                    for name, _, row, text, about in (line for line in lines if line[1] == site):
                         with ui.element("li"):
-                            self._add(name, text, about, is_current=name == current)
+                            self._add(name, row, text, about)
 
-    def _add(self, name: str, text: str, about: str, *, is_current: bool) -> None:
-        made = link(text, entering(self._view.session.id, table=self._view.file, test=name), "small")
-        if is_current:
+    def _add(self, name: str, row: str, text: str, about: str) -> None:
+        made: ui.element
+        if (open_row := self.open_row) is not None:
+            made = asking_button(text, lambda: open_row(name, row), "small")
+        else:
+            made = link(text, entering(self._view.session.id, table=self._view.file, test=name), "small")
+        if name == self.current:
             made.props('aria-current="page"')
         Words(about).classes("quiet")
 
-    def _words(self, test: ReplayedTest) -> tuple[str, str]:
-        """Text of the link, such as "2 · 45°"; then result, writer, time and flags."""
+    def _words(self, test: ReplayedTest, row: Reading) -> tuple[str, str]:
+        """Text of the link, such as "2 · 45°"; then result, measured value of one row, writer, time and flags."""
         value, flags = self._results.get(test.name, ("", []))
-        angle = test.rows[0].cells.get("edge_angle_deg", "")
+        angle, repeat = (row.cells.get(key, "") for key in ("edge_angle_deg", "repeat"))
         words = f"{test.name} · {number_said(angle)}°" if angle else test.name
+        words += f" · {said(label('repeat'))} {repeat}" if repeat else ""
+        measured = [column.name for column in self._view.form.numbers if column.needed][-1]
+        read = f"{said(self._view.label(measured))} {number_said(row.cells[measured])}" if self.open_row else ""
         last = test.history[-1]
-        about = " · ".join(
-            filter(None, (value, last.who, minute_words(last.at), *(said(QUALITY_FLAGS[flag].name) for flag in flags)))
-        )
+        marks = (said(QUALITY_FLAGS[flag].name) for flag in flags)
+        about = " · ".join(filter(None, (value, read, last.who, minute_words(last.at), *marks)))
         return Message("{words} (cancelled)", words=words) if test.cancelled else words, about
 
 
@@ -304,7 +317,7 @@ class LiveResults:
 
     def __init__(self, view: TableView) -> None:
         self._view = view
-        self.series_list: SeriesList | None = None
+        self.entry_list: EntryList | None = None
         """List that takes each result, too."""
         self._wanted: tuple[str, str, frozenset[str]] | None = None
         self._working = False
@@ -363,8 +376,8 @@ class LiveResults:
 
     def _show(self, name: str, results: QuickResults, unsaid: frozenset[str]) -> None:
         key = self._view.file, name
-        if self.series_list is not None:
-            self.series_list.take(results)
+        if self.entry_list is not None:
+            self.entry_list.take(results)
         row = results.experiments.get(key)
         self._name.set_text(Message("Test {name}", name=name) if row else "")
         self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))

@@ -12,7 +12,7 @@ from ..entry.changes import Attachments
 from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
-from ..entry.table_view import LiveResults, Places, SeriesList, TableView, table_links, table_view
+from ..entry.table_view import EntryList, LiveResults, Places, TableView, table_links, table_view
 from ..layout import framed
 from ..page_requests import analysis, entering, required_id
 from ..settings import Lab
@@ -46,10 +46,10 @@ def add_page(lab: Lab) -> None:
                 live_results,
                 places,
             ):
-                series_list = live_results.series_list = SeriesList(view) if view.file == FILE else None
-                Attachments(view, lambda: series_list.current if series_list is not None else test)
+                entry_list = live_results.entry_list = EntryList(view)
+                Attachments(view, lambda: entry_list.current)
             head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-            _show_form(view, (test, row), head, (live_results, places), series_list)
+            _show_form(view, (test, row), head, (live_results, places), entry_list)
 
 
 def _show_form(
@@ -57,12 +57,12 @@ def _show_form(
     shown: tuple[str, str],
     head: dict[str, str],
     where: tuple[LiveResults, Places],
-    series_list: SeriesList | None,
+    entry_list: EntryList,
 ) -> None:
     """Show the form of a test and its row, or of a new test."""
     test, row = shown
-    if series_list is not None:
-        series = SeriesForm(view, *where, series_list)
+    if view.file == FILE:
+        series = SeriesForm(view, *where, entry_list)
         receive_offline_readings(view.session, series.show_offline_readings)
         if test and not view.test(test).history and _is_head(view, head):
             series.show(test, head)  # a new series, loaded again before its first reading
@@ -71,7 +71,7 @@ def _show_form(
         else:
             series.begin()
     else:
-        single = SingleForm(view, *where)
+        single = SingleForm(view, *where, entry_list)
         receive_offline_readings(view.session, lambda _: None)
         if test:
             single.show(test, row=row)
