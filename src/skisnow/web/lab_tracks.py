@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import secrets
 import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path, PurePosixPath
@@ -20,7 +19,7 @@ from ..replay.replay import measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
-from .page_requests import plain_stem
+from .page_requests import free_place, plain_stem
 from .subprocesses import BOUNDS, confined
 from .words import reworded, typed_number
 
@@ -105,11 +104,11 @@ class TrackFolders:
             _copy_limited(content, place)
             placing = (check or check_track)(place, placing)
             write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
-            name = f"{plain_stem(placing.called, 'track')}-{secrets.token_hex(2)}"
-            made.rename(self._folder / name)
+            place = free_place(self._folder, plain_stem(placing.called, "track"))
+            made.rename(place)
         finally:
             shutil.rmtree(made, ignore_errors=True)
-        return name
+        return place.name
 
     def placings(self) -> dict[str, Placing]:
         """Placing of each undamaged track by its name, the newest first."""
@@ -302,7 +301,7 @@ class LabCourses:
             raise ParameterError("a course of more than {most} MB is not accepted").tag(
                 "too_large", most=LARGEST_COURSE_BYTES // 1_000_000
             )
-        place = self._folder / f"{plain_stem(called, 'course')}-{secrets.token_hex(2)}{suffix}"
+        place = free_place(self._folder, plain_stem(called, "course"), suffix)
         made = place.with_name(f".partial-{place.name}")
         write_file(made, data)
         try:

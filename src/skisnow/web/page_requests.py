@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+import unicodedata
 from contextvars import ContextVar
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
 from weakref import WeakKeyDictionary
@@ -184,10 +185,17 @@ def plain_stem(called: str, otherwise: str) -> str:
     """Name of a file without folder and suffix, in characters that are valid in names of folders on every system.
 
     >>> plain_stem("Hang 3/Übungs lauf.gpx", "track"), plain_stem("雪.csv", "course")
-    ('bungs-lauf', 'course')
+    ('Ubungs-lauf', 'course')
     """
     stem = PurePosixPath(called.replace("\\", "/")).name.rsplit(".", 1)[0]
-    return re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-")[:40] or otherwise
+    plain = unicodedata.normalize("NFKD", stem).encode("ascii", "ignore").decode()
+    return re.sub(r"[^A-Za-z0-9]+", "-", plain).strip("-")[:40] or otherwise
+
+
+def free_place(folder: Path, stem: str, suffix: str = "") -> Path:
+    """Place in a folder with this name, or with the first free number after it."""
+    places = (folder / f"{stem}{end}{suffix}" for end in ("", *(f"-{number}" for number in range(2, 1000))))
+    return next(place for place in places if not place.exists())
 
 
 def required_id(text: str) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import median_filter
@@ -46,6 +47,8 @@ _LEAST_REACH: Final = 2.0
 """Minimum of half the height (mm) of the detail."""
 _SPACING: Final = 0.02
 _MOST_MARKS: Final = 16
+_HALO: Final = [withStroke(linewidth=2.2, foreground="white")]
+"""Clears the lines behind a time mark's text."""
 _LABEL_POINTS: Final = 12.0
 """Distance of a time mark's text from the track (points)."""
 
@@ -128,7 +131,7 @@ def _draw_time_marks(axes: Axes, run: Run) -> None:
         )  # clear of the numbers at the axis
         axes.annotate(
             words, (float(at_x), float(at_y)), offset, textcoords="offset points",
-            ha="left" if is_first else "center", va="center", fontsize=6.5, gid=MARK,
+            ha="left" if is_first else "center", va="center", fontsize=6.5, gid=MARK, path_effects=_HALO,
         )  # fmt: skip
     axes.plot(*run.place[-1, :2], linestyle="none", marker="s", markersize=3.4, color=BLACK, zorder=4)
     ended = Message("{outcome} at {time:.2f} s", outcome=outcome_words(run.outcome), time=run.simulated_s)
@@ -157,6 +160,8 @@ def _draw_groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
         reach = 1.15 * max(float(abs(corners[..., 1]).max(initial=0.0)), _LEAST_REACH)
         axes.set_xlim(-CUTOUT / 2.0, CUTOUT / 2.0)
         axes.set_xticks(np.linspace(-CUTOUT / 2.0, CUTOUT / 2.0, 5))
+        ticks = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(-reach, reach)
+        axes.set_yticks(ticks[abs(ticks) <= reach])  # fixed, because the layout reserves space for their first numbers
         axes.set_ylim(-reach, reach)
         axes.set_xlabel(Message("distance from the place at {time:.2f} s (m)", time=run.time[len(run.time) // 2]))
         axes.set_title(_GROOVES[ski], loc="left", fontsize=7.5)

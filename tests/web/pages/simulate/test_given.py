@@ -244,7 +244,8 @@ def test_courses_are_listed_the_newest_first_without_what_is_none(tmp_path: Path
     assert courses.kept() == [newer, older]
     assert courses.names() == [*course_names(), newer, older]
     assert gates_of(tmp_path / "courses" / newer) == 3
-    assert newer[:2] + newer[6:] == "a-.csv"
+    assert (older, newer) == ("z.csv", "a.csv")
+    assert courses.keep("a.csv", io.BytesIO(COURSE)) == "a-2.csv"
 
 
 @pytest.mark.usefixtures("here")
