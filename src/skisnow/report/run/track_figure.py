@@ -160,7 +160,7 @@ def _draw_groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
         reach = 1.15 * max(float(abs(corners[..., 1]).max(initial=0.0)), _LEAST_REACH)
         axes.set_xlim(-CUTOUT / 2.0, CUTOUT / 2.0)
         axes.set_xticks(np.linspace(-CUTOUT / 2.0, CUTOUT / 2.0, 5))
-        ticks = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(-reach, reach)
+        ticks = np.asarray(MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(-reach, reach))
         axes.set_yticks(ticks[abs(ticks) <= reach])  # fixed, because the layout reserves space for their first numbers
         axes.set_ylim(-reach, reach)
         axes.set_xlabel(Message("distance from the place at {time:.2f} s (m)", time=run.time[len(run.time) // 2]))
