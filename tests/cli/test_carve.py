@@ -159,6 +159,7 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
         (["--footprint-stiffness-N-per-mm2", "30"], "footprint_stiffness_N_per_mm2", 30.0),
         (["--elements", "80"], "elements", 80),
         (["--moment-Nm", "40"], "moment_Nm", 40.0),
+        (["--unloading-ratio", "inf"], "unloading_ratio", 1000.0),
     ],
 )
 def test_each_choice_is_in_force_and_named(switch: list[str], key: str, value: object, capsys: Printed) -> None:
@@ -167,11 +168,6 @@ def test_each_choice_is_in_force_and_named(switch: list[str], key: str, value: o
     assert switched["turn_radius_boot_m"] != plain["turn_radius_boot_m"]
     if key == "twist":
         assert set(switched["twist_deg"]) == {0.0}
-
-
-def test_infinite_unloading_ratio_is_rigid_plastic_snow(capsys: Printed) -> None:
-    found = answer([*ASKED, *SNOW[:-1], "inf"], capsys)
-    assert found["inputs"]["unloading_ratio"] == 1000.0
 
 
 def test_snow_of_a_campaign_with_its_intervals(

@@ -19,11 +19,9 @@ from skisnow.estimation.spread_groups import fit_in_groups, scatter_warning
 from skisnow.geometry import Disc, SkiPiece, Tool
 
 from .conftest import MakeCampaign
-from .test_hardness import series
+from .test_hardness import LOADS, TOOL, pressed
 
-LOADS = np.linspace(12.0, 492.0, 7)
 ANGLE = math.radians(30.0)
-TOOL = SkiPiece(0.2, 0.062)
 GAUGE = 1e-5
 UNCERTAINTY = ReadingUncertainty(GAUGE / math.sqrt(12.0))
 
@@ -45,7 +43,7 @@ def simulated(
     volume = LOADS[-1] / np.exp(log_H)[:, None] * (LOADS / LOADS[-1]) ** g
     depth = TOOL.depth_at_volume(volume, ANGLE) * (1.0 + scatter * rng.standard_normal((m, 7)))
     depth = np.maximum(depth + seating_sd * rng.standard_normal((m, 1)), 0.0)
-    return series(np.round(depth / GAUGE) * GAUGE, np.full(m, ANGLE), LOADS), log_H
+    return pressed(TOOL, ANGLE, np.round(depth / GAUGE) * GAUGE, LOADS), log_H
 
 
 def fitted(readings: Readings, uncertainty: ReadingUncertainty = UNCERTAINTY, **how: object) -> CampaignModel:
@@ -112,7 +110,7 @@ def test_intervals_cover_the_truth_in_campaigns_of_any_size(size: int, seating_s
     readings, log_H = simulated(m, seating_sd=0.0, seed=3)
     offset = seating_sd * np.repeat(rng.standard_normal(m), 7)
     depth = np.maximum(readings.penetration_depth + offset, 0.0)
-    readings = series(np.round(depth / GAUGE).reshape(m, 7) * GAUGE, readings.edge_angle, LOADS)
+    readings = pressed(TOOL, readings.edge_angle, np.round(depth / GAUGE).reshape(m, 7) * GAUGE, LOADS)
     model = fitted(readings, group=np.arange(m) // size)
     inside = np.abs(model.log_hardness - log_H) <= model.half_width(0)
     deviation = 3 * math.sqrt(0.05 * 0.95 / m)
@@ -137,7 +135,7 @@ def test_series_that_do_not_count_leave_the_spreads() -> None:
     worse, _ = simulated(20, seating_sd=1e-3, scatter=0.2, seed=5)
     counts = np.arange(20) < 10
     depth = np.where(np.repeat(counts, 7), readings.penetration_depth, worse.penetration_depth).reshape(20, 7)
-    mixed = fitted(series(depth, readings.edge_angle, LOADS), counts=counts)
+    mixed = fitted(pressed(TOOL, readings.edge_angle, depth, LOADS), counts=counts)
     alone = fitted(readings.of(counts))
     np.testing.assert_allclose(np.array(mixed.spreads), np.array(alone.spreads), rtol=1e-6)
     np.testing.assert_allclose(mixed.log_hardness[:10], alone.log_hardness, atol=1e-5)
@@ -147,7 +145,7 @@ def test_readings_of_0_are_omitted_and_counted() -> None:
     readings, _ = simulated(10)
     depth = readings.penetration_depth.reshape(10, 7).copy()
     depth[3, :2] = 0.0
-    model = fitted(series(depth, readings.edge_angle, LOADS))
+    model = fitted(pressed(TOOL, readings.edge_angle, depth, LOADS))
     assert model.n_zero.tolist() == [0, 0, 0, 2, 0, 0, 0, 0, 0, 0]
     assert np.isfinite(model.half_width(0)).all()
     assert abs(model.log_hardness[3] - fitted(readings).log_hardness[3]) < model.half_width(0)[3]
@@ -158,7 +156,7 @@ def test_a_series_needs_two_readings_in_contact() -> None:
     depth = readings.penetration_depth.reshape(3, 7).copy()
     depth[0, :6] = 0.0
     depth[1, :5] = 0.0
-    model = fitted(series(depth, readings.edge_angle, LOADS))
+    model = fitted(pressed(TOOL, readings.edge_angle, depth, LOADS))
     assert np.isfinite(model.log_hardness).tolist() == [False, True, True]
     assert np.isfinite(model.hardness_interval).all(axis=1).tolist() == [False, True, True]
 
@@ -169,7 +167,7 @@ def test_exact_series_give_back_offset_and_hardness(tool: Tool, angle_deg: float
     rng, angle = np.random.default_rng(4), math.radians(angle_deg)
     H, offset = 0.2e9 * np.exp(rng.normal(0, 0.5, 12)), 1e-4 * rng.standard_normal(12) + 1e-4
     depth = tool.depth_at_volume(LOADS / H[:, None], angle) + offset[:, None]
-    readings = replace(series(depth, np.full(12, angle), LOADS), tools=(tool,))
+    readings = replace(pressed(TOOL, angle, depth, LOADS), tools=(tool,))
     model = fitted(readings, ReadingUncertainty(1e-7))
     assert (np.abs(model.log_hardness - np.log(H)) < 0.2 * model.half_width(0)).all()
     assert (np.abs(model.offset - offset) < 0.2 * model.half_width(2)).all()
@@ -187,7 +185,7 @@ def test_noisier_sites_have_their_own_spreads() -> None:
         quiet, _ = simulated(30)
         loud, _ = simulated(30, seating_sd=factor * 5e-5, scatter=factor * 0.02, seed=9)
         depth = np.concatenate((quiet.penetration_depth, loud.penetration_depth)).reshape(60, 7)
-        readings = series(depth, np.full(60, ANGLE), LOADS)
+        readings = pressed(TOOL, ANGLE, depth, LOADS)
         H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
         return fit_in_groups(readings, H, UNCERTAINTY, labels={"site": site.tolist(), "tool": ["ski"] * 60})
 
@@ -204,7 +202,7 @@ def mixed_series(factor: float, *, count: int = 40, seed: int = 1) -> Readings:
     loud, _ = simulated(count, seating_sd=factor * 5e-5, scatter=factor * 0.02, seed=seed + 1000)
     depth = np.where(np.arange(count)[:, None] % 2, loud.penetration_depth.reshape(count, 7),
                      quiet.penetration_depth.reshape(count, 7))  # fmt: skip
-    return series(depth, np.full(count, ANGLE), LOADS)
+    return pressed(TOOL, ANGLE, depth, LOADS)
 
 
 def in_groups(readings: Readings) -> CampaignModel:

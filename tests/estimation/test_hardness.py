@@ -32,14 +32,14 @@ from .conftest import MakeCampaign
 LOADS = np.linspace(12.0, 492.0, 7)
 
 
-def pressed(tool: Tool, angle: float, depth: np.ndarray, load: np.ndarray) -> Readings:
+def pressed(tool: Tool, angle: float | np.ndarray, depth: np.ndarray, load: np.ndarray) -> Readings:
     """Readings of series of equal length, built without any file: depth and load are (m, k)."""
     m, k = depth.shape
     flat = depth.ravel()
     return Readings(
         load=np.broadcast_to(load, depth.shape).ravel().astype(float),
         penetration_depth=flat,
-        edge_angle=np.full(m, angle),
+        edge_angle=np.broadcast_to(angle, (m,)).astype(float),
         first=np.arange(m + 1) * k,
         largest=np.arange(m) * k + k - 1,
         tool=np.zeros(m, dtype=np.int64),
@@ -174,19 +174,6 @@ def test_intervals_cover_the_truth(scatter: float, gauge: float) -> None:
 TOOL = SkiPiece(0.2, 0.062)
 
 
-def series(depth: np.ndarray, angle: np.ndarray, load: np.ndarray) -> Readings:
-    m, k = depth.shape
-    return Readings(
-        load=np.broadcast_to(load, depth.shape).ravel().astype(float),
-        penetration_depth=depth.ravel(),
-        edge_angle=angle,
-        first=np.arange(m + 1) * k,
-        largest=np.arange(m) * k + k - 1,
-        tool=np.zeros(m, dtype=np.int64),
-        tools=(TOOL,),
-    )
-
-
 def fitted(readings: Readings, uncertainty: ReadingUncertainty) -> FittedHardness:
     H = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
     return fitted_hardness(readings, fit_campaign(readings, H, uncertainty))
@@ -198,7 +185,7 @@ def test_exact_series_with_an_offset_give_back_the_hardness_and_b_one() -> None:
     H = 1e9 * np.exp(rng.normal(0, 0.5, 12))
     offset = rng.uniform(-1e-4, 2e-4, 12)
     depth = TOOL.depth_at_volume(LOADS / H[:, None], angle[:, None]) + offset[:, None]
-    found = fitted(series(np.maximum(depth, 0), angle, LOADS), ReadingUncertainty(1e-6))
+    found = fitted(pressed(TOOL, angle, np.maximum(depth, 0), LOADS), ReadingUncertainty(1e-6))
     touching = depth.min(axis=1) > 0
     assert touching.sum() >= 9
     # the weak priors of the model take a little: a hundredth of H_V, and of a typical offset
@@ -212,7 +199,7 @@ def test_exact_series_with_an_offset_give_back_the_hardness_and_b_one() -> None:
 
 def test_one_reading_in_contact_leaves_the_depths_and_has_no_interval() -> None:
     depth = np.array([0.0, 0.0, float(TOOL.depth_at_volume(LOADS[6] / 1e9, math.radians(45)))])
-    found = fitted(series(depth[None, :], np.array([math.radians(45)]), LOADS[4:]), ReadingUncertainty(1e-6))
+    found = fitted(pressed(TOOL, math.radians(45), depth[None, :], LOADS[4:]), ReadingUncertainty(1e-6))
     assert found.offset.tolist() == [0.0]
     np.testing.assert_array_equal(found.readings.penetration_depth, depth)
     assert found.value["H_V"][0] == pytest.approx(1e9)
@@ -230,7 +217,7 @@ def test_effective_variance_agrees_with_orthogonal_distance_regression() -> None
     A, V = TOOL.contact_area(depth, angle), TOOL.displaced_volume(depth, angle)
     load = H * (8e-4 * A + 0.7 * V) + rng.normal(0, u_F, depth.size)
     seen = depth + rng.normal(0, u_e, depth.size)
-    readings = series(seen.reshape(30, 7), np.full(30, angle), load.reshape(30, 7))
+    readings = pressed(TOOL, angle, seen.reshape(30, 7), load.reshape(30, 7))
     known = FittedHardness(
         readings, np.zeros(30), dict.fromkeys(DEFINITIONS, np.full(30, H)), np.zeros((30, 2)), np.zeros(30)
     )
@@ -261,7 +248,7 @@ UNCERTAINTY = ReadingUncertainty(GAUGE / math.sqrt(12.0))
 def test_the_second_moment_by_hand() -> None:
     """Wedge: ∫ ε² dA = L e³/(3 tan ϑ); flat: L W e²."""
     load = np.array([100.0, 200.0])
-    readings = series(np.array([[1e-3, 3e-3], [1e-3, 3e-3]]), np.array([ANGLE, 0.0]), load)
+    readings = pressed(TOOL, np.array([ANGLE, 0.0]), np.array([[1e-3, 3e-3], [1e-3, 3e-3]]), load)
     found = second_moment(readings, readings.penetration_depth)
     depth = np.array([1e-3, 3e-3])
     expected = [*(TOOL.length * depth**3 / (3.0 * math.tan(ANGLE))), *(TOOL.length * 0.062 * depth**2)]

@@ -151,6 +151,7 @@ def test_shared_cases() -> None:
         read_boots(CASES / "b.mot")
 
 
+SLOPE = ",".join(["time_s", *(f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES))])
 MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 30\n"
 
 
@@ -175,6 +176,8 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
         ("time_s,left_up_m\n0,1\n\n1\n", "a.csv", coded(WRONG_CELL_COUNT, line=4, n_row=1, n_head=2)),
         ("time_s,left_up_m\n0,1\n1,2\n2,3\n", "a.csv", coded("out_of_range", n_rows=3, fewest_poses=4)),
         ("", "a.csv", "unknown_name"),
+        ("time_s,left_edge_angel_deg\n0,1\n", "a.csv", coded("missing", name="left_edge_angel_deg")),
+        (f"{SLOPE.replace(',left_pitch_deg', '')}\n", "a.csv", coded("missing", name="left_pitch_deg")),
         ("time_s,left_force_x_N\n" + "0,1\n" * 4, "a.csv", "missing"),
         ("left_up_m\n1\n", "a.csv", "missing"),
         (
@@ -183,10 +186,7 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
             coded("not_rising", line=5, clock="time_s", after=1.0, before=1.0),
         ),
         (
-            "distance_m,"
-            + ",".join(f"{side}_{name}" for side in SIDES for name in (*OF_SLOPE, *ANGLES))
-            + "\n"
-            + "".join(f"{d}{',0' * 12}\n" for d in range(4)),
+            "\n".join([SLOPE.replace("time_s", "distance_m"), *(f"{d}{',0' * 12}" for d in range(4))]),
             "a.csv",
             "contradiction",
         ),

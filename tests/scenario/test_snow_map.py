@@ -22,7 +22,7 @@ from skisnow.scenario.snow_map import read_snow_layers
 from skisnow.simulation.run_setup import laid_out
 from skisnow.snow import published_snow
 from tests.coded import raises
-from tests.forces.friction.test_law_file import STATES
+from tests.forces.friction.test_friction import STATES
 from tests.key_names import DAMPING, IGNORE_RANGE_WARNING
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"

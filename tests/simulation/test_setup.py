@@ -309,13 +309,6 @@ def test_a_run_at_the_limit_of_its_grip_is_reported() -> None:
     assert limit_warnings(holds, [Refinement("snow.S_f_N_per_mm2", high, low, moves, skids.outcome)])
 
 
-def test_a_carve_is_not_near_the_limit() -> None:
-    carve = simulate(load_scenario("carved-46m", changes={"run.duration_s": 1.5}))
-    slower = simulate(carve.scenario.with_(speed_m_per_s=carve.scenario.start.speed * 0.999))
-    moves = float(np.linalg.norm(carve.place[-1] - slower.place[-1]))
-    assert limit_warnings(carve, [Refinement("start.speed_m_per_s", 7.0, 6.993, moves, slower.outcome)]) == ()
-
-
 def test_interrupted_repetition_keeps_those_before_it() -> None:
     asked: list[Solver] = []
 

@@ -19,7 +19,7 @@ from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import parse_change
 from skisnow.scenario.reading import load_input
 from skisnow.scenario.snow_map import read_snow_layers, read_snow_map
-from tests.forces.friction.test_law_file import STATES
+from tests.forces.friction.test_friction import STATES
 
 from ..binaries import BINARY
 from ..reader import Reader

@@ -14,8 +14,8 @@ from skisnow.scenario import Plane
 from skisnow.scenario.boots import read_boots
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_tables import boots_text, write_boots
-from tests.coded import Coded, coded, raises
-from tests.key_names import EDGE_ANGLE, LEFT_EDGE_ANGLE, WRONG_CELL_COUNT
+from tests.coded import raises
+from tests.key_names import EDGE_ANGLE
 
 
 def turn(**changes: object) -> Scenario:
@@ -112,37 +112,6 @@ def test_turning_the_boots_left_is_the_mirror_of_turning_them_right(tmp_path: Pa
     assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-5)
     assert ends[0][3] == pytest.approx(-ends[1][3], abs=1e-3)
     assert 18.0 < ends[0][3] < 26.0
-
-
-HEAD = "time_s,left_edge_angle_deg"
-SLOPE = "time_s," + ",".join(
-    f"{side}_{name}"
-    for side in ("left", "right")
-    for name in ("x_m", "y_m", "z_m", "edge_angle_deg", "pitch_deg", "heading_deg")
-)
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("time_s,left_edge_angel_deg\n0,1\n", coded("missing", name="left_edge_angel_deg")),
-        (f"{HEAD}\n0,1\n1,x\n2,3\n3,4\n", coded("not_a_number", value="x", line=3, head=LEFT_EDGE_ANGLE)),
-        (f"{HEAD}\n0,1\n1,2\n", coded("out_of_range", n_rows=2, fewest_poses=4)),
-        (f"{HEAD}\n0,1\n1,2\n1,3\n2,4\n", coded("not_rising", line=4, clock="time_s")),
-        ("left_edge_angle_deg\n0\n", "missing"),
-        (f"{HEAD}\n0,1,2\n", coded(WRONG_CELL_COUNT, line=2, n_row=3, n_head=2)),
-        (SLOPE.replace(",left_pitch_deg", "") + "\n", coded("missing", name="left_pitch_deg")),
-        (
-            SLOPE.replace("time_s", "distance_m") + "\n" + "\n".join(f"{i}" + ",0" * 12 for i in range(4)),
-            "contradiction",
-        ),
-    ],
-)
-def test_a_table_that_is_none_is_rejected(tmp_path: Path, text: str, told: str | Coded) -> None:
-    file = tmp_path / "boots.csv"
-    file.write_text(text, encoding="utf-8")
-    with raises(ParameterError, told):
-        read_boots(file)
 
 
 def test_what_is_written_is_read(own: Run, tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ import functools
 import os
 import signal
 import threading
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,8 +18,6 @@ from skisnow.simulation.simulated_run import computed_run, simulate
 
 from ...carving.synthetic import shovel
 from .sledges import rigid_ski, scenario
-
-PROFILES = Path(__file__).parents[4] / "shared" / "data" / "slope-profiles"
 
 
 def is_sound(run: Run) -> bool:
@@ -56,23 +53,6 @@ def test_distance_reached(length: float) -> None:
     arc = np.linalg.norm(np.diff(run.place, axis=0), axis=1).sum()
     assert run.run_length == pytest.approx(arc, rel=1e-5)
     assert is_sound(run)
-
-
-def test_end_of_slope_of_a_measured_profile() -> None:
-    file = PROFILES / "utah-2010-surface.csv"
-    if not file.exists():
-        pytest.skip("the measured profiles are not there")
-    given = load_scenario("carved-46m", changes={"slope.kind": "profile", "slope.profile": str(file)} | UNSET)
-    assert isinstance(given.slope, Profile)
-    end = given.slope.ends[1]
-    straight = flat_scenario(given.slope, speed=2.0, x=end - 6.0)
-    run = simulate(straight)
-    assert run.outcome == "end_of_slope"
-    assert run.place[-1, 0] + run.attitude[-1, 0, 0] * 0.8 == pytest.approx(end, abs=0.2)  # an output at 10 m/s or so
-    assert is_sound(run)
-
-
-UNSET: dict[str, object] = {"slope.profile_gap": "interpolate"}
 
 
 def test_end_of_slope() -> None:
