@@ -182,6 +182,18 @@ def test_grip_is_drawn_for_each_ski_not_for_each_section(run: Run) -> None:
     assert np.stack([left, right], axis=1) == pytest.approx(grip_utilisation(run))
     assert np.stack([gross_left, gross_right], axis=1) == pytest.approx(gross_grip_utilisation(run))
     assert np.all(limit == 1.0)
+    assert max(gross_left.max(), gross_right.max()) <= axes.get_ylim()[1]
+
+
+def test_the_legend_of_the_grip_names_every_line_and_none_is_clipped(run: Run) -> None:
+    strong = replace(run, skis=replace(run.skis, shear_per_length=3.0 * run.skis.shear_per_length))
+    with journal_style():
+        figure = run_grip(strong)
+    (axes,), (legend,) = figure.axes, figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "left ski", "right ski", "net", "gross", "capacity of the snow"
+    ]  # fmt: skip
+    assert 1.12 < float(np.nanmax(gross_grip_utilisation(strong))) < axes.get_ylim()[1]
 
 
 def test_distance_between_circles_of_one_centre() -> None:

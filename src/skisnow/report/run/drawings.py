@@ -141,8 +141,8 @@ _FIGURES: Final = {
     "grip": RunFigure(
         run_grip,
         template(
-            "Grip utilisation of each ski: the sum of its side force over the sum of the shear capacity S_f e. At 1 "
-            "the ski side-slips. Dotted: the sum of the sizes of the shear instead, which is more where parts of the "
+            "Grip utilisation of each ski. Net: the sum of its side force over the capacity, the sum of S_f e; at 1 "
+            "the ski side-slips. Gross: the sum of the sizes of the shear instead, which is more where parts of the "
             "edge pull against each other. A place of snow slips by {slip} mm across while a ski passes; with a shear "
             "displacement u_y of 0.5 to 1 mm such pulls end."
         ),

@@ -208,21 +208,26 @@ def run_boots(run: Run) -> Figure:
 
 
 def run_grip(run: Run) -> Figure:
-    """Draw the grip utilisation of each ski over time."""
+    """Draw the net and gross grip utilisation of each ski over time, and its capacity."""
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=62.0)
     axes = figure.subplots()
-    shares = zip(grip_utilisation(run).T, gross_grip_utilisation(run).T, SKI_COLOURS, SKIS, strict=True)
-    for net, gross, colour, name in shares:
-        axes.plot(run.time, net, color=colour, label=name)
-        axes.plot(run.time, gross, color=colour, linewidth=0.7, linestyle=(0, (1, 1)))
-    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+    net, gross = grip_utilisation(run), gross_grip_utilisation(run)
+    dotted, dashed = (0, (1, 1)), (0, (4, 2))
+    for ski, colour in enumerate(SKI_COLOURS):
+        axes.plot(run.time, net[:, ski], color=colour, label=SKIS[ski])
+        axes.plot(run.time, gross[:, ski], color=colour, linewidth=0.7, linestyle=dotted)
+    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle=dashed)
     axes.set_xlim(float(run.time[0]), float(run.time[-1]))
-    axes.set_ylim(-0.02, 1.12)
+    axes.set_ylim(-0.02, max(1.12, 1.05 * float(np.nanmax(gross, initial=1.0))))
     axes.set_ylabel(Message("grip utilisation of\nthe ski (1: side-slip)"))
     axes.set_xlabel(Message("time (s)"))
-    legend_below(
-        figure, [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
-    )
+    handles = [Line2D([], [], color=colour, label=name) for colour, name in zip(SKI_COLOURS, SKIS, strict=True)]
+    handles += [
+        Line2D([], [], color=BLACK, label=Message("net")),
+        Line2D([], [], color=BLACK, linewidth=0.7, linestyle=dotted, label=Message("gross")),
+        Line2D([], [], color=GREY, linewidth=0.8, linestyle=dashed, label=Message("capacity of the snow")),
+    ]
+    legend_below(figure, handles)
     return figure
 
 
