@@ -14,6 +14,7 @@ import pytest
 from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow._support.processes.kept_rows import Row
 from skisnow.identification import Identification, identification_dict, identify, track_positions
+from skisnow.identification.simulations import RunTask, grip_limit_sentences
 from skisnow.identification.track_positions import estimated_noise
 from skisnow.parameters import values_of
 from skisnow.scenario import Scenario, load_scenario
@@ -70,6 +71,21 @@ class TestStraight:
             )
             assert found.outcome == "converged"
             assert any(text.startswith(told) for text in found.warnings) is near
+
+    def test_far_from_the_limit_of_grip_two_runs_check_it(self) -> None:
+        """All inputs changed towards the limit and away from it; the ends are equal."""
+        tasks: list[Any] = []
+
+        def simulate(batch: Any) -> list[Row]:
+            tasks.extend(batch)
+            return [{"x_m": [0.0, 10.0], "y_m": [0.0, 0.0]} for _ in batch]
+
+        values = values_of(load_scenario("carved-46m", changes=SCENARIO))
+        assert grip_limit_sentences(RunTask({}, 0, final=False), values, simulate) == ()
+        towards, away = (task.values for task in tasks)
+        for key, sign in (("start.speed_m_per_s", 1), ("snow.H_V_N_per_mm3", 1), ("snow.S_f_N_per_mm2", -1)):
+            assert towards[key] / values[key] == pytest.approx(1.0 + 1e-3 * sign)
+            assert away[key] / values[key] == pytest.approx(1.0 - 1e-3 * sign)
 
     def test_ctrl_c_while_the_limit_is_looked_at_keeps_the_answer(self) -> None:
         def stopped(tasks: object) -> list[Row]:  # noqa: ARG001 - as it is called

@@ -31,6 +31,8 @@ OUTPUT_INTERVAL: Final = 0.02
 10 m/s."""
 _AFTER_THE_LAST: Final = 1e-9
 _SNOW: Final = ("snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2")
+_TOWARDS_LIMIT: Final = {"snow.S_f_N_per_mm2": -1.0}
+"""Sign of a change that brings a run nearer to the limit of grip, where it is not 1."""
 
 
 @dataclass(slots=True)
@@ -157,29 +159,45 @@ def _row(run: Run, times: FloatArray) -> Row:
     }
 
 
-def perturbed_tasks(task: RunTask, values: Mapping[str, float]) -> dict[str, tuple[RunTask, ...]]:
+def perturbed_tasks(task: RunTask, values: Mapping[str, float], *, together: bool = False) -> dict[str, list[RunTask]]:
     """Tasks of fast runs with each input increased and decreased by 0.1 %, by key.
 
     task: task of the run with the best values.
     values: values of the scenario for keys that the task does not have. A value of 0 is not changed.
+    together: True to change all inputs at once, towards the limit of grip and away from it.
     """
     base = {**{key: values[key] for key in _SNOW}, **task.values}  # numbers replace a published snow
-    tasks: dict[str, tuple[RunTask, ...]] = {}
-    for key in NUDGED:
-        value = base.get(key, values[key])
-        if value:
-            changed = ({**base, key: value * (1.0 + sign * NUDGE)} for sign in (1.0, -1.0))
-            tasks[key] = tuple(RunTask(inputs, task.run, final=False) for inputs in changed)
+    groups = {"all": NUDGED} if together else {key: (key,) for key in NUDGED}
+    tasks: dict[str, list[RunTask]] = {}
+    for name, keys in groups.items():
+        for change in (NUDGE, -NUDGE):
+            moved = {key: base.get(key, values[key]) * (1.0 + change * _TOWARDS_LIMIT.get(key, 1.0)) for key in keys}
+            if any(moved.values()):
+                tasks.setdefault(name, []).append(RunTask(base | moved, task.run, final=False))
     return tasks
 
 
-def grip_limit_sentences(own: Row, nudged: Mapping[str, Sequence[Row]]) -> tuple[str, ...]:
-    """Warning as of `simulate --verify` if small changes of the inputs move the end of the run too far."""
-    if "x_m" not in own or len(own["x_m"]) < 2:
+def grip_limit_sentences(
+    task: RunTask, values: Mapping[str, float], simulate: Callable[[Sequence[RunTask]], list[Row]]
+) -> tuple[str, ...]:
+    """Warning as of `simulate --verify` if small changes of the inputs move the end of the run too far.
+
+    Each input is changed separately only if the ends of two runs with all inputs changed are apart by half as much.
+    """
+    first, other = simulate(perturbed_tasks(task, values, together=True)["all"])
+    if "x_m" not in first or not limit_sentences({NUDGED[0]: 2.0 * _end_distance(first, other)}, _length(first)):
         return ()
-    length = float(np.sum(np.hypot(np.diff(own["x_m"]), np.diff(own["y_m"]))))
-    moves = {key: max((_end_distance(own, row) for row in rows), default=0.0) for key, rows in nudged.items()}
-    return limit_sentences(moves, length)
+    (own,) = simulate([task])
+    if "x_m" not in own:
+        return ()
+    perturbed = perturbed_tasks(task, values)
+    rows = iter(simulate([each for pair in perturbed.values() for each in pair]))
+    moves = {key: max(_end_distance(own, next(rows)) for _ in pair) for key, pair in perturbed.items()}
+    return limit_sentences(moves, _length(own))
+
+
+def _length(row: Row) -> float:
+    return float(np.sum(np.hypot(np.diff(row["x_m"]), np.diff(row["y_m"]))))
 
 
 def _end_distance(own: Row, other: Row) -> float:

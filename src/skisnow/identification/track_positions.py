@@ -15,7 +15,7 @@ from .._support.messages import Message, template
 from .._support.processes.kept_rows import Row
 from ..track.track import Track, inexact_sentence
 from .problem import Fit, Kind, Values, run_values
-from .simulations import RunTask, grip_limit_sentences, perturbed_tasks
+from .simulations import RunTask, grip_limit_sentences
 
 NOMINAL_SD: Final = 0.1
 """Standard deviation (m) if it is not stated and cannot be estimated; it cancels, or gives tracks equal weights."""
@@ -218,19 +218,14 @@ class TrackPositions:
         """Warnings of runs near the limit of grip; Ctrl-C ends this check and keeps the identified values."""
         if not self.scenario_values:
             return []
-        tasks = self._tasks(values, final=False)
-        perturbed = [perturbed_tasks(task, self.scenario_values) for task in tasks]
         try:
-            own = self.simulate(tasks)
-            rows = iter(self.simulate([task for pairs in perturbed for pair in pairs.values() for task in pair]))
+            return [
+                f"{track.name}: {text}"
+                for track, task in zip(self.tracks, self._tasks(values, final=False), strict=True)
+                for text in grip_limit_sentences(task, self.scenario_values, self.simulate)
+            ]
         except KeyboardInterrupt:
             return ["whether the run is near the limit of grip was not checked: interrupted"]
-        perturbed_rows = [{key: [next(rows) for _ in pair] for key, pair in pairs.items()} for pairs in perturbed]
-        return [
-            f"{track.name}: {text}"
-            for track, first, others in zip(self.tracks, own, perturbed_rows, strict=True)
-            for text in grip_limit_sentences(first, others)
-        ]
 
     def _residuals(self, many: Sequence[Values], *, final: bool) -> list[FloatArray | None]:
         tasks = [self._tasks(values, final=final) for values in many]
