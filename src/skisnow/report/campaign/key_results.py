@@ -320,4 +320,4 @@ def _listed(rows: list[Json]) -> Markup:
     ]
     if len(rows) > LISTED:
         named.append(prose("{n_rows} more", n_rows=whole(len(rows) - LISTED)))
-    return html(", ").join(named) if named else html("none")
+    return html(", ").join(named) if named else html(Message("none"))
