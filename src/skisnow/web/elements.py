@@ -72,12 +72,10 @@ class Words(ui.label):
 
     def _text_to_model_text(self, text: str) -> None:
         shown = said(text, self.client)
-        markup = SYMBOL.sub(_SUBSCRIPT, escape(shown, quote=False)) if SYMBOL.search(shown) else ""
-        if markup:
-            self._props["innerHTML"] = markup
-        else:
-            self._props.pop("innerHTML", None)
-        super()._text_to_model_text("" if markup else shown)
+        is_markup = "innerHTML" in self._props or SYMBOL.search(shown)  # the page would stay blank without it again
+        if is_markup:
+            self._props["innerHTML"] = SYMBOL.sub(_SUBSCRIPT, escape(shown, quote=False))
+        super()._text_to_model_text("" if is_markup else shown)
 
 
 _SUBSCRIPT: Final = r'<i>\1</i><span class="under">_</span><sub>\2</sub>'
