@@ -13,10 +13,11 @@ from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, template
 from ...campaign.importing import Answers, ColumnChoice, ImportedTable, Proposal, Question
 from ...campaign.importing.columns import number_columns
-from ...campaign.importing.sheets import FROM_NOTES
+from ...campaign.importing.sections import Section
+from ...campaign.importing.sheets import FROM_NOTES, KINDS
 from ...campaign.problems import Problem
 from ...campaign.reading.headings import units_for
-from ..elements import Outcome, Words, add_head, add_items, button, choice, field
+from ..elements import Outcome, Words, add_head, add_items, button, choice, field, folded
 from ..layout import error_sentence, framed, heading, sentence
 from ..settings import BUILD_S, Lab
 from ..subprocesses import BOUNDS, confined
@@ -28,6 +29,7 @@ HERE: Final = "/"
 NONE: Final = "-"
 LEFT_OUT: Final = Message("excluded")
 TEXT: Final = Message("kept as text")
+IS_OPEN: Final = "(event) => emit(event.target.open)"
 YES: Final = Message("yes")
 NO: Final = Message("no")
 _SHOWN_ROWS: Final = 4
@@ -73,6 +75,8 @@ class _Import:
     id_: str
     answers: Answers = dataclass_field(default_factory=Answers)
     tried: TriedImport | None = None
+    _open: set[str] = dataclass_field(default_factory=set)
+    """Tables whose layout is shown."""
 
     def __post_init__(self) -> None:
         templates = self.imports.templates()
@@ -158,6 +162,47 @@ class _Import:
                 key = f"{kind}.{column.heading}"
                 made.on_value_change(lambda event, key=key: self._answer("column", key, event.value))
             self._site(table, tables)
+        words = Message("Kind of table, row of the headings, units and tool")
+        key = table.section.key
+        with (
+            folded(words, is_open=key in self._open).on(
+                "toggle",
+                lambda event: self._open.add(key) if event.args else self._open.discard(key),
+                js_handler=IS_OPEN,
+            ),
+            ui.element("div").classes("inputs"),
+        ):
+            self._layout(table, kind)
+
+    def _layout(self, table: ImportedTable, kind: str) -> None:
+        """Choices of a table that its file states: kind, row of the headings, units, and tool or plate."""
+        section = table.section
+        kinds = {name: TABLES[f"{name}.csv"] for name in KINDS} | {NONE: LEFT_OUT}
+        made = choice(Message("Kind of table"), kinds, kind)
+        made.on_value_change(lambda event: self._answer("table", section.key, event.value))
+        row = field(Message("Row of the headings"), str(section.header + 1), numeric=True)
+        row.on("blur", lambda: self._move_headings(section, kind, str(row.value).strip()))
+        for column in table.columns:
+            if column.column in number_columns(table.form):
+                answer = self.answers.of_heading("unit", kind, column.heading)
+                unit = column.unit.name if column.unit is not None else answer
+                units = dict.fromkeys((*filter(None, (unit,)), *units_for(column.column).split(", ")))
+                made = choice(Message("Unit of {heading}", heading=column.heading), list(units), unit or None)
+                key = f"{kind}.{column.heading}"
+                made.on_value_change(lambda event, key=key: self._answer("unit", key, event.value))
+        for name in ("tool", "plate"):
+            if name in table.form.names and (answer := getattr(self.answers, name).get("")):
+                self._typed_answer(field(label(name), answer), name, "")
+
+    def _typed_answer(self, typed: ui.input, option: str, key: str) -> None:
+        """Answer with the text of a field once it is left with another one."""
+        before = typed.value
+        typed.on("blur", lambda: self._answer(option, key, str(typed.value)) if typed.value != before else None)
+
+    async def _move_headings(self, section: Section, kind: str, row: str) -> None:
+        if row.isdecimal() and int(row) != section.header + 1:
+            self.answers = self.answers.with_("table", section.key, NONE)
+            await self._answer("table", f"{section.sheet.name}:{int(row)}", kind)
 
     def _site(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
         """Site of a sheet whose tables have no column for it."""
@@ -168,11 +213,11 @@ class _Import:
         on_sheet = [other for other in tables if other.section.sheet.name == sheet and other.rows]
         differ = any(other.rows[0].cells.get("site") != site for other in on_sheet)
         key = table.section.key if differ else sheet
-        typed = field(Message("Site of the sheet {sheet}", sheet=key), site)
-        typed.on("blur", lambda: self._answer("site", key, str(typed.value)) if typed.value != site else None)
+        self._typed_answer(field(Message("Site of the sheet {sheet}", sheet=key), site), "site", key)
 
     async def _answer(self, option: str, key: str, value: str) -> None:
         self.answers = self.answers.with_(option, key, value)
+        self._status.say(Message("Reading the file again …"))
         await self.draw()
 
     async def _use_template(self, event: object) -> None:

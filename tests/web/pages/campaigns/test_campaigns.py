@@ -91,6 +91,10 @@ def test_workbook_is_proposed_stored_and_taken_back(desk: Desk, monkeypatch: pyt
     assert answer.status_code == 303
     page = desk.open(answer.headers["location"])
     page.shows("1.163")
+    page.fill("Unit of Last", "N")  # the file states kg
+    page.shows("other_unit")
+    page.fill("Unit of Last", "kg")
+    page.shows("1.163")
     page.fill("Name of the template", "glacier")
     page.press("Save the answers as a template")
     page.shows("glacier")
