@@ -101,6 +101,23 @@ def test_the_spreads_of_many_series_are_those_they_were_drawn_with() -> None:
     assert max(seating, layering, scatter) < 0.1
 
 
+def test_of_few_series_the_priors_count() -> None:
+    """Each spread is the mean of its prior and of what the series show, weighted by their numbers."""
+    m = 4
+    model = fitted(simulated(m, mean=0.8, layering=0.02, seating_sd=1e-5)[0])
+    (tau2,), (mean,), (layering2,), _ = model.spreads
+    of_g, of_d = model.covariance[:, 1, 1], model.covariance[:, 2, 2]
+    assert tau2 == pytest.approx((5e-5**2 + np.sum(model.offset**2 + of_d)) / (1.0 + m), rel=0.01)
+    about_1 = 0.1**-2
+    assert mean == pytest.approx((about_1 + model.exponent.sum() / layering2) / (about_1 + m / layering2), rel=1e-3)
+    scattered = np.sum((model.exponent - mean) ** 2 + of_g)
+    assert layering2 == pytest.approx((3.0 * 0.1**2 + scattered) / (3.0 + m), rel=0.01)
+    shown = 1.0 - of_g / layering2
+    assert model.freedom.layering[0] == pytest.approx(3.0 + np.sum(shown**2), rel=0.01)
+    known = about_1 + shown.sum() / layering2
+    assert model.freedom.mean_exponent_variance[0] == pytest.approx(1.0 / known, rel=0.01)
+
+
 @pytest.mark.parametrize("size", [1, 2, 5, 400])
 @pytest.mark.parametrize("seating_sd", [0.0, 5e-5])
 def test_intervals_cover_the_truth_in_campaigns_of_any_size(size: int, seating_sd: float) -> None:

@@ -241,3 +241,16 @@ def test_a_recording_without_a_density_has_a_hardness() -> None:
     (row,) = _published_relations(analysis)
     assert (row["n"], row["snow_density_kg_per_m3"], row["penetration_resistance_kPa"]) == (2, 300.0, 100.0)
     assert (row["hand_hardness"], row["hardness_relation"]) == ("1F+", RESISTANCE_SOURCE)
+
+
+def test_too_few_resamples_are_rejected(make_campaign: MakeCampaign) -> None:
+    rows = [("p1", "A", "ski", 0, load, depth) for load, depth in ((100, 1.0), (200, 2.1), (300, 2.9))]
+    with raises(skisnow._support.errors.ParameterError, "out_of_range"):
+        skisnow.analyse(make_campaign(rows), n_resamples=39)
+
+
+def test_an_analysis_shows_the_ends_of_its_interval_and_tells_its_steps(reference: Campaign) -> None:
+    steps: list[str] = []
+    analysis = skisnow.analyse(reference, n_resamples=100, progress=steps.append)
+    assert any("236" in step for step in steps)
+    assert f"{analysis.own_hardness.low:.4g}" in dict(analysis._facts().rows)["H_V"]

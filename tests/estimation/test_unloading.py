@@ -77,6 +77,13 @@ def test_an_exact_series_gives_its_ratio_back(rows: list[Row], make_campaign: Ma
         assert row[key][0] < value < row[key][1]
 
 
+def test_an_exact_way_back_leaves_the_prior_of_its_scatter(make_campaign: MakeCampaign) -> None:
+    """0.2 readings with r = 0.05 and two free ones without scatter: r² = 0.2 · 0.05²/(2 + 0.2)."""
+    penetration = analysed(make_campaign, flat()).penetration
+    assert penetration is not None and penetration.unloading is not None
+    assert penetration.unloading.rebound_scatter == pytest.approx(math.sqrt(0.2 * 0.05**2 / 2.2), rel=1e-3)
+
+
 def test_the_way_back_is_that_of_the_law_of_the_simulations() -> None:
     """The force of a wedge on the way back, integrated over its width from the pressure of `HypoplasticPoint`."""
     law, deepest = HypoplasticPoint(snow_hardness=0.1e9, unloading_ratio=RATIO), 4e-3
