@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
 from scipy.stats import qmc
 
-from skisnow import Course, Gate, Scenario, load_scenario
+from skisnow import Course, Gate, Profile, Scenario, load_scenario
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 RACE, HARD = (0.21, 0.52), (1.0, 0.52)
 """H_V (N/mm³) and S_f (N/mm²) of a race piste, and of harder snow."""
@@ -82,6 +87,48 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True)
+class Straight:
+    """Straight down 10° of race piste over a profile of heights above it; attributes like those of `Case`."""
+
+    name: str
+    speed: float
+    over: Callable[[FloatArray], FloatArray]
+    duration: float
+    gates: int = 0
+
+    def scenario(self, start: Start) -> Scenario:
+        """From one start, 5 m before the profile."""
+        hardness, strength = RACE
+        base = load_scenario(
+            "skier-10deg",
+            changes={
+                "solver.method": "fast",
+                "snow.H_V_N_per_mm3": hardness * start.hardness,
+                "snow.S_f_N_per_mm2": strength * start.strength,
+                "skier.assumed_H_V_N_per_mm3": hardness,
+                "skier.assumed_S_f_N_per_mm2": strength,
+                "skier.first_turn_s": 100.0,
+                "run.duration_s": self.duration,
+            },
+        )
+        x = np.arange(-10.0, 100.0, 0.1)
+        slope = Profile(x, self.over(x) - x * math.tan(math.radians(10.0)))
+        begins = replace(base.start, x=-5.0, y=start.aside, speed=self.speed * start.speed)
+        return base.with_(slope=slope, start=begins)
+
+
+def rolls(x: FloatArray) -> FloatArray:
+    """Heights (m) of five rolls, 0.5 m from trough to crest and 10 m long."""
+    return np.where((x > 0.0) & (x < 50.0), 0.25 * (1.0 - np.cos(0.2 * math.pi * x)), 0.0)
+
+
+def kicker(x: FloatArray) -> FloatArray:
+    """Heights (m) of a kicker, 4 m long and 1 m high: an arc up to a third of slope, a plane, and a fall of 2 m."""
+    rising = np.where(x < 2.0, x**2 / 12.0, (x - 1.0) / 3.0)
+    return np.clip(np.where(x < 4.0, np.where(x < 0.0, 0.0, rising), (6.0 - x) / 2.0), 0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Start:
     """A disturbed start: speed, H_V and S_f over the nominal ones, and how far it is beside the line (m)."""
 
@@ -96,7 +143,7 @@ class Start:
         return self.strength / math.sqrt(self.hardness)
 
 
-CASES: Final = (
+CASES: Final[tuple[Case | Straight, ...]] = (
     *(Case(f"slalom 10 m, {slope}°", slope, 10.0, 3.0, 5.5) for slope in (10, 15, 19)),
     *(Case(f"slalom 13 m, {slope}°", slope, 13.0, 3.0, 7.5) for slope in (10, 15, 19)),
     Case("slalom 13 m, 15°, hard", 15, 13.0, 3.0, 7.5, HARD),
@@ -106,6 +153,8 @@ CASES: Final = (
         Case(f"linked turns, {slope}°", slope, 13.0, 3.0, speed, gates=60, duration=60.0)
         for slope, speed in ((15, 7.0), (20, 8.0), (25, 9.0))
     ),
+    Straight("five rolls, 10°", 6.0, rolls, 8.0),
+    Straight("kicker, 10°", 8.0, kicker, 4.0),
 )
 
 

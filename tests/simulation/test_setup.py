@@ -14,7 +14,7 @@ from skisnow import BootMoment, BootPose, Run, Scenario
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Laws
 from skisnow.geometry.surfaces import Grid
-from skisnow.scenario import Plane, Solver, load_scenario
+from skisnow.scenario import Plane, Skier, Solver, load_scenario
 from skisnow.simulation import run_setup, simulated_run
 from skisnow.simulation.run_setup import Setup, _drive, _start, _strength_share, laid_out
 from skisnow.simulation.simulated_run import simulate
@@ -69,13 +69,15 @@ def test_a_sledge_begins_as_high_over_the_snow_as_its_lower_edges_are_deep(edge:
         ({"tilt": (0.0, 0.7)}, 0.3, False, "tipped_over"),
         ({"tilt": (0.0, 0.69), "height": -0.6}, 0.3, False, "airborne"),
         ({"tilt": (0.0, 0.7), "touches": False}, 0.3, False, "airborne"),
+        ({"height": 1.9, "tilt": (1.2, 0.7), "touches": False}, 0.3, True, None),
+        ({"height": 2.1, "touches": False}, 0.3, True, "airborne"),
         ({"height": -0.51, "past_end": True}, 0.0, False, "sunk"),
         ({"height": -0.49, "past_end": True}, 0.0, False, "end_of_slope"),
     ],
 )
 def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied: bool, outcome: str | None) -> None:
-    """Leaning by more than 60°, on the snow by more than 40° ahead, 0.3 s in the air, sunk, off the slope, in order."""
-    scenario = SimpleNamespace(skier=object() if skied else None)
+    """Leaning by 60°, on the snow by 40° ahead, 0.3 s in the air (a skier above 2 m), sunk, off."""
+    scenario = SimpleNamespace(skier=Skier() if skied else None)
     usual: dict[str, Any] = {"tilt": (0.0, 0.0), "height": 0.0, "past_end": False}
     usual |= {"touches": True, "drive": None}
     stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))

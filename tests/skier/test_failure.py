@@ -31,7 +31,7 @@ def records(*crossed: tuple[float, dict[str, Any]], wanted: float = 0.5 * HEIGHT
         for since, seen in crossed:
             changes |= seen if time >= since - 1e-9 else {}
         place = changes.pop("wanted", wanted)
-        found.append(BalanceRecord(saw(**changes), Balance(0.0, place, 0.0, 0.0, 3.5), np.zeros(9)))
+        found.append(BalanceRecord(saw(**changes), Balance(0.0, place, 0.0, 0.0, 3.5), np.zeros(10)))
     return found
 
 

@@ -3,26 +3,68 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
+import numpy as np
 import pytest
 from benchmarks.skier.__main__ import outcome
 from benchmarks.skier.cases import CASES, Start, starts
 
-from skisnow import simulate
+from skisnow import Scenario, simulate
+from skisnow.skier import BalancedSkier
+from skisnow.skier.posture import RISE
 
 SURE = ("slalom 13 m, 15°", "slalom 13 m, 19°", "giant slalom 25 m, 19°")
 FIRST = (Start(), *(start for start in starts(6, 91) if 0.7 <= start.force <= 1.4))
+
+
+def named(name: str) -> Any:
+    return next(case for case in CASES if case.name == name)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("start", FIRST)
 @pytest.mark.parametrize("name", SURE)
 def test_five_gates_are_passed_near_the_assumed_side_force(name: str, start: Start) -> None:
-    case = replace(next(case for case in CASES if case.name == name), gates=5)
+    case = replace(named(name), gates=5)
     assert outcome(simulate(case.scenario(start))) == "finished"
 
 
 @pytest.mark.slow
 def test_eight_gates_10_m_apart_on_19_degrees() -> None:
-    case = replace(next(case for case in CASES if case.name == "slalom 10 m, 19°"), gates=8)
+    case = replace(named("slalom 10 m, 19°"), gates=8)
     assert outcome(simulate(case.scenario(Start()))) == "finished"
+
+
+def require_landing(scenario: Scenario) -> None:
+    """0.4 s and more in the air, at most 2 m up; within 4 s the legs have given way and stretched again."""
+    skier = BalancedSkier(scenario)
+    run = simulate(scenario, boots=skier)
+    assert run.outcome == "finished"
+    rise = np.array([record.posture[RISE] for record in skier.records])
+    in_air = np.array([record.seen.flies for record in skier.records])
+    assert in_air.sum() * skier.period > 0.4
+    assert max(record.seen.clearance for record in skier.records) < 2.0
+    assert -0.31 < rise.min() < -0.25
+    assert abs(rise[-1]) < 0.1
+    legs = np.hypot([record.posture[1] for record in skier.records], 0.6 + rise)
+    assert legs.max() < skier.skier.longest_leg
+
+
+def test_a_skier_lands_behind_a_kicker() -> None:
+    require_landing(named("kicker, 10°").scenario(Start()))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("start", starts(5, 57))
+def test_a_skier_lands_on_unknown_snow_and_stays_up_over_rolls(start: Start) -> None:
+    require_landing(named("kicker, 10°").scenario(start))
+    assert simulate(named("five rolls, 10°").scenario(start)).outcome == "finished"
+
+
+def test_a_flight_above_the_highest_ends_the_run() -> None:
+    scenario = named("kicker, 10°").scenario(Start())
+    low = replace(scenario.skier, highest_flight=0.5)
+    run = simulate(scenario.with_(skier=low))
+    assert run.outcome == "airborne"
+    assert "skier.highest_flight_m" in run.remedy

@@ -16,7 +16,7 @@ from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.edges import ForceMap
 from skisnow.skier.plan import AHEAD, STEP, Gravity, HalfWaves, Planned, RecedingLine, with_run_out
 from skisnow.skier.posture import AHEAD as FORE
-from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, RIGHT_TOE, RISE, STANCE
+from skisnow.skier.posture import ASIDE, HIP, LEFT_EDGE, PITCH, RIGHT_TOE, RISE, STANCE
 from skisnow.skier.seen import seen_at
 from skisnow.skier.yaw import (
     BODY,
@@ -116,8 +116,8 @@ def _up_in_space(boots: Any) -> Any:
 
 def test_rates_of_poses_are_those_of_the_posture() -> None:
     body, step = posture(), 1e-4
-    body.numbers += [0.05, 0.2, 0.3, 0.1, 0.15, -0.1, 0.1, 0.1, -0.04]
-    body.rates += [0.5, -0.7, 1.0, 2.0, -1.0, 0.3, -0.3, 0.2, 0.1]
+    body.numbers += [0.05, 0.2, 0.3, 0.1, 0.15, -0.1, 0.1, 0.1, -0.04, 0.12]
+    body.rates += [0.5, -0.7, 1.0, 2.0, -1.0, 0.3, -0.3, 0.2, 0.1, -0.6]
     now = body.poses()
     body.numbers += step * body.rates
     for pose, later in zip(now, body.poses(), strict=True):
@@ -168,6 +168,22 @@ def test_each_leg_is_a_damper_of_3000_N_s_per_m_on_an_edged_ski(edge: float, sha
     body.numbers[RISE] = -0.02
     body.step(Command((0.0, 0.0)), saw(), 0.005)  # who asks for no load stands up again
     assert body.rates[RISE] > 0.0
+
+
+def test_legs_bring_the_skis_to_the_snow_softly_and_brake_evenly_to_a_crouch() -> None:
+    """Nearing at 4 m/s they touch at 0.4 m/s; at 3.6 m/s on 0.4 m they brake by v²/(2 · 0.4 m)."""
+    body, dt = posture(), 0.005
+    body.numbers[RISE], body.rates[RISE] = 0.12, -3.5
+    body.step(Command((0.0, 0.0)), saw(bears=False, clearance=0.005, nearing=4.0, falls_with=4.0, pitch=0.1), dt)
+    assert body.rates[RISE] == pytest.approx(-3.6)
+    assert body.rates[PITCH] == pytest.approx(-(25.0**2) * 0.1 * dt)  # to lie along the snow
+    body.numbers[RISE] = 0.12
+    body.step(Command((0.0, 0.0)), saw(), dt)
+    assert body.rates[RISE] == pytest.approx(-3.6 + dt * 3.6**2 / 0.8)
+    for _ in range(400):
+        body.step(Command((0.0, 0.0)), saw(), dt)
+    assert body.numbers[RISE] == pytest.approx(0.0, abs=0.02)
+    assert body.numbers[PITCH] == pytest.approx(0.0, abs=0.01)
 
 
 def test_force_and_edge_of_the_map_are_inverse() -> None:

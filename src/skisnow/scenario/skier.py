@@ -38,6 +38,8 @@ class Skier:
         Of the control: lean and slip that it plans (rad), deceleration over the speed that is too much (1/s), share of
         the load on the outer ski, corner frequency of the edge angle (1/s), gain of legs and edges on the error of the
         capture point, and rate at which legs give way (1/s).
+    highest_flight
+        Height of the feet over the snow at which a flight ends the run (m).
     control_period
         Time between two decisions (s).
 
@@ -231,6 +233,12 @@ class Skier:
         Label(Message("gain of the edges")),
         Allowed(0.0, 100.0, origin="choice: what balances it"),
     ] = 1.0
+    highest_flight: Annotated[
+        float,
+        Quantity("skier.highest_flight_m", "height of the feet over the snow at which a flight of 0.3 s ends the run"),
+        Label(Message("highest flight")),
+        Allowed(0.0, 100.0, origin="choice: legs brake a fall of 2 m on half a metre"),
+    ] = 2.0
     control_period: Annotated[
         float,
         Quantity("skier.control_period_ms", "time between two decisions of the control, independent of run.output_ms"),

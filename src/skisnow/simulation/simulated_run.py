@@ -63,8 +63,8 @@ REMEDIES: Final[dict[Outcome, str]] = {
         "longer turns; figures/balance shows where the lean left the balance."
     ),
     "airborne": Message(
-        "Both skis were off the snow for 0.3 s. The model does not cover flight: reduce the speed, or use a smoother "
-        "slope."
+        "Both skis were off the snow for 0.3 s, a skier's above skier.highest_flight_m. Reduce the speed, or use a "
+        "smoother slope."
     ),
     "sunk": Message(
         "The boots sank more than half a metre below the surface, or would: this snow does not carry the sledge. Use "
@@ -295,10 +295,12 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
 
 
 def _ended(setup: Setup, flying: float) -> Outcome | None:
-    leaning, pitching = setup.tilt
-    if leaning > TIPPED or (pitching > PITCHED and setup.drive is None and setup.touches):
-        return "tipped_over" if setup.scenario.skier is None else "fell"
-    if flying >= LONGEST_FLIGHT:
+    (leaning, pitching), skier = setup.tilt, setup.scenario.skier
+    if skier is not None and leaning > TIPPED and setup.touches:
+        return "fell"
+    if skier is None and (leaning > TIPPED or (pitching > PITCHED and setup.drive is None and setup.touches)):
+        return "tipped_over"
+    if flying >= LONGEST_FLIGHT and (skier is None or setup.height > skier.highest_flight):
         return "airborne"
     if setup.height < -SINKING_DEPTH:
         return "sunk"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -14,10 +14,10 @@ from .._support.errors import ParameterError
 from ..dynamics import BootPose
 from ..scenario import Plane, Scenario
 from ..scenario.skier import Skier
-from ..scenario.terrain import down_and_left, normals_of
+from ..scenario.terrain import down_and_left, heights_of, normals_of
 from ..track.course import Course
 from .carve import CarveControl, CarvesOverTime, Pursuit, Steering
-from .control import Balance, Controller, SkidControl
+from .control import Balance, Controller, SkidControl, standing
 from .edges import Edges, ForceMap
 from .plan import Gravity, HalfWaves, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of
 from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture
@@ -30,6 +30,8 @@ HELD_AT_START = 1.3
 """Force that the edges of a side-slip hold at the start, over what the slope asks for (modelling assumption)."""
 LEVEL = np.array([0.0, 0.0, 1.0])
 """Normal of a plane slope in its own axes."""
+FLIES_FROM, TOUCHED = 0.02, 0.003
+"""Height of the feet over the snow (m) at which a flight begins, and at which it ends (modelling assumptions)."""
 GREATEST_PRESSED = 2.0
 """Greatest acceleration (m/s²) by the bend of the slope that the skier counts with (modelling assumption)."""
 
@@ -174,6 +176,30 @@ class BalancedSkier:
         bend = float((behind - before)[:2] @ ahead) / (2.0 * half)
         return max(-GREATEST_PRESSED, min(GREATEST_PRESSED, seen.speed**2 * bend))
 
+    def _in_flight(self, moment: Moment, seen: Seen) -> Seen:
+        """The observation; in the air against the snow at the place of the landing, which Newton's laws give."""
+        slope, gravity, sledge = self.scenario.slope, self.scenario.gravity, self.scenario.sledge
+        flown = bool(self.records) and self.records[-1].seen.flies
+        if isinstance(slope, Plane) or (seen.bears and not flown):
+            return seen
+        feet = moment.position + moment.rotation @ moment.boots[:, 0].mean(axis=0)
+        if feet[2] - heights_of(slope, *feet[:2]) < (TOUCHED if flown else FLIES_FROM):
+            return seen
+        velocity, landing, fall = moment.rotation @ moment.velocity[:3], feet.copy(), 0.0
+        for _ in range(5):
+            drop = float(feet[2] - heights_of(slope, *landing[:2]))
+            fall = (velocity[2] + math.sqrt(max(0.0, velocity[2] ** 2 + 2.0 * gravity * drop))) / gravity
+            landing[:2] = feet[:2] + fall * velocity[:2]
+        landing[2] = heights_of(slope, *landing[:2])
+        normal = normals_of(slope, *landing[:2])
+        clearance, nearing = float((feet - landing) @ normal), -float(velocity @ normal)
+        return replace(
+            seen_at(moment, sledge.centre_of_mass, normal, sledge.mass * gravity, sledge.inertia[2]),
+            clearance=clearance,
+            nearing=nearing,
+            falls_with=math.sqrt(max(0.0, nearing**2 + 2.0 * gravity * float(normal[2]) * clearance)),
+        )
+
     @property
     def period(self) -> float:
         """Time from call to call (s)."""
@@ -192,11 +218,14 @@ class BalancedSkier:
         assert control is not None
         normal, gravity = self._stand_on(*moment.position[:2].tolist())
         weight = sledge.mass * self.scenario.gravity
-        seen = seen_at(moment, sledge.centre_of_mass, normal, weight, sledge.inertia[2])
+        seen = self._in_flight(moment, seen_at(moment, sledge.centre_of_mass, normal, weight, sledge.inertia[2]))
         built_in = control if isinstance(control, SkidControl | CarveControl | WedgeControl) else None
         if built_in is not None:
             built_in.gravity = gravity
-        command = control.command(seen, self.posture, dt)
+        if built_in is not None and seen.flies:
+            command = standing(seen, self.posture, (self.posture.edge, float(self.posture.numbers[RIGHT_EDGE])))
+        else:
+            command = control.command(seen, self.posture, dt)
         balance = None if built_in is None else built_in.balance
         self.posture.step(command, seen, dt)
         self.records.append(BalanceRecord(seen, balance, self.posture.numbers.copy()))

@@ -46,7 +46,7 @@ ROLLING: Final = 0.05
 AIR: Final = 0.004
 """Deceleration by the air over the square of the speed (1/m) (modelling assumption)."""
 STOPPED, STANDING_EDGE, HOLDS = 0.2, math.radians(5.0), 20.0
-"""Speed (m/s) below which who stops holds all joints, the edge angle (rad) at least, and its rate (1/s)."""
+"""Speed (m/s) below which a skier who stops holds all joints, the edge angle (rad) at least, and its rate (1/s)."""
 
 
 class Controller(Protocol):

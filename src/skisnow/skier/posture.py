@@ -14,7 +14,7 @@ from ..geometry.vectors import axes_of, combined, cross, minus, plus, times
 from ..scenario.skier import Skier
 from .seen import Seen
 
-AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE, RISE = range(9)
+AHEAD, ASIDE, HIP, LEFT_EDGE, RIGHT_EDGE, LEFT_TOE, RIGHT_TOE, STANCE, RISE, PITCH = range(10)
 """Places in the numbers of a posture."""
 BLUNT: Final = math.sin(math.radians(3.0))
 """Sine of the edge angle below which a ski counts as flat for its lift (modelling assumption)."""
@@ -38,6 +38,15 @@ DAMPED_FROM: Final = math.radians(5.0)
 times the control's period over the damping is to stay below 1)."""
 SETTLING, FASTEST_RISE = 3.0, 0.5
 """Rate (1/s) at which the height goes back to its own, and its greatest speed (m/s) (modelling assumptions)."""
+APPROACH, TOUCHDOWN = 60.0, 0.4
+"""Speed of the skis towards the snow over their clearance (1/s), and at the touch (m/s) (found by trial)."""
+CROUCH, STRETCHED, BRAKED = 0.28, 0.25, 20.0
+"""How far legs give in a landing, and stretch before it (m), for a deceleration (m/s²) (modelling assumptions)."""
+EXTENDS, LANDED = 10.0, 0.05
+"""Greatest acceleration of legs that stretch in the air or after a landing (m/s²), and how much shorter than usual they
+are when it is over (m) (modelling assumptions)."""
+ANKLES, LEVELS = math.radians(25.0), 25.0
+"""Greatest pitch of skis against the body (rad), and its corner frequency in the air (1/s) (modelling assumptions)."""
 FASTEST_SHIFT: Final = 25.0
 """Greatest acceleration of the centre of mass along the skis (m/s²) (found by trial: with 60 the loads peak)."""
 
@@ -96,7 +105,7 @@ class Posture:
     ----------
     numbers, rates
         Centre of mass ahead of and to the left of the feet, yaw of the body against the skis, edge angles, toes,
-        stance and rise of the centre of mass, and their rates.
+        stance, rise of the centre of mass and pitch of the skis, and their rates.
     acceleration
         Acceleration of the centre of mass, relative to the feet, to the left, in the last period (m/s²).
     """
@@ -106,13 +115,14 @@ class Posture:
     stance: float
     half_width: float
     numbers: FloatArray = field(init=False)
-    rates: FloatArray = field(default_factory=lambda: np.zeros(9))
+    rates: FloatArray = field(default_factory=lambda: np.zeros(10))
     acceleration: float = 0.0
     _moment: float = 0.0  # smoothed moment of the snow on the boots (N m)
+    _lands: bool = False  # in the air, or legs still shorter than usual by a landing
     _gives: float = 0.0  # rate to the left by legs that give way (m/s)
 
     def __post_init__(self) -> None:
-        self.numbers = np.zeros(9)
+        self.numbers = np.zeros(10)
         self.numbers[STANCE] = self.stance
 
     @property
@@ -132,8 +142,8 @@ class Posture:
 
     def poses(self) -> list[BootPose]:
         """Poses of the left and the right boot, with their rates."""
-        ahead, aside, yaw, *edges_and_toes, stance, rise = self.numbers.tolist()
-        ahead_rate, aside_rate, yaw_rate, *turns, stance_rate, rise_rate = self.rates.tolist()
+        ahead, aside, yaw, *edges_and_toes, stance, rise, pitch = self.numbers.tolist()
+        ahead_rate, aside_rate, yaw_rate, *turns, stance_rate, rise_rate, pitch_rate = self.rates.tolist()
         height = self.centre[1] + rise
         lean, lean_rate = math.atan2(aside, height), (aside_rate * height - aside * rise_rate) / (height**2 + aside**2)
         (sl, cl), (sy, cy) = ((math.sin(angle), math.cos(angle)) for angle in (lean, yaw))
@@ -150,8 +160,10 @@ class Posture:
             from_centre = (-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height)
             arm = combined(from_centre, body)
             moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
-            axes = [combined(axis, body) for axis in axes_of(edge, 0.0, toe).tolist()]
-            turning = minus(plus(spin, times(toe_rate, body[2])), times(edge_rate, axes[0]))
+            axes = [combined(axis, body) for axis in axes_of(edge, pitch, toe).tolist()]
+            across = combined((-math.sin(toe), math.cos(toe), 0.0), body)
+            turning = plus(spin, minus(times(toe_rate, body[2]), times(pitch_rate, across)))
+            turning = minus(turning, times(edge_rate, axes[0]))
             numbers = plus(arm, origin), axes, plus(moving, cross(spin, arm)), turning
             poses.append(BootPose(*(np.array(each) for each in numbers)))
         return poses
@@ -159,11 +171,9 @@ class Posture:
     def step(self, command: Command, seen: Seen, dt: float) -> None:
         """Move by a period (s), as far as joints and legs allow."""
         self._step_aside(command, seen, dt)
-        rate = float(self.rates[RISE])
-        more = 0.0 if command.load is None else self._edged() * (command.load - seen.load) / (2.0 * DAMPING)
-        later = max(-FASTEST_RISE, min(FASTEST_RISE, more - SETTLING * float(self.numbers[RISE])))
-        self.numbers[RISE] += 0.5 * (rate + later) * dt
-        self.rates[RISE] = later
+        self._step_up(command, seen, dt)
+        level, corner = (float(self.numbers[PITCH]) - seen.pitch, LEVELS) if seen.flies else (0.0, OPENING)
+        self._follow(PITCH, max(-ANKLES, min(ANKLES, level)), corner, dt)
         self._step_ahead(command.ahead, dt)
         if command.hip_torque is not None:
             self._step_hips(command.hip_torque, seen, dt)
@@ -196,6 +206,26 @@ class Posture:
         self.acceleration = (later + gives - rate) / dt
         self.numbers[ASIDE] = max(-most, min(most, place + 0.5 * (rate + later + gives) * dt))
         self.rates[ASIDE], self._gives = later + gives, gives
+
+    def _step_up(self, command: Command, seen: Seen, dt: float) -> None:
+        """Step of the legs upwards, by the deviation of the load.
+
+        In the air they stretch for the landing, then take the skis to the snow's speed, and brake evenly after it.
+        """
+        rise, rate = float(self.numbers[RISE]), float(self.rates[RISE])
+        more = 0.0 if command.load is None else self._edged() * (command.load - seen.load) / (2.0 * DAMPING)
+        later = max(-FASTEST_RISE, min(FASTEST_RISE, more - SETTLING * rise))
+        left, sinks = rise + CROUCH, rate < -TOUCHDOWN
+        self._lands = seen.flies or (self._lands and (sinks or rise < -LANDED))
+        if seen.flies:
+            stretched = min(STRETCHED, seen.falls_with**2 / (2.0 * BRAKED))
+            touching = max(TOUCHDOWN, APPROACH * seen.clearance) - seen.nearing
+            later = min(FASTEST_RISE, SETTLING * (stretched - rise), max(touching, -TOUCH * left))
+        if self._lands:
+            braked = rate + dt * (rate**2 / (2.0 * max(left, 0.02)) if sinks else EXTENDS)
+            later = braked if sinks and not seen.flies else min(later, braked)
+        self.numbers[RISE] = rise + 0.5 * (rate + later) * dt
+        self.rates[RISE] = later
 
     def _edged(self) -> float:
         """Share of the damping of the legs that the edges allow, from 0 to 1."""

@@ -66,6 +66,11 @@ class Seen:
         Edge angles of the left and the right ski against the snow (rad).
     bears, lifted
         True if the loads contain information, and True if one ski is off the snow.
+    pitch
+        Of the skis against the snow, tips up (rad).
+    clearance, nearing, falls_with
+        In the air: height of the feet over the snow (m), speed of the centre of mass towards it, now and at the landing
+        (m/s); else 0.
     """
 
     time: float
@@ -95,6 +100,15 @@ class Seen:
     edge: tuple[float, float]
     bears: bool
     lifted: bool
+    pitch: float = 0.0
+    clearance: float = 0.0
+    nearing: float = 0.0
+    falls_with: float = 0.0
+
+    @property
+    def flies(self) -> bool:
+        """True in the air."""
+        return self.clearance > 0.0
 
     @property
     def load(self) -> float:
@@ -168,6 +182,7 @@ def seen_at(
         edge=(_edge(boots[0], up), _edge(boots[1], up)),
         bears=bears,
         lifted=bears and min(loads) < LIFTED * load,
+        pitch=math.asin(max(-1.0, min(1.0, dot(mean[1], up)))),
     )
 
 
