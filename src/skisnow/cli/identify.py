@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .options import (
     MOST_RESAMPLES,
     add_changes,
+    add_fall_line_azimuth,
     add_language,
     add_scheduler,
     add_workers,
@@ -26,6 +28,7 @@ MOST_SAMPLES, MOST_STARTS = 1_000_000, 1_000
 if TYPE_CHECKING:
     from ..identification import Identification
     from ..scenario import ScenarioFile
+    from ..scenario.resolution import ScenarioInput
 
 KEPT = "simulations.partial"
 
@@ -49,6 +52,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     free = 'parameters to fit, such as mu_0,drag_area,S_f; default: those with a table [identify."KEY"] in the file'
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
     add_changes(parser)
+    add_fall_line_azimuth(parser, "for tracks in latitude and longitude; default: [identify.site] of the file")
     _add_ways(parser)
     parser.add_argument("--json", action="store_true", help="print identification.json alone to standard output")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write identification.json, fits.csv and a report")
@@ -114,7 +118,7 @@ def _identified(options: argparse.Namespace) -> Identification:
 
     with Progress() as progress:
         return identify(
-            options.scenario,
+            _with_site(options),
             options.data,
             options.free,
             changes=changes_of(options),
@@ -131,6 +135,17 @@ def _identified(options: argparse.Namespace) -> Identification:
             restart=not options.resume,
             progress=progress,
         )
+
+
+def _with_site(options: argparse.Namespace) -> ScenarioInput:
+    """The scenario, with the direction of the fall line that the option states."""
+    from ..scenario.reading import load_input
+
+    scenario_input = load_input(options.scenario)
+    if options.fall_line_azimuth_deg is None:
+        return scenario_input
+    site = {**scenario_input.identify.get("site", {}), "fall_line_azimuth_deg": options.fall_line_azimuth_deg}
+    return replace(scenario_input, identify={**scenario_input.identify, "site": site})
 
 
 def _tell(options: argparse.Namespace, result: Identification, scenario_input: ScenarioFile) -> None:

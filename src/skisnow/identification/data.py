@@ -169,6 +169,8 @@ def collect_data(
     _require_not_free(starts, keys)
     own = {key.partition("@")[0] for key in keys}
     warnings = [_start_warning(track, scenario, starts, own) for track in tracks]
+    if _FROM_FIRST_POINT in methods and not {"start.x_m", "start.y_m"} <= own:
+        warnings.append(_START_OF_FIRST_POINT)
     snow = set(SNOW_NUMBERS) & own.union(*starts.values())
     return IdentificationData(
         tracks=tuple(tracks),
@@ -271,9 +273,10 @@ def move_to_scenario_frame(
         return track, []
     if site is None:
         raise ParameterError(
-            "{name} is in east, north and up, but the place of the slope is not given. Write [identify.site] with "
-            "fall_line_azimuth_deg (the compass direction in which it falls), and latitude_deg and longitude_deg of "
-            "its x = y = 0; without these two the track's first point is used as the scenario's start"
+            "{name} is in latitude and longitude, but the direction of the slope is missing. Fix: give "
+            "--fall-line-azimuth-deg, the compass direction in which it falls, or write [identify.site] with "
+            "fall_line_azimuth_deg, and latitude_deg and longitude_deg of x = y = 0; without these two the track's "
+            "first point is used as the scenario's start"
         ).tag("site_missing", name=track.name)
     parsed = _site(site)
     azimuth = parsed.fall_line_azimuth_deg * DEGREE
@@ -290,6 +293,13 @@ def move_to_scenario_frame(
     return _from_its_first_point(track, scenario, azimuth, angle)
 
 
+_FROM_FIRST_POINT: Final = "the first point of each track is taken as the scenario's start; its error is in all points"
+_START_OF_FIRST_POINT: Final = Message(
+    "The first point of each track is taken as the scenario's start. Its error is in all points, and no interval "
+    "counts it. Add start.x,start.y to --free, or give the place of the slope in [identify.site]."
+)
+
+
 def _from_its_first_point(
     track: Track, scenario: ScenarioFile, azimuth: float, angle: float | None
 ) -> tuple[Track, list[str]]:
@@ -300,8 +310,7 @@ def _from_its_first_point(
     )
     start = scenario.scenario.start
     place = turned.place + np.array([start.x, start.y, 0.0])
-    method = "the first point of each track is taken as the scenario's start; its error is in all points"
-    return replace(turned, place=place), [method]
+    return replace(turned, place=place), [_FROM_FIRST_POINT]
 
 
 def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
