@@ -147,27 +147,25 @@ def test_table_has_skis_own_names_sidecut_radius_and_bearing_length(tmp_path: Pa
     assert found["bearing_length_m"] < found["contact_length_m"]
 
 
-@pytest.mark.parametrize(
-    ("switch", "key", "value"),
-    [
-        (["--no-side-force-bending"], "side_force_bending", False),
-        (["--side-force-spread", "base-reaction"], "side_force_spread", "base-reaction"),
-        (["--groove", "path"], "groove", "path"),
-        (["--moment-balance", "free"], "moment_balance", "free"),
-        (["--no-twist"], "twist", False),
-        (["--clamp-length-m", "0"], "clamp_length_m", 0.0),
-        (["--footprint-stiffness-N-per-mm2", "30"], "footprint_stiffness_N_per_mm2", 30.0),
-        (["--elements", "80"], "elements", 80),
-        (["--moment-Nm", "40"], "moment_Nm", 40.0),
-        (["--unloading-ratio", "inf"], "unloading_ratio", 1000.0),
-    ],
-)
-def test_each_choice_is_in_force_and_named(switch: list[str], key: str, value: object, capsys: Printed) -> None:
-    plain, switched = answer([*ASKED, *SNOW], capsys), answer([*ASKED, *SNOW, *switch], capsys)
-    assert switched["inputs"] == plain["inputs"] | {key: value}
-    assert switched["turn_radius_boot_m"] != plain["turn_radius_boot_m"]
-    if key == "twist":
-        assert set(switched["twist_deg"]) == {0.0}
+def test_each_choice_is_in_force_and_named(capsys: Printed) -> None:
+    plain = answer([*ASKED, *SNOW], capsys)
+    switches: tuple[tuple[str, str, object], ...] = (
+        ("--no-side-force-bending", "side_force_bending", False),
+        ("--side-force-spread base-reaction", "side_force_spread", "base-reaction"),
+        ("--groove path", "groove", "path"),
+        ("--moment-balance free", "moment_balance", "free"),
+        ("--no-twist", "twist", False),
+        ("--clamp-length-m 0", "clamp_length_m", 0.0),
+        ("--footprint-stiffness-N-per-mm2 30", "footprint_stiffness_N_per_mm2", 30.0),
+        ("--elements 80", "elements", 80),
+        ("--moment-Nm 40", "moment_Nm", 40.0),
+        ("--unloading-ratio inf", "unloading_ratio", 1000.0),
+    )
+    for words, key, value in switches:
+        switched = answer([*ASKED, *SNOW, *words.split()], capsys)
+        assert switched["inputs"] == plain["inputs"] | {key: value}
+        assert switched["turn_radius_boot_m"] != plain["turn_radius_boot_m"], key
+        assert (set(switched["twist_deg"]) == {0.0}) is (key == "twist")
 
 
 def test_snow_of_a_campaign_with_its_intervals(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -237,6 +238,7 @@ def pose(s: float) -> tuple[FloatArray, FloatArray]:
     return place[None], np.column_stack([ahead, across, np.cross(ahead, across)])[None]
 
 
+@cache
 def wrench(step: float) -> FloatArray:
     """In the ski's axes at the end of the way, gone in steps of a length (m)."""
     snow = SnowField(2e8, 3e5, 10.0, shear_displacement=2e-5, part_along=2e-3)

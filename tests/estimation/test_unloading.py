@@ -12,7 +12,7 @@ import pytest
 from scipy import stats
 
 import skisnow
-from skisnow.campaign import Campaign, ReferenceNoise, reference_campaign, write_reference
+from skisnow.campaign import Campaign, ReferenceNoise, reference_campaign
 from skisnow.estimation import results_dict
 from skisnow.estimation.campaign_model import DEFAULT_PRIORS, fit_campaign
 from skisnow.estimation.comparisons import site_values
@@ -24,7 +24,6 @@ from skisnow.estimation.hardness import (
     shear_stress,
 )
 from skisnow.estimation.readings import ReadingUncertainty, readings_of
-from skisnow.estimation.result_rows import experiment_results
 from skisnow.estimation.screening import quality_flags, series_estimates
 from skisnow.estimation.unloading import Unloading, _reciprocal, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
@@ -204,13 +203,6 @@ def test_a_snow_takes_it_and_the_file_says_the_same(tmp_path: Path) -> None:
 
 def _fields(snow: skisnow.SnowProperties, **other: Any) -> dict[str, Any]:
     return {name: getattr(snow, name) for name in snow.__dataclass_fields__} | other
-
-
-def test_at_once_and_the_analysis_say_the_same(tmp_path: Path) -> None:
-    write_reference(tmp_path, seed=3)
-    campaign = skisnow.read_campaign(tmp_path)
-    quick_results = experiment_results(campaign)["penetration"]["experiments"]
-    assert quick_results == skisnow.analyse(campaign, n_resamples=100).results["penetration"]["experiments"]
 
 
 @pytest.mark.parametrize("seating_sd", [0.02e-3, 0.05e-3])

@@ -375,19 +375,7 @@ def test_bad_change_is_rejected_in_a_sentence(changes: dict[str, object], told: 
         ({"name": ""}, "missing"),
         ({"duration_s": ""}, "no_data"),
         ({"mass_kg": "mass_kg ="}, "not_toml"),
-        ({"mass_kg": "mass_kg = 0"}, coded("out_of_range", low=0.0, name="sledge.mass_kg", value="0")),
-        (
-            {"step_ms": "step_ms = 1000"},
-            coded(
-                "out_of_range",
-                low=0.001,
-                high=5.0,
-                name="solver.step_ms",
-                value="1000",
-                allowed="from 0.001 to 5",
-                unit="ms",
-            ),
-        ),
+        ({"step_ms": "step_ms = 1000"}, coded("out_of_range", low=0.001, high=5.0, name="solver.step_ms", unit="ms")),
     ],
 )
 def test_bad_file_is_rejected_with_its_name(tmp_path: Path, replaced: dict[str, str], told: str | Coded) -> None:

@@ -16,7 +16,6 @@ from skisnow.forces.shear import AngleShear, DensityShear, MachiningShear
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Profile, SnowMap, load_scenario, read_snow_map, scenario_file
 from skisnow.scenario.plausibility import implausible_values
-from skisnow.scenario.run_settings import Start
 from skisnow.scenario.sledge import Shear
 from skisnow.scenario.snow_map import read_snow_layers
 from skisnow.simulation.run_setup import laid_out
@@ -272,10 +271,6 @@ def test_machining_takes_half_of_the_snows_stress_or_its_own() -> None:
     assert given.of(S_F) == MachiningShear(0.5 * S_F, 0.1, least_shear_plane=0.2)
     own = Shear(law="machining", dynamic_shear_strength=0.1e6, transverse_friction=0.1, least_shear_plane=0.2)
     assert own.of(S_F) == MachiningShear(0.1e6, 0.1, least_shear_plane=0.2)
-
-
-def test_a_run_starts_where_x_and_y_begin() -> None:
-    assert (Start(speed=5.0).x, Start(speed=5.0).y) == (0.0, 0.0)
 
 
 def test_friction_is_that_of_a_law_file_or_a_line(tmp_path: Path) -> None:

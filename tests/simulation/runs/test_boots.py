@@ -1,6 +1,7 @@
 """Boots that are held by a table, and the forces of the snow."""
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -239,13 +240,9 @@ SETTLED = slice(30, -5)
 """Moments after the start and before the end, where differences over time are accurate."""
 
 
+@cache
 def simulated(**changes: object) -> Run:
     return skisnow.simulate(skisnow.load_scenario(TURN, changes={"run.duration_s": 2.0} | changes))
-
-
-@pytest.fixture(scope="module")
-def banked_turn() -> Run:
-    return simulated()
 
 
 def force_by_inertia(run: Run) -> np.ndarray:
@@ -275,9 +272,9 @@ def test_the_total_force_is_what_boot_and_inertia_take(changes: dict[str, object
     assert run.skis.total_force[SETTLED] == pytest.approx(np.linalg.norm(expected, axis=2), abs=4.0)
 
 
-def test_the_total_force_is_the_vector_of_normal_force_shear_and_friction(banked_turn: Run) -> None:
+def test_the_total_force_is_the_vector_of_normal_force_shear_and_friction() -> None:
     """Friction is 0.01 of the normal force. The edge line turns by 0.1 rad at most: cos 0.1 = 0.995."""
-    skis = banked_turn.skis
+    skis = simulated().skis
     normal, side = (
         np.trapezoid(each, -skis.station, axis=2) for each in (skis.force_per_length, skis.shear_per_length)
     )

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -309,22 +310,24 @@ WEAKER = 4.0
 """Distance (m) from which the snow is weaker."""
 
 
+@cache
+def of_strength(strength_along: Callable[[float], float] | None = None) -> Run:
+    return simulate(load_scenario("carved-46m", changes=CHANGES), strength_along=strength_along)
+
+
 def test_the_same_strength_everywhere_gives_the_same_bits() -> None:
-    scenario = load_scenario("carved-46m", changes=CHANGES)
-    plain, asked = simulate(scenario), simulate(scenario, strength_along=lambda _: 1.0)
-    assert np.array_equal(plain.place, asked.place)
+    assert np.array_equal(of_strength().place, of_strength(lambda _: 1.0).place)
 
 
 def test_where_it_gets_weaker_the_edges_slip() -> None:
     """Nothing changes before; behind, the sledge runs wide like on snow that is weak from the beginning."""
-    scenario = load_scenario("carved-46m", changes=CHANGES)
     distances: list[float] = []
 
     def strength(distance: float) -> float:
         distances.append(distance)
         return 0.1 if distance > WEAKER else 1.0
 
-    plain, run = simulate(scenario), simulate(scenario, strength_along=strength)
+    plain, run = of_strength(), of_strength(strength)
     assert np.all(np.diff(distances) > 0.0)
     steps = np.linalg.norm(np.diff(plain.place, axis=0), axis=1)
     before = np.concatenate([[0.0], np.cumsum(steps)]) <= WEAKER

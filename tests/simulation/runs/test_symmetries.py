@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -227,6 +228,7 @@ def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_
     )
 
 
+@cache
 def sufficient_strength() -> float:
     """S_f (N/mm²) = m g sin α/(e₁ L + e₂ L), with the depths e at which both edges are at the start."""
     run = across(strength=1.0, duration=2e-3)
