@@ -11,6 +11,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact
 from skisnow.dynamics import Body, BootMotion, BootPose, Dynamics, Ended, StepControl
+from skisnow.dynamics.motion import moment_parts
 from skisnow.geometry.vectors import angles_of, axes_of
 from skisnow.simulation.sledge_body import sledge_body
 from tests.coded import raises
@@ -59,6 +60,25 @@ def test_boots_bear_the_weight_of_what_stands_on_them() -> None:
     centre = np.array([SLEDGE.centre_of_mass[0], 0.0, SLEDGE.centre_of_mass[1]])
     assert force.sum(axis=0)[2] == pytest.approx(-weight[2], rel=1e-9)
     assert moment.sum(axis=0)[:2] == pytest.approx(-np.cross(centre, weight)[:2], abs=1e-6)
+
+
+def test_a_restored_motion_goes_on_with_its_bits_and_a_row_has_every_part() -> None:
+    dynamics = sledge(SCENARIO)
+    dynamics.find_equilibrium()
+    dynamics.begin(ahead(7.0))
+    assert dynamics.advance(0.05) is Ended.REACHED
+    kept = dynamics.state()
+    rows = []
+    for _ in range(2):
+        assert dynamics.advance(0.1) is Ended.REACHED
+        rows.append(dynamics.moment)
+        dynamics.restore(kept)
+        assert dynamics.time == 0.05
+    assert np.array_equal(rows[0], rows[1])
+    assert dynamics.advance(0.1) is Ended.REACHED
+    parts = moment_parts(dynamics.moment, dynamics.body.skis)
+    for name in ("time", "position", "rotation", "boots", "boot_wrench"):
+        assert np.array_equal(parts[name], getattr(dynamics, name)), name
 
 
 def weightless(body: Body) -> Body:
