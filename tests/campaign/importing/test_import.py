@@ -378,6 +378,15 @@ def test_what_is_not_stated_is_an_error_until_it_is_answered(
         require_right(propose(FILE, data, Answers(**answers)))
 
 
+def test_the_only_unknown_heading_is_proposed_for_the_only_missing_column() -> None:
+    book = everyday()
+    book["Hang oben"]["D5"] = "Anzeige"
+    answers = Answers(table={"Hang oben:5": "penetration"})
+    (question,) = propose(FILE, bytes_of(book), answers).questions
+    assert (question.key, question.proposed) == ("penetration.Anzeige", "depth_mm")
+    require_right(propose(FILE, bytes_of(book), answers.with_("column", question.key, question.proposed)))
+
+
 def test_tests_of_one_name_and_site_on_two_sheets_are_kept_apart_by_the_sheet() -> None:
     book = everyday()
     first = book["Hang oben"]

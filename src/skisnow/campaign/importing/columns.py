@@ -101,7 +101,8 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
             yield ask("column", key, section.key, value=heading, choices=(column, NONE), proposed=column)
     missing = [name for name in form.required if name not in times and name not in FROM_NOTES]
     free = [heading for heading, column in zip(section.headings, stated, strict=True) if not column]
-    likely = columns_by_synonym(form, free)
+    only = dict(zip(free, missing, strict=True)) if len(free) == len(missing) == 1 else {}
+    likely = only | columns_by_synonym(form, free)
     for heading in free if missing else ():
         proposed = likely.get(heading, NONE)
         choices = (*missing, *(name for name in form.known if name not in missing), NONE)
