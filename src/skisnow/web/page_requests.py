@@ -259,17 +259,19 @@ def upload_form(address: str) -> ui.element:
 
 def file_input(key: str, label: str, id_: str, further: str = "") -> None:
     """Field for files with its label; ``further`` properties of the field."""
-    _labelled(id_, label)
-    ui.element("input").props(f"type=file id={id_} name={key} required {further}".rstrip())
+    with ui.element("div").classes("labelled"):
+        _add_label(id_, label)
+        ui.element("input").props(f"type=file id={id_} name={key} required {further}".rstrip())
 
 
 def text_input(key: str, label: str, id_: str, further: str = "") -> None:
     """Field for a text with its label; ``further`` properties of the field."""
-    _labelled(id_, label)
-    ui.element("input").props(f"id={id_} name={key} {further}".rstrip()).classes("act plain")
+    with ui.element("div").classes("labelled"):
+        _add_label(id_, label)
+        ui.element("input").props(f"id={id_} name={key} {further}".rstrip()).classes("act plain")
 
 
-def _labelled(id_: str, label: str) -> None:
+def _add_label(id_: str, label: str) -> None:
     with ui.element("label").props(f"for={id_}"):
         Words(label)
 
