@@ -111,6 +111,12 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
     assert isinstance(found, Numbers)
     assert found.results["snow_micro_pen"]["recordings"][0]["mean_force_N"] == pytest.approx(2.0, rel=0.01)
     assert found.results["weather"]["station"] == "S"
+    assert "regressions" in found.tables["en"]
+    (folder / "penetration.csv").unlink()
+    alone = analyse_files(kept_files(lab, lab.store.add(folder).id), Choice())
+    assert isinstance(alone, Numbers)
+    assert list(alone.tables["de"]) == ["published_relations", "snow_micro_pen"]
+    assert "Handhärte" in alone.key_results["de"][0] and "Plattenversuch" in alone.key_results["de"][0]
     assert set(CorrectionSession(lab, id_).tables) == {"penetration.csv"}
     assert (
         CorrectionSession(lab, id_).quick_results("A").experiments["penetration.csv", "1"]

@@ -132,7 +132,7 @@ class AnalysisView:
 
     def _show(self, result: CachedAnalysis) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, result
-        if first:
+        if first and ReportData(result.numbers.analysis).has_tests:
             self._show_choices(result.numbers)
         self._show_results(result.numbers)
         self._show_tables(result.numbers)

@@ -41,7 +41,10 @@ from .transfer import entry_files, kept_files
 LEFT_OUT: Final = Message("excluded by choice in the lab")
 N_FIGURES: Final = len(DRAWERS) + 2
 """Maximum number of figures: also those of recordings."""
-SHOWN_TABLES: Final = ("sites", "models", "model_tests", "regressions", "penetration_experiments", "shear_experiments")
+SHOWN_TABLES: Final = (
+    "sites", "published_relations", "snow_micro_pen", "models", "model_tests", "regressions",
+    "penetration_experiments", "shear_experiments",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -391,8 +391,8 @@ BUILDERS: Final = (
     unloading_table,
     displacement_sites_table,
     displacement_table,
-    snow_micro_pen_table,
     published_relations_table,
+    snow_micro_pen_table,
     regressions_table,
     weather_table,
     group_comparison_table,
@@ -408,12 +408,13 @@ BUILDERS: Final = (
 def campaign_tables(data: ReportData) -> dict[str, Table]:
     """All tables by name, including empty ones.
 
-    The tables of recordings and of the weather are absent if the campaign has no such data.
+    The tables of recordings, of the weather and of regressions are absent if the campaign has no such data.
     """
     absent = {
         snow_micro_pen_table: data.campaign.snow_micro_pen is None,
         published_relations_table: not data.results.get("published_relations"),
         weather_table: data.campaign.weather is None,
+        regressions_table: not data.has_tests,
     }
     builders = (build for build in BUILDERS if not absent.get(build, False))
     tables = (replace(build(data), synthetic=data.synthetic) for build in builders)
