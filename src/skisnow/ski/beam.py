@@ -78,12 +78,12 @@ def stiffness_matrices(
     bending_stiffness, torsional_stiffness: (n, 4) EI and GJ (N m²) at the `GAUSS_POINTS` of each element.
     """
     stiffness = np.concatenate([bending_stiffness, torsional_stiffness], axis=1)
-    return np.einsum("ng,ngij->nij", stiffness, _unit_stiffness(length.tobytes()))
+    return np.asarray(stiffness[:, None] @ _unit_stiffness(length.tobytes())).reshape(-1, 6, 6)
 
 
 @functools.lru_cache(maxsize=8)
 def _unit_stiffness(lengths: bytes) -> FloatArray:
-    """Stiffness matrices for EI = 1 at each of the Gauss points, then GJ = 1: (n, 8, 6, 6)."""
+    """Stiffness matrices for EI = 1 at each of the Gauss points, then GJ = 1: (n, 8, 36)."""
     length = np.frombuffer(lengths)
     curvature, weight = curvature_shape(GAUSS_POINTS[None, :], length[:, None]), GAUSS_WEIGHTS * length[:, None]
     out = np.zeros((len(length), 8, 6, 6))
@@ -94,7 +94,7 @@ def _unit_stiffness(lengths: bytes) -> FloatArray:
         -1.0,
         -1.0,
     ]
-    return out
+    return out.reshape(-1, 8, 36)
 
 
 def mass_matrices(

@@ -62,7 +62,7 @@ def require_tables(name: str, tables: SkiSections) -> None:
                 needed=str(tables.station.shape),
             )
             _refuse(name, problem, Message("Give equally long tables"))
-        if not np.all(np.isfinite(table)):
+        if not np.isfinite(table).all():
             place = int(np.argmin(np.isfinite(table)))
             problem = Message(
                 "{table}[{place}] is {value}; every value must be finite", table=which, place=place, value=table[place]
@@ -79,16 +79,16 @@ def _refuse(name: str, problem: Message, action: Message) -> None:
 
 
 def _require_stations(name: str, station: FloatArray) -> None:
-    steps = -np.diff(station)
-    if np.any(steps <= 0):
+    steps = station[:-1] - station[1:]
+    if steps.min() <= 0:
         place = int(np.argmax(steps <= 0)) + 1
         problem = Message(
             "station[{place}] = {station:.6g} m is not below the one before it", place=place, station=station[place]
         )
         _refuse(name, problem, Message("List the stations from tip to tail, positive in front of the boot"))
-    if np.max(steps) > _STRETCH * GREATEST_SPACING:
+    if steps.max() > _STRETCH * GREATEST_SPACING:
         problem = Message(
-            "stations are up to {spacing:.3g} mm apart; at most 2.5 mm is allowed", spacing=np.max(steps) * 1e3
+            "stations are up to {spacing:.3g} mm apart; at most 2.5 mm is allowed", spacing=steps.max() * 1e3
         )
         _refuse(name, problem, Message("Interpolate the tables first, as the reader of ski files does"))
 
@@ -96,7 +96,7 @@ def _require_stations(name: str, station: FloatArray) -> None:
 def _require_positive(name: str, tables: SkiSections) -> None:
     for which in _POSITIVE:
         table: FloatArray = getattr(tables, which)
-        if np.any(table <= 0):
+        if table.min() <= 0:
             place = int(np.argmax(table <= 0))
             problem = Message(
                 "{table} is {value:.6g} at {station:.4f} m from the boot; it must be above 0",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -18,8 +18,8 @@ from .._support.errors import ParameterError
 from .._support.units import MM
 from ..parameters import nearest
 from .assembling import ArcOutline, moved_stations, stiffness_table
-from .file_keys import BASE, COLUMNS, LISTS, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
-from .layout import BaseShape, Layout, layout_of_lengths
+from .file_keys import BASE, COLUMNS, LISTS, RIGID, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
+from .layout import Layout, layout_of_lengths
 from .ski import Ski
 from .ski_file import MADE_OF_KEYS, ski_of_keys
 from .table_file import StationTable
@@ -139,9 +139,8 @@ def _curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
 
 def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
     """Factors of the widths that multiply their excess over the waist by ``factor``."""
-    half = ski.sidecut_length / 2.0
-    place = np.clip(ski.station, ski.sidecut_middle - half, ski.sidecut_middle + half)
-    width = np.interp(place, ski.station[::-1], ski.width[::-1])
+    (front, rear), (at_front, _, at_rear) = ski.sidecut_ends, ski.sidecut_widths
+    width = np.where(ski.station > front, at_front, np.where(ski.station < rear, at_rear, ski.width))
     waist = width.min()
     return np.asarray((waist + factor * (width - waist)) / width)
 
@@ -238,67 +237,96 @@ _PARTS: Final = ("width", "base_height", *STIFFNESSES)
 _LENGTHS: Final = ("length_mm", "running_length_mm", "sidecut_length_mm", "tail_overhang_mm", "boot_position_mm")
 _OF_NUMBERS: Final = ("running_length_mm", "base_bevel_deg", "edge_width_mm")
 """Keys of `_NUMBERS`."""
-_PLAIN: Final = BaseShape()
 _LENGTH_STEP: Final = 1e-3  # mm; of other keys a ten thousandth
 
 
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
     """Growth of a ski with a parameter of `shape_parameters`, of lengths and heights by central differences."""
-    value, key = shape_value(ski, name), name.removeprefix("ski.")
     if name in FACTORS:
         column = name.removeprefix("edit.")
         if column == SIDECUT:
             return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
         return _of_table(EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column])))
-    parsed, station = parsed_keys(ski), _station_bytes(ski)
-    row = _ROW.fullmatch(key)
-    if row and row[1] in STIFFNESSES:
-        return _with_row(parsed_part(ski, row[1]), row[1], int(row[2]) - 1, station)
-    if key in WIDTHS and parsed.tip_end_width is None:
-        return _with_width(parsed_part(ski, "width"), WIDTHS.index(key), station)
+    memos, table = _memos(ski), _table_of(name)
+    memo = memos.get(table, {})
+    if name in memo:
+        return memo[name]
+    value, key, parsed = shape_value(ski, name), name.removeprefix("ski."), parsed_keys(ski)
     step = _LENGTH_STEP if key.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP
+    if table in STIFFNESSES:
+        rows = _stiffness(parsed, table, _layout(parsed)).growths(ski.station)
+        memo |= {f"ski.{table}[{row}]": _of_table(EDITED_COLUMNS[table], of) for row, of in enumerate(rows, start=1)}
+    elif table == "base_height":
+        memo[name] = _of_table(table, _part_growth(parsed, key, step, table, ski.station)[1])
+    elif table == "width" and parsed.tip_end_width is None:
+        units = MM * _unit_widths(parsed, _layout(parsed), ski.station)
+        memo |= {f"ski.{width}": _of_table(table, unit) for width, unit in zip(WIDTHS, units, strict=True)}
+    elif table == "width":
+        sides = (_with_field(parsed, key, side * step * MM) for side in (1.0, -1.0))
+        ends = [_outline(side, _layout(side)).width_at(ski.station) for side in sides]
+        return _of_table(table, (ends[0] - ends[1]) / (2.0 * step))
+    else:
+        return _of_several(ski, name, step)
+    return memo[name]
+
+
+def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
+    """Growth with a key that changes several tables, or numbers."""
+    parsed, memos, key = parsed_keys(ski), _memos(ski), name.removeprefix("ski.")
     tables, numbers = np.zeros((len(_TABLES), len(ski.station))), np.zeros(len(_NUMBERS))
     if key in _OF_NUMBERS:
         numbers[_OF_NUMBERS.index(key)] = SKI_KEYS[key].factor
-    if key in (*WIDTHS, TIP_END):
-        sides = (_with_field(parsed, key, side * step * MM) for side in (1.0, -1.0))
-        ends = [_outline(side, _layout(side)).width_at(ski.station) for side in sides]
-        tables[1] = (ends[0] - ends[1]) / (2.0 * step)
-    elif key in BASE:
-        tables[2] = _part_growth(parsed_part(ski, "base_height"), key, step, "base_height", station)[1]
-    elif key in _LENGTHS or row:
-        for part in STIFFNESSES if row else _PARTS:
-            grown = _part_growth(parsed_part(ski, part), key, step, part, station)
-            tables[0] = grown[0]
-            widths = np.array([parsed.tip_width, parsed.waist_width, parsed.tail_width], float)
-            tables[1 + _PARTS.index(part)] = widths @ grown[1:] if part == "width" else grown[1]
+    parts = _PARTS if key in _LENGTHS else STIFFNESSES if _ROW.fullmatch(key) else ()
+    for part in parts:
+        memo = memos[part]
+        if name not in memo:
+            memo[name] = _part_growth(parsed, key, step, part, ski.station)
+        grown = memo[name]
+        tables[0] = grown[0]
+        widths = parsed.tip_width, parsed.waist_width, parsed.tail_width
+        tables[1 + _PARTS.index(part)] = np.array(widths, float) @ grown[1:] if part == "width" else grown[1]
     return TableGrowth(tables, numbers)
 
 
-@functools.lru_cache(maxsize=16)
-def _station_bytes(ski: Ski) -> bytes:
-    return ski.station.tobytes()
+@functools.lru_cache(maxsize=256)
+def _table_of(name: str) -> str:
+    """The table that a parameter changes alone; empty where it changes several, or numbers."""
+    key, _, row = name.removeprefix("ski.").partition("[")
+    if row:
+        return key if key in STIFFNESSES else ""
+    return "base_height" if key in BASE else "width" if key in (*WIDTHS, TIP_END) else ""
+
+
+@functools.lru_cache(maxsize=64)
+def _memos(ski: Ski) -> dict[str, dict[str, Any]]:
+    """By table: growths with parameters, the same for all skis with the same keys and stations of that table."""
+    if ski.keys is None:
+        return {}
+    keys = parsed_keys(ski)
+    place = (ski.station.tobytes(), *(getattr(keys, SKI_KEYS[key].field) for key in _LENGTHS))
+    return {
+        "width": _memo(*place, _relative_end(keys)),
+        "base_height": _memo(*place, keys.base),
+        "EI_N_m2": _memo(*place, keys.stiffness_station, keys.bending_stiffness, "EI"),
+        "GJ_N_m2": _memo(*place, keys.stiffness_station, keys.torsional_stiffness, "GJ"),
+    }
+
+
+@functools.lru_cache(maxsize=64)
+def _memo(*_keys: Hashable) -> dict[str, Any]:
+    return {}
+
+
+def _relative_end(keys: SkiFile) -> float | None:
+    """Width of the very tip over that of the tip."""
+    return None if keys.tip_end_width is None else keys.tip_end_width / (keys.tip_width or 1.0)
 
 
 def _of_table(table: str, growth: FloatArray) -> TableGrowth:
     tables = np.zeros((len(_TABLES), len(growth)))
     tables[_TABLES.index(table)] = growth
     return TableGrowth(tables, np.zeros(len(_NUMBERS)))
-
-
-@functools.lru_cache(maxsize=256)
-def parsed_part(ski: Ski, part: str) -> SkiFile:
-    """The keys of a ski on which a table depends; widths are relative to that of the tip."""
-    keys = parsed_keys(ski)
-    end = None if keys.tip_end_width is None or part != "width" else keys.tip_end_width / (keys.tip_width or 1.0)
-    lengths = {field: getattr(keys, field) for field in (SKI_KEYS[key].field for key in _LENGTHS)}
-    if part == "base_height":
-        return SkiFile(**lengths, base=keys.base)
-    if part == "width":
-        return SkiFile(**lengths, base=_PLAIN, tip_end_width=end)
-    column = SKI_KEYS[part].field
-    return SkiFile(**lengths, base=_PLAIN, stiffness_station=keys.stiffness_station, **{column: getattr(keys, column)})
 
 
 def _layout(keys: SkiFile) -> Layout:
@@ -319,14 +347,15 @@ def _outline(keys: SkiFile, layout: Layout) -> ArcOutline:
 def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArray:
     """Widths at stations (m) that the widths of tip, waist and tail are multiplied by, shape (3, n)."""
     pairs = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
-    skis = [replace(keys, tip_width=1.0, waist_width=waist, tail_width=tail) for waist, tail in pairs]
+    relative = replace(keys, tip_width=1.0, tip_end_width=_relative_end(keys))
+    skis = [replace(relative, waist_width=waist, tail_width=tail) for waist, tail in pairs]
     tip, *others = (_outline(ski, layout).width_at(station) for ski in skis)
     return np.array([tip, *(other - tip for other in others)])
 
 
-def _stiffness(keys: SkiFile, part: str, layout: Layout) -> StationTable | None:
+def _stiffness(keys: SkiFile, part: str, layout: Layout) -> StationTable:
     listed = getattr(keys, SKI_KEYS[part].field)
-    return None if listed is None else stiffness_table(listed, keys.stiffness_station, layout)
+    return stiffness_table(RIGID if listed is None else listed, keys.stiffness_station, layout)
 
 
 def _with_field(keys: SkiFile, key: str, change: float) -> SkiFile:
@@ -343,40 +372,20 @@ def _with_field(keys: SkiFile, key: str, change: float) -> SkiFile:
     )
 
 
-@functools.lru_cache(maxsize=256)
-def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: bytes) -> FloatArray:
+def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: FloatArray) -> FloatArray:
     """Growth of the stations, and of a table on them, for the width of its three units, with a key."""
-    rows, home, ends = np.frombuffer(station), _layout(keys), []
+    home, ends = _layout(keys), []
     for change in (step, -step):
         side = _with_field(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)
         layout = _layout(side)
-        at = moved_stations(rows, home, layout)
+        at = moved_stations(station, home, layout)
         if part == "width":
             ends.append(np.vstack([at, _unit_widths(side, layout, at)]))
         elif part == "base_height":
             ends.append(np.vstack([at, side.base.height_at(at, layout)]))
         else:
-            table = _stiffness(side, part, layout)
-            ends.append(np.vstack([at, 0.0 * at if table is None else table.at(at)]))
+            ends.append(np.vstack([at, _stiffness(side, part, layout).at(at)]))
     return np.asarray((ends[0] - ends[1]) / (2.0 * step))
-
-
-@functools.lru_cache(maxsize=64)
-def _with_width(keys: SkiFile, number: int, station: bytes) -> TableGrowth:
-    return _of_table("width", MM * _unit_widths(keys, _layout(keys), np.frombuffer(station))[number])
-
-
-@functools.lru_cache(maxsize=256)
-def _with_row(keys: SkiFile, part: str, row: int, station: bytes) -> TableGrowth:
-    return _of_table(EDITED_COLUMNS[part], _row_growths(keys, part, station)[row])
-
-
-@functools.lru_cache(maxsize=64)
-def _row_growths(keys: SkiFile, part: str, station: bytes) -> FloatArray:
-    """Growth of a stiffness at the stations with each row of its list."""
-    table = _stiffness(keys, part, _layout(keys))
-    assert table is not None
-    return table.growths(np.frombuffer(station))
 
 
 def varied_ski(ski: Ski, name: str, change: float) -> Ski:

@@ -71,7 +71,7 @@ class FileParts:
         ).assembled(like=like)
         # a stated mass must be the integral of the mass per length
         mass = self.values.said.mass
-        if mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
+        if mass_per_length and mass is not None and abs(ski.mass - mass) > _SAME_MASS * mass:
             allowed = Message("{mass:.4g}, which the column mass_per_length_kg_per_m integrates to", mass=ski.mass)
             self.values.refuse("mass_kg", mass, allowed, Message("Correct one of them or remove mass_kg."))
         self._warn_of_lengths(ski)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -16,7 +17,8 @@ from .._support.messages import Message, joined
 from .._support.units import DEGREE
 from .._support.user_files import read_toml
 from ..parameters import InputValue, Quantity, made, nearest
-from .file_keys import SKI_KEYS, SkiFile
+from .file_keys import BASE, SKI_KEYS, SkiFile
+from .layout import BaseShape
 
 _OTHER_UNITS: Final = {
     "mm": (("metres", 1e3), ("centimetres", 10.0), ("inches", 25.4)),
@@ -162,7 +164,14 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
             warn_of_unusual(path, {f"{key}[{n}]": element for n, element in enumerate(value, start=1)}, SKI_KEYS[key])
         elif isinstance(value, float):
             warn_of_unusual(path, {key: value}, SKI_KEYS[key])
-    return FileValues(path, values, made(SkiFile, checked_values))
+    of_base = tuple((key, value) for key, value in checked_values.items() if key in BASE)
+    own = {SKI_KEYS[key].field: SKI_KEYS[key].in_si(value) for key, value in checked_values.items() if key not in BASE}
+    return FileValues(path, values, SkiFile(**own, base=_base(of_base)))
+
+
+@functools.lru_cache(maxsize=32)
+def _base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
+    return made(BaseShape, dict(values))
 
 
 def shown(value: object, limit: int = 80) -> str:

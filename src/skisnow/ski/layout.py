@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Final, TypeAlias
@@ -225,8 +226,7 @@ class BaseShape:
         >>> round(float(contact) * 1e3, 6), round(float(tip) * 1e3, 6)  # mm
         (-7.0, 43.0)
         """
-        heights = self._over_contact(np.append(station, 0.0), layout)
-        return heights[:-1] - heights[-1]
+        return _height(self, np.asarray(station, float).tobytes(), layout).copy()
 
     def _over_contact(self, station: FloatArray, layout: Layout) -> FloatArray:
         front, rear = layout.contact_points
@@ -250,6 +250,13 @@ class BaseShape:
         heights += shovel.rise(np.maximum(station - foremost, 0.0))
         heights += tail.rise(np.maximum(hindmost - station, 0.0))
         return heights
+
+
+@functools.lru_cache(maxsize=32)
+def _height(base: BaseShape, station: bytes, layout: Layout) -> FloatArray:
+    """Height of a base at stations: a design changes other tables and keeps this one."""
+    heights = base._over_contact(np.append(np.frombuffer(station), 0.0), layout)
+    return heights[:-1] - heights[-1]
 
 
 def _arch(place: FloatArray, half: float, rounding: float) -> FloatArray:

@@ -228,5 +228,10 @@ def _end_slopes(width: FloatArray, next_width: FloatArray, rise: FloatArray, nex
 
 def evenly_spread(values: npt.ArrayLike, front: float, rear: float) -> StationTable:
     """Table of values at even spacing from a front to a rear station (m)."""
-    listed = np.atleast_1d(np.asarray(values, dtype=float))
+    return _evenly_spread(np.asarray(values, dtype=float).tobytes(), front, rear)
+
+
+@functools.lru_cache(maxsize=32)
+def _evenly_spread(values: bytes, front: float, rear: float) -> StationTable:
+    listed = np.frombuffer(values)
     return StationTable(np.linspace(front, rear, listed.size), listed)
