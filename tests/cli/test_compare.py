@@ -200,11 +200,11 @@ def test_a_run_on_a_slope_is_laid_on_the_map_before_it_is_fitted(
     azimuth: float, slope: float, side: float, known: str, tmp_path: Path, capsys: Printed
 ) -> None:
     """A third of the run is not measured. Without the slope, lengths down it are up to 15 % too long for the map."""
-    along = np.linspace(0.0, 60.0, 61)
+    along = np.linspace(0.0, 60.0, 151)
     aside = side * (5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0))
     file = write(tmp_path / "run" / "track.csv", np.column_stack([along, aside, 0.0 * along]))
     there = written_map_track(
-        tmp_path / "there.csv", azimuth, slope, along[20:], aside[20:], heights=known == "heights"
+        tmp_path / "there.csv", azimuth, slope, along[50:], aside[50:], heights=known == "heights"
     )
     if known == "run":
         scenario = {"slope": {"kind": "plane", "angle_deg": slope}}
@@ -226,7 +226,7 @@ def test_a_run_on_a_slope_is_laid_on_the_map_before_it_is_fitted(
 def test_an_unknown_slope_and_a_slope_that_the_heights_contradict_are_warned_of(
     tmp_path: Path, capsys: Printed
 ) -> None:
-    along = np.linspace(0.0, 60.0, 61)
+    along = np.linspace(0.0, 60.0, 151)
     aside = 5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0)
     run = write(tmp_path / "run.csv", np.column_stack([along, aside, 0.0 * along]))
     flat = written_map_track(tmp_path / "flat.csv", 20.0, 18.0, along, aside, heights=False)
@@ -240,7 +240,7 @@ def test_an_unknown_slope_and_a_slope_that_the_heights_contradict_are_warned_of(
 
 
 def test_the_slope_of_a_run_counts_with_a_known_azimuth(tmp_path: Path, capsys: Printed) -> None:
-    along = np.linspace(0.0, 60.0, 61)
+    along = np.linspace(0.0, 60.0, 151)
     aside = 5.0 * np.sin(along / 6.0)
     file = write(tmp_path / "run" / "track.csv", np.column_stack([along, aside, 0.0 * along]))
     there = written_map_track(tmp_path / "there.csv", 140.0, 25.0, along, aside, heights=True)
