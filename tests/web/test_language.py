@@ -29,9 +29,9 @@ DATA: Final = {
     "read once more after waiting", "measured, entered in the lab", "the edited ski", "as in the scenario",
     "the sliders", "the numbers below",
     "{}, edited", "{} {} at {} m", "edited in the lab ({}) from: {}", "{} · skisnow",
-    "the designed ski", "{}, designed", "designed in the lab from the ski {}",
+    "the designed ski", "{}, designed", "designed in the lab from the ski {}", "NFKD",
 }  # fmt: skip
-"""Texts that are stored, and values of menus."""
+"""Texts that are stored, values of menus, and the name of a Unicode form."""
 
 
 def test_every_text_of_the_lab_is_a_message() -> None:
