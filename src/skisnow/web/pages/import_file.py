@@ -108,9 +108,11 @@ class _Import:
         proposal = tried.proposal
         self._tables.clear()
         with self._tables:
-            if proposal.questions:
+            # one answer is for all tables with the same heading
+            questions = {(question.option, question.key): question for question in proposal.questions[::-1]}
+            if questions:
                 heading(Message("Questions"))
-                for question in proposal.questions:
+                for question in reversed(questions.values()):
                     self._question(question)
             _list_problems(proposal)
             for table in proposal.tables:
@@ -119,7 +121,7 @@ class _Import:
                     _show_rows(table)
         self._store.set_enabled(not proposal.problems)
         if proposal.problems:
-            count = len(proposal.problems)
+            count = len(questions) + len(_further_problems(proposal))
             self._status.say(Message("Not ready: {count} open questions or errors.", count=count), bad=True)
         elif tried.hardness is not None:
             series, value = tried.hardness
@@ -276,10 +278,14 @@ def _choice_words(text: str) -> str:
     return said(LEFT_OUT) if text == NONE else said(TABLES.get(f"{text}.csv", label(text)))
 
 
+def _further_problems(proposal: Proposal) -> list[Problem]:
+    """Errors that are not those of questions."""
+    asked = [question.problem for question in proposal.questions]
+    return [problem for problem in proposal.problems if problem not in asked]
+
+
 def _list_problems(proposal: Proposal) -> None:
-    questions = [question.problem for question in proposal.questions]
-    problems = [problem for problem in proposal.problems if problem not in questions]
-    if problems:
+    if problems := _further_problems(proposal):
         heading(Message("Errors"))
         with ui.element("ul").classes("errors"):
             add_items(problem.message for problem in problems)
