@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
@@ -49,12 +50,14 @@ WITH_FILES: Final = ("slope.kind", "slope.profile_gap", "slope.smooth_m", "slope
 """Keys that need files on the server; they are only available on the command line."""
 _ID: Final = re.compile(r" \([0-9a-f]{12}\)")
 """Id of a campaign in the words of its snow."""
+MASS: Final = "sledge.mass_kg"
+MASS_OF_SKIER: Final = Message("mass of the skier")
 BASIC: Final = (
     *OF_SNOW,
     "snow.unloading_ratio",
     "slope.angle_deg",
     "sledge.edge_angle_deg",
-    "sledge.mass_kg",
+    MASS,
     "start.speed_m_per_s",
     "start.heading_deg",
     "friction.mu_0",
@@ -136,7 +139,10 @@ class _Form:
         self._expert.clear()
 
         def add(name: str) -> None:
-            made = self._fields[name] = ScenarioField(SCENARIO_KEYS[name], values.get(name), typed.get(name))
+            key = SCENARIO_KEYS[name]
+            if name == MASS and _has_skier(values):
+                key = replace(key, label=MASS_OF_SKIER)
+            made = self._fields[name] = ScenarioField(key, values.get(name), typed.get(name))
             made.element.on_value_change(self._show_estimate)
 
         with self._basic:
