@@ -143,8 +143,11 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
         return _model_file(content, name)
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
-        language = language_of_request(request)
-        return _confined_page(request, _page_of_folders, lambda: (runs.folder_of(run), runs.folder_of(ghost), language))
+        def arguments() -> tuple[Path | str, ...]:
+            folders, titles = map(runs.folder_of, (run, ghost)), map(runs.title, (run, ghost))
+            return *folders, *map(str, titles), language_of_request(request)
+
+        return _confined_page(request, _page_of_folders, arguments)
 
     def turns(request: Request, track: str, other: str = "") -> Response:
         def arguments() -> tuple[Path | str, ...]:
@@ -199,8 +202,8 @@ def _confined_page(
         return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
 
 
-def _page_of_folders(folder: Path, other: Path, language: str) -> str:
-    return page_of_folders(folder, other, language, back=LIST)
+def _page_of_folders(folder: Path, other: Path, name: str, other_name: str, language: str) -> str:
+    return page_of_folders(folder, other, language, names=(name, other_name), back=LIST)
 
 
 def _page_of_tracks(path: Path, name: str, other: Path, other_name: str, language: str) -> str:

@@ -92,9 +92,15 @@ def page_of_tracks(
     return comparison_page(comparison_dict(comparison), pictures, language=language, further=further, back=back)
 
 
-def page_of_folders(folder: Path, other: Path, language: str = ENGLISH, *, back: str = "") -> str:
-    """HTML of the page that compares the runs of two folders, with a link back; nothing is written."""
-    first, second = (replace(read_compared(path), name=path.name) for path in (folder, other))
+def page_of_folders(
+    folder: Path, other: Path, language: str = ENGLISH, *, names: tuple[str, str] | None = None, back: str = ""
+) -> str:
+    """HTML of the page that compares the runs of two folders, with a link back; nothing is written.
+
+    names: names of the runs on the page (default: those of the folders).
+    """
+    shown = names or (folder.name, other.name)
+    first, second = (replace(read_compared(path), name=name) for path, name in zip((folder, other), shown, strict=True))
     comparison, gaps = compare_tracks(first, second), read_gate_gaps(folder, other)
     pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
     if gaps is not None:

@@ -221,17 +221,23 @@ def track_verdict(comparison: Mapping[str, Any]) -> Message:
     )  # fmt: skip
 
 
+_ROUNDING: Final = 1e-12
+"""Largest size of a distance (m) that is an error of rounding."""
+
+
 def metres(value: float | None, exact: float, digits: int = 3) -> str:
     """A distance without digits below the precision ``exact`` (m) of the places; 0 for exact places.
 
-    >>> metres(2.345, 0.0), metres(2.345, 3.0), metres(0.4, 3.0), metres(41.987, 0.02, 4), metres(41.987, 0.3, 4)
-    ('2.35 m', '2 m', 'below 1 m', '41.99 m', '42.0 m')
+    >>> metres(4e-17, 0.0), metres(2.345, 3.0), metres(0.4, 3.0), metres(41.987, 0.02, 4), metres(41.987, 0.3, 4)
+    ('0 m', '2 m', 'below 1 m', '41.99 m', '42.0 m')
     """
     return f"{rounded(value, exact, digits)} m"
 
 
 def rounded(value: float | None, exact: float, digits: int = 3) -> str:
     """A number without digits below the precision ``exact``; with ``digits`` significant digits if that is 0."""
+    if value is not None and abs(value) < _ROUNDING:
+        value = 0.0
     if value is None or exact <= 0.0 or not math.isfinite(value):
         return plain(value, digits)
     decimals = -math.floor(math.log10(exact))
