@@ -75,6 +75,10 @@ def test_forces_of_a_run_are_external_loads(tmp_path: Path) -> None:
     assert run.boots is not None
     up = columns_of(opensim.TimeSeriesTable(str(tmp_path / "forces.sto")))["right_ski_force_vy"]
     assert up == pytest.approx(run.boots.force[:, 1, 2].tolist())
+    named = opensim.ExternalLoads(str(tmp_path / "forces_external_loads.xml"), True)
+    assert named.getSize() == 2
+    assert named.get(1).get_applied_to_body() == "calcn_r"
+    assert named.getDataFileName() == "forces.sto"
 
 
 def test_markers_survive_export_and_import(tmp_path: Path) -> None:

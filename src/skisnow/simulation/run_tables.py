@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import xml.etree.ElementTree as ET
 from itertools import chain
 from pathlib import Path
 from typing import Final
@@ -123,11 +124,41 @@ def boots_text(run: Run, ending: str, *, name: str = "boots") -> str:
     return head + "".join("\t".join(cells) + "\n" for cells in (columns, *(map(repr, row) for row in rows)))
 
 
+def external_loads(motion: str) -> str:
+    """OpenSim's external loads of both skis on the feet of its usual models, in XML.
+
+    motion: name of the .mot or .sto file with the columns of `opensim_columns`, in the same folder.
+    """
+    document = ET.Element("OpenSimDocument", Version="40000")
+    loads = ET.SubElement(document, "ExternalLoads", name="skis")
+    objects = ET.SubElement(loads, "objects")
+    for side in SIDES:
+        force = ET.SubElement(objects, "ExternalForce", name=f"{side}_ski")
+        for tag, text in (
+            ("applied_to_body", f"calcn_{side[0]}"),
+            ("force_expressed_in_body", "ground"),
+            ("point_expressed_in_body", "ground"),
+            ("force_identifier", f"{side}_ski_force_v"),
+            ("point_identifier", f"{side}_ski_force_p"),
+            ("torque_identifier", f"{side}_ski_moment_m"),
+        ):
+            ET.SubElement(force, tag).text = text
+    ET.SubElement(loads, "datafile").text = motion
+    ET.indent(document)
+    return ET.tostring(document, encoding="unicode") + "\n"
+
+
 def write_boots(run: Run, path: str | Path) -> None:
-    """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again."""
+    """Write the boots of a run in one piece: a .csv, .mot or .sto file, which boots.file reads again.
+
+    Next to NAME.mot or NAME.sto, NAME_external_loads.xml names its columns for OpenSim.
+    """
     path = Path(path)
     require_ending(path, *ENDINGS)
-    write_file(path, boots_text(run, path.suffix.lower(), name=path.stem))
+    ending = path.suffix.lower()
+    write_file(path, boots_text(run, ending, name=path.stem))
+    if ending != ".csv":
+        write_file(path.with_name(f"{path.stem}_external_loads.xml"), external_loads(path.name))
 
 
 def _boots(run: Run) -> BootHistory:

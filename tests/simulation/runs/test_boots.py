@@ -1,5 +1,6 @@
 """Boots that are held by a table, and the forces of the snow."""
 
+import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -138,6 +139,22 @@ def test_opensim_has_y_up_and_z_to_the_right(own: Run) -> None:
     assert row["left_ski_force_vy"] == row["left_force_z_N"] > 300.0
     assert row["left_ski_force_vz"] == -row["left_force_y_N"]
     assert row["left_ski_force_px"] == row["left_x_m"]
+
+
+def test_external_loads_name_columns_of_the_motion_file(own: Run, tmp_path: Path) -> None:
+    """Three columns behind each identifier; the right ski acts on the right foot."""
+    write_boots(own, tmp_path / "turn.sto")
+    loads = ET.parse(tmp_path / "turn_external_loads.xml").getroot()
+    assert loads.findtext(".//datafile") == "turn.sto"
+    columns = (tmp_path / "turn.sto").read_text(encoding="utf-8").splitlines()[6].split("\t")
+    forces = loads.findall(".//ExternalForce")
+    assert [force.findtext("applied_to_body") for force in forces] == ["calcn_l", "calcn_r"]
+    for side, force in zip(("left", "right"), forces, strict=True):
+        assert {force.findtext(f"{frame}_expressed_in_body") for frame in ("force", "point")} == {"ground"}
+        for kind in ("force", "point", "torque"):
+            name = str(force.findtext(f"{kind}_identifier"))
+            assert name.startswith(side)
+            assert {name + axis for axis in "xyz"} <= set(columns)
 
 
 def test_rates_of_a_table_are_those_of_its_poses() -> None:
