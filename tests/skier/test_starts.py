@@ -36,6 +36,24 @@ def test_eight_gates_10_m_apart_on_19_degrees() -> None:
     assert outcome(simulate(case.scenario(Start()))) == "finished"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.55, 0.8])
+def test_the_outer_ski_bears_its_share_without_chatter(share: float) -> None:
+    """Within 5 percentage points where the side force is above 200 N, and 15 % of the weight as rms above 5 Hz."""
+    scenario = replace(named("slalom 13 m, 15°"), gates=5).scenario(Start())
+    skier = BalancedSkier(scenario.with_(skier=replace(scenario.skier, outer_share=share)))
+    run = simulate(skier.scenario, boots=skier)
+    pushed = [each.seen for each in skier.records if each.seen.bears and abs(each.seen.across) > 200.0]
+    shares = [(seen.right if seen.across > 0.0 else seen.left) / seen.load for seen in pushed if seen.time > 0.5]
+    assert np.median(shares) == pytest.approx(share, abs=0.05)
+    assert run.boots is not None
+    forces = np.linalg.norm(run.boots.force, axis=2)
+    parts, rates = np.fft.rfft(np.vstack([forces, forces[::-1]]), axis=0), np.fft.rfftfreq(2 * len(forces), 0.01)
+    parts[rates < 5.0] = 0.0
+    swings = np.fft.irfft(parts, 2 * len(forces), axis=0)[: len(forces)][np.abs(run.balance.lean) > np.radians(15.0)]
+    assert np.sqrt((swings**2).mean(axis=0)).max() < 0.15 * scenario.sledge.mass * scenario.gravity
+
+
 def require_landing(scenario: Scenario) -> None:
     """0.4 s and more in the air, at most 2 m up; within 4 s the legs have given way and stretched again."""
     skier = BalancedSkier(scenario)
