@@ -114,7 +114,7 @@ def identify(
 
     Notes
     -----
-    Searches simulate with fixed steps of 1 ms; the last steps of the search and the numbers of the answer are computed
+    Searches simulate with fixed steps of 4 ms; the last steps of the search and the numbers of the answer are computed
     with the scenario's own solver.
 
     References

@@ -190,7 +190,7 @@ class _Solver:
             if apart > _STEPS_APART:
                 self.methods.append(
                     Message(
-                        "fixed steps of 1 ms were too long for this snow: searched again with the scenario's solver"
+                        "fixed steps of 4 ms were too long for this snow: searched again with the scenario's solver"
                     )
                 )
                 again = self._search(self.problem, "own solver: ", final=True).run(polished.place)
@@ -200,7 +200,7 @@ class _Solver:
             return replace(best, jacobian=state.jacobian, second=state.second, state="interrupted")
         self.methods.append(
             Message(
-                "searched with fixed steps of 1 ms (fast mode); last steps and answer with the scenario's own solver"
+                "searched with fixed steps of 4 ms (fast mode); last steps and answer with the scenario's own solver"
             )
         )
         return polished
