@@ -2,6 +2,7 @@
 
 ``python -m benchmarks turns`` runs those of simulated turns alone and prints them as Markdown, ``identify`` those of
 identifications, ``web`` those of the web lab in a browser, ``contact`` those of the contact in the compiled core.
+``identified`` compares identifications of many simulated tracks with those of a former commit.
 ``scenarios`` runs random scenarios and counts how they end, ``frontier`` sets error against cost of a turn, ``former``
 builds a former commit and compares the processor time of turns with it, ``ends`` the ends of the built-in scenarios.
 ``cases`` reads the inputs of ../shared/cases and prints their results next to the right answers.
@@ -18,6 +19,7 @@ from pathlib import Path
 
 TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
 SCENARIOS, FRONTIER, FORMER, ENDS, CASES = "scenarios", "frontier", "former", "ends", "cases"
+IDENTIFIED = "identified"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
 
@@ -26,7 +28,7 @@ def main() -> None:
     parser.add_argument(
         "part",
         nargs="?",
-        choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS, CASES],
+        choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS, CASES, IDENTIFIED],
         help="these alone; left out: everything",
     )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
@@ -36,14 +38,20 @@ def main() -> None:
     parser.add_argument("--readings", type=int, default=10_000, help="in the store of the web lab")
     parser.add_argument("--tries", type=int, default=5, help="to open each page of the web lab")
     parser.add_argument("--seed", type=int, default=0, help="of the first random scenario")
-    parser.add_argument("--count", type=int, default=200, help="random scenarios")
+    parser.add_argument("--count", type=int, default=200, help="random scenarios, or tracks of identified")
     parser.add_argument("--any-values", action="store_true", help="scenarios with any values that the keys allow")
-    parser.add_argument("--out", type=Path, help="of scenarios or frontier: what it holds is not computed again")
+    parser.add_argument(
+        "--out", type=Path, help="of scenarios, frontier or identified: what it holds is not computed again"
+    )
     options = parser.parse_args()
     if options.part == TURNS:
         _turns(options)
     elif options.part == IDENTIFY:
         _identify(options)
+    elif options.part == IDENTIFIED:
+        from .identify import simulated
+
+        simulated.print_table(options.out or Path("identified"), options.count)
     elif options.part == WEB:
         _web(options)
     elif options.part == CONTACT:
