@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from itertools import repeat
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from ..ski import Ski
     from ..snow import SnowProperties
     from .task import DesignTask, Goal
+
+
+_NEAR: Final = 1e-3  # distance below which a prediction costs more than the iterations that it saves
 
 
 @dataclass(slots=True, eq=False)
@@ -74,8 +77,11 @@ class Evaluator:
                 ski = ski_of_keys(self.keys(z))
             except ParameterError as error:
                 raise SolverError("this ski is impossible: {reason}").tag("no_ski", reason=error) from error
-            near = min(self._points, key=lambda known: float(np.sum((np.frombuffer(known) - z) ** 2)), default=None)
-            begins = [None] * len(self.snows) if near is None else [each.at.solution for each in self._points[near]]
+            begins: list[Solution | None] = [None] * len(self.snows)
+            if self._points:
+                near = min(self._points, key=lambda known: _distance(known, z))
+                far = _distance(near, z) > _NEAR
+                begins = [each.predicted(ski) if far else each.at.solution for each in self._points[near]]
             self._points[place] = tuple(map(self._point, range(len(self.snows)), repeat(ski), begins))
         return self._points[place]
 
@@ -143,6 +149,10 @@ class Evaluator:
         """Equilibria at the conditions of a goal (default: all)."""
         points = self.points(z)
         return [points[int(number) - 1] for number in goal.conditions] if goal.conditions else list(points)
+
+
+def _distance(place: bytes, z: FloatArray) -> float:
+    return float(np.linalg.norm(np.frombuffer(place) - z))
 
 
 def _output(point: CarveDerivatives, name: str) -> float:

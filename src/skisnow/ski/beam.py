@@ -152,10 +152,10 @@ def lowest_eigenvalue(stiffness: FloatArray, mass: FloatArray, start: FloatArray
     from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
 
     factor = cholesky_banded(_columns(stiffness), lower=True, check_finite=False)
-    force, eigenvalue = _product(mass, start), np.inf
+    force, eigenvalue = banded_product(mass, start), np.inf
     for _ in range(_MOST_ITERATIONS):
         shape = cho_solve_banded((factor, True), force, check_finite=False)
-        moved = _product(mass, shape)
+        moved = banded_product(mass, shape)
         values, mixed = eigh(shape.T @ force, shape.T @ moved, check_finite=False)
         before, eigenvalue = eigenvalue, float(values[0])
         if before - eigenvalue <= _CLOSE * eigenvalue:
@@ -169,7 +169,8 @@ def _columns(matrix: FloatArray) -> FloatArray:
     return np.array([np.roll(matrix[:, HALF_BANDWIDTH - k], -k) for k in range(HALF_BANDWIDTH + 1)])
 
 
-def _product(matrix: FloatArray, vectors: FloatArray) -> FloatArray:
+def banded_product(matrix: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Banded matrix (size, 11) times vectors (size, k)."""
     around = np.pad(vectors, ((HALF_BANDWIDTH, HALF_BANDWIDTH), (0, 0)))
     rows = np.lib.stride_tricks.sliding_window_view(around, 2 * HALF_BANDWIDTH + 1, axis=0)
     return np.einsum("ij,ikj->ik", matrix, rows)
