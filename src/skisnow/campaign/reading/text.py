@@ -33,7 +33,7 @@ __all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "Unreadab
 Records: TypeAlias = tuple[list[int], list[list[str]]]
 """File lines at which records begin, and the records' cells."""
 
-RECORDS_AT_ONCE: Final = 4096  # more at once is slower: the garbage collector walks them
+RECORDS_AT_ONCE: Final = 256  # more lists at a time make the garbage collector walk all objects again and again
 
 _CONTROL_BYTES: Final = bytes(code for code in range(32) if code not in b"\t\n\v\f\r") + b"\x7f"
 _CONTROL_SHARE: Final = 0.01  # 0 in text, 0.1 in random bytes
