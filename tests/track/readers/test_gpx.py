@@ -61,9 +61,9 @@ def test_speed_of_version_1_0(tmp_path: Path) -> None:
 
 
 def test_time_zones(tmp_path: Path) -> None:
-    track = read(tmp_path, gpx(point(47.0, "14+01:00") + point(47.0, "14-00:30")), "a.gpx")
+    track = read(tmp_path, gpx(point(47.0, "14+01:00") + point(47.0, "15z") + point(47.0, "16-00:30")), "a.gpx")
     assert track.start == datetime(2022, 12, 27, 14, 51, 14, tzinfo=UTC)
-    np.testing.assert_array_equal(track.time, [0.0, 5400.0])
+    np.testing.assert_array_equal(track.time, [0.0, 3601.0, 5402.0])
 
 
 def test_no_fix(tmp_path: Path) -> None:

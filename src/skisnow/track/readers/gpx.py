@@ -28,7 +28,7 @@ _POINT: Final = ("gpx", "trk", "trkseg", "trkpt")
 _TEXTS: Final = ("ele", "time", "speed", "fix")
 _TIME: Final = re.compile(
     r"([0-9]{4})-([0-9]{1,2})-([0-9]{1,2})[T ]([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(\.[0-9]{1,15})?"
-    r"(Z|[+-][0-9]{2}(?::?[0-9]{2})?)?"
+    r"([Zz]|[+-][0-9]{2}(?::?[0-9]{2})?)?"
 )
 
 
@@ -181,7 +181,7 @@ def _moment(text: str) -> datetime | None:
 
 
 def _zone(text: str | None) -> timezone:
-    if text is None or text == "Z":
+    if text is None or text in "Zz":
         return UTC
     size = timedelta(hours=int(text[1:3]), minutes=int(text[3:].strip(":") or "0"))
     return timezone(-size if text[0] == "-" else size)
