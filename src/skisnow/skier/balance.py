@@ -30,7 +30,7 @@ HELD_AT_START = 1.3
 """Force that the edges of a side-slip hold at the start, over what the slope asks for (modelling assumption)."""
 LEVEL = np.array([0.0, 0.0, 1.0])
 """Normal of a plane slope in its own axes."""
-FLIES_FROM, TOUCHED = 0.02, 0.003
+FLIES_FROM, TOUCHED = 0.05, 0.003
 """Height of the feet over the snow (m) at which a flight begins, and at which it ends (modelling assumptions)."""
 GREATEST_PRESSED = 2.0
 """Greatest acceleration (m/s²) by the bend of the slope that the skier counts with (modelling assumption)."""
@@ -183,7 +183,8 @@ class BalancedSkier:
         if isinstance(slope, Plane) or (seen.bears and not flown):
             return seen
         feet = moment.position + moment.rotation @ moment.boots[:, 0].mean(axis=0)
-        if feet[2] - heights_of(slope, *feet[:2]) < (TOUCHED if flown else FLIES_FROM):
+        flies = flown and seen.load < sledge.mass * gravity  # edged skis bear with their boots some centimetres up
+        if feet[2] - heights_of(slope, *feet[:2]) < (TOUCHED if flies else FLIES_FROM):
             return seen
         velocity, landing, fall = moment.rotation @ moment.velocity[:3], feet.copy(), 0.0
         for _ in range(5):
