@@ -112,6 +112,17 @@ def test_measured_gap_is_rejected_unless_asked_for() -> None:
     assert -5.53 < float(profile.heights(19.0)) < -1.22
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_profile_with_decimal_commas(tmp_path: Path, separator: str) -> None:
+    plain, written = tmp_path / "plain.csv", tmp_path / "written.csv"
+    text = "x,y\n0,0\n1.5,-0.25\n3,-0.5\n4.5,-0.875\n"
+    plain.write_text(text, encoding="utf-8")
+    written.write_text(text.replace(",", separator).replace(".", ","), encoding="utf-8")
+    ours, theirs = read_profile(written), read_profile(plain)
+    assert ours.x.tolist() == theirs.x.tolist() == [0.0, 1.5, 3.0, 4.5]
+    assert ours.height.tolist() == theirs.height.tolist()
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [

@@ -87,6 +87,26 @@ def test_straight_down_stays_straight() -> None:
     assert np.abs(flat.place[:, 1]).max() < growth * 1e-16 / half_width
 
 
+def test_start_elsewhere() -> None:
+    """A plane is the same everywhere."""
+    one = simulated(**{"run.duration_s": 0.4}, **FIXED)
+    other = simulated(**{"run.duration_s": 0.4, "start.x_m": 13.7, "start.y_m": -8.2}, **FIXED)
+    assert other.place == pytest.approx(one.place + np.array([13.7, -8.2, 0.0]), abs=1e-9)
+    assert other.groove.depth == pytest.approx(one.groove.depth, abs=1e-8)
+
+
+def test_level_slope_knows_no_direction() -> None:
+    """Turned by 70° at the start, the whole track is turned by 70°."""
+    level = {"slope.angle_deg": 0.0, "run.duration_s": 0.4}
+    one = simulated(**level, **{"start.heading_deg": 0.0}, **FIXED)
+    other = simulated(**level, **{"start.heading_deg": 70.0}, **FIXED)
+    c, s = math.cos(math.radians(70.0)), math.sin(math.radians(70.0))
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    assert other.place == pytest.approx(one.place @ turn.T, abs=1e-9)
+    assert other.heading == pytest.approx(one.heading + math.radians(70.0), abs=1e-9)
+    assert one.place[-1, 1] > 0.1  # it does turn
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("key", "value"),
@@ -260,6 +280,14 @@ def test_slips_above_the_limit(share: float) -> None:
     assert 0.5 * free < run.place[-1, 0] < 2.5 * free
 
 
+def test_mirrored_it_holds_as_well() -> None:
+    """Facing right with the right edges down: the same, mirrored."""
+    strength = sufficient_strength() / 0.9
+    left = across(strength=strength, duration=1.0)
+    right = across(strength=strength, duration=1.0, heading_deg=-90.0, edge_deg=-20.0)
+    assert right.place == pytest.approx(left.place * [1.0, -1.0, 1.0], abs=1e-12)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("strength", [0.1, 0.5])
 def test_no_creep_in_a_minute(strength: float) -> None:
@@ -298,6 +326,13 @@ def test_it_ends_where_the_shear_moves_across_at_once(degrees: float, end: tuple
     assert float(np.hypot(*(run.place[-1, :2] - end))) < 0.015
 
 
+@pytest.mark.parametrize("degrees", [0.05, 1.0])
+def test_mirrored_runs_end_at_mirrored_places(degrees: float) -> None:
+    one, other = (turned(each, **{"run.duration_s": 1.0}) for each in (degrees, -degrees))
+    assert other.place[-1] == pytest.approx(one.place[-1] * [1.0, -1.0, 1.0], abs=1e-6)
+    assert one.place[-1, 1] > 0.02  # to the side of the edge
+
+
 @pytest.mark.parametrize("degrees", [0.0, 0.02, 1.0])
 @pytest.mark.parametrize("hardness", [0.01, 2.0])
 def test_a_start_is_found(degrees: float, hardness: float) -> None:
@@ -310,3 +345,10 @@ def test_the_widening_tail_brakes() -> None:
     run = turned(0.0)
     assert run.energies["shear"][-1] / run.run_length == pytest.approx(1.52, abs=0.02)
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)
+
+
+def test_half_the_step() -> None:
+    """Steps of 1 ms and 0.5 ms end within the method's error."""
+    fixed = {"solver.fixed": True, "run.duration_s": 1.0}
+    one, other = (turned(1.0, **fixed, **{"solver.step_ms": step}) for step in (1.0, 0.5))
+    assert other.place[-1] == pytest.approx(one.place[-1], abs=1e-3)
