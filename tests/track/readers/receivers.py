@@ -13,6 +13,8 @@ FIT_FIELDS = {  # number, size, base type, struct code, value that means invalid
     "distance": (5, 4, 0x86, "I", 0xFFFFFFFF),
     "speed": (6, 2, 0x84, "H", 0xFFFF),
     "gps_accuracy": (31, 1, 0x02, "B", 0xFF),
+    "enhanced_speed": (73, 4, 0x86, "I", 0xFFFFFFFF),
+    "enhanced_altitude": (78, 4, 0x86, "I", 0xFFFFFFFF),
 }
 
 

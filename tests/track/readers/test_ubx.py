@@ -211,6 +211,17 @@ def test_records(tmp_path: Path) -> None:
         assert track.flagged == {"no_fix": 1, "missing_height": 1}
 
 
+@pytest.mark.parametrize("plain", [{}, {"altitude": (1500 + 500) * 5, "speed": 7250}])
+def test_enhanced_fields(tmp_path: Path, plain: dict[str, int]) -> None:
+    """Plain fields next to the enhanced ones are invalid, or state the same."""
+    place = {"timestamp": BEGIN, "position_lat": LAT, "position_long": LON}
+    record = place | plain | {"enhanced_altitude": (1500 + 500) * 5, "enhanced_speed": 7250}
+    track = read(tmp_path, fit_file([record]), "a.fit")
+    assert track.speed.tolist() == [7.25]
+    assert track.origin is not None
+    assert track.origin.height == 1500.0
+
+
 def test_negative_latitudes(tmp_path: Path) -> None:
     track = read(tmp_path, fit_file([RECORDS[0] | {"position_lat": -LAT, "position_long": -LON}]), "a.fit")
     assert track.origin is not None

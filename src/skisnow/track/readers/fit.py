@@ -139,9 +139,12 @@ def _decode(data: bytes, name: str, records: _Records) -> None:
 
 
 def _number(message: Any, *names: str) -> float:
-    """The first of these fields that contains a finite number, else NaN."""
+    """The first finite number of these fields, else NaN.
+
+    A name may occur twice: fitdecode also adds an enhanced field that it expands from a plain one, even an invalid one.
+    """
     for name in names:
-        value = message.get_value(name, fallback=None)
-        if isinstance(value, int | float) and math.isfinite(value):
-            return float(value)
+        for entry in message.get_fields(name):
+            if isinstance(entry.value, int | float) and math.isfinite(entry.value):
+                return float(entry.value)
     return math.nan
