@@ -571,3 +571,10 @@ def test_a_template_has_a_name(tmp_path: Path) -> None:
             save_template(name, campaign, folder=tmp_path)
     with raises(ParameterError, "no_template", name="Gletscher", saved=["Gletscher 2026"]):
         read_template("Gletscher", named=tmp_path)
+
+
+def test_force_at_a_lever_arm_is_no_penetration_test() -> None:
+    """The depth and force of a shear test by a spring balance would otherwise be read as those of a penetration."""
+    text = "Versuch;Kantwinkel (°);Tiefe (mm);Hebelarm (cm);Kraft (kg)\nS1;45;5,8;25;9,42\n"
+    proposal = propose("Scherung.csv", text.encode())
+    assert [question.option for question in proposal.questions] == ["table"]

@@ -397,7 +397,7 @@ def _named_value(text: str) -> tuple[str, str]:
 def table_of(section: Section, answers: Answers) -> TableForm | None:
     """Table of a section: the answer, or the one with the most needed numbers among those that have all; else None.
 
-    It is also None if another table has two needed numbers that the best one does not have.
+    It is also None if another table has a needed number that the best one does not have.
     """
     answer = answers.table.get(section.key, "")
     if answer in KINDS:
@@ -414,7 +414,7 @@ def table_of(section: Section, answers: Answers) -> TableForm | None:
             counts[name] = len(needed)
     most = max(counts.values(), default=0)
     best = [name for name, count in counts.items() if count == most]
-    if len(best) != 1 or any(len(others - set(KINDS[best[0]].known)) > 1 for others in numbers.values()):
+    if len(best) != 1 or any(others - set(KINDS[best[0]].known) for others in numbers.values()):
         return None
     return KINDS[best[0]]
 
