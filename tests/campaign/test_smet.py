@@ -65,6 +65,28 @@ def test_values_are_si_and_times_utc(path: Path) -> None:
     assert "3 rows, 2026-02-03 07:00 to 2026-02-03 13:00 UTC" in repr(series)
 
 
+def test_capitals_do_not_matter(path: Path) -> None:
+    path.write_text(HEAD.replace("timestamp TA RH VW", "Timestamp ta Rh vw") + ROWS)
+    assert list(read_smet(path).fields) == ["TA", "RH", "VW"]
+
+
+@pytest.mark.parametrize("gap", ["-9999", "-99999.0"])
+def test_gaps_of_another_number_than_nodata(path: Path, gap: str) -> None:
+    """Single ones pass the check by the median; below 0 is possible for other columns."""
+    for row, column in (
+        (ROWS.replace("4.5", gap), "VW"),
+        (ROWS.replace("+1.5", gap), "TA"),
+        (ROWS.replace("60", gap), "RH"),
+    ):
+        path.write_text(HEAD + row)
+        problem = refusal(path)
+        assert (problem.row, problem.column) == (8, column)
+    path.write_text(HEAD.replace("-999\n", f"{gap}\n").replace("RH", "X") + ROWS.replace("4.5", gap))
+    series = read_smet(path)
+    assert math.isnan(series.fields["VW"][1])
+    assert series.fields["X"][1] == pytest.approx(-9.99)
+
+
 def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
     """Between 8 and 9 o'clock; the five hours after are a gap for three, none for six; nothing outside."""
     path.write_text(HEAD + ROWS)

@@ -37,8 +37,12 @@ _ZONES: Final = (-14.0, 14.0)
 _PLAUSIBLE: Final = {
     **dict.fromkeys(("TA", "TD", "TSS", "TSG"), (180.0, math.inf, "above 180 K", "units_offset = 273.15 if °C")),
     "RH": (-0.05, 1.2, "from 0 to 1", "units_multiplier = 0.01 if %"),
+    "VW": (0.0, math.inf, "from 0 m/s", "units_offset and units_multiplier"),
+    "ISWR": (-50.0, math.inf, "from -50 W/m²", "units_offset and units_multiplier"),
 }
 """By field: between which SI values the median of a station lies, and the missing part of the header."""
+_GAPS: Final = (-999.0, -9999.0, -99999.0)
+"""Numbers that loggers write for a missing value."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -49,7 +53,7 @@ class StationSeries(Shown):
     latitude_deg, longitude_deg, altitude: place of the station (degree, m); None if not in the header.
     utc_offset: offset of the file's times from UTC, hours east of Greenwich.
     time: (n,) seconds since 1970-01-01, UTC.
-    fields: columns by their names in the file, in SI; NaN for missing values.
+    fields: columns by their names in the file in capitals, in SI; NaN for missing values.
     """
 
     file: str
@@ -157,13 +161,14 @@ class _Reading:
             if key not in self._header:
                 self._refuse(self._data, key, "nothing", f"the key {key} in the header", "Add it.")
         line, listed = self._header["fields"]
-        names = listed.split()
+        names = [_TIME if name.lower() == _TIME else name.upper() for name in listed.split()]
         if _TIME not in names or len(set(names)) != len(names):
             self._refuse(line, "fields", listed[:80], f"different names, {_TIME} among them", "Correct the header.")
         offset = self._zone()
         times, table = self._rows(names, offset)
         nodata = self._number_of("nodata", -999.0)
         values = self._in_si(np.where(table == nodata, math.nan, table), names)
+        self._require_no_gap(names, table, values)
         self._require_plausible(names, values)
         columns = {name: column for name, column in zip(names, values.T, strict=True) if name != _TIME}
         place = [self._number_of(key, math.nan) for key in ("latitude", "longitude", "altitude")]
@@ -208,6 +213,14 @@ class _Reading:
             if not low <= median <= high:
                 line = self._header["fields"][0]
                 self._refuse(line, name, f"median {median:g}", f"a median {allowed}", f"State {fix}.")
+
+    def _require_no_gap(self, names: Sequence[str], table: FloatArray, values: FloatArray) -> None:
+        """Reject numbers of loggers for missing values that are not the file's nodata and impossible in SI."""
+        for name, raw, column in zip(names, table.T, values.T, strict=True):
+            gaps = raw[np.isin(raw, _GAPS) & (column < _PLAUSIBLE[name][0])] if name in _PLAUSIBLE else raw[:0]
+            if gaps.size:
+                line, text = self._header["nodata"]
+                self._refuse(line, name, f"{gaps[0]:g}", f"{text} for missing values", f"State nodata = {gaps[0]:g}.")
 
     def _number_of(self, key: str, default: float) -> float:
         if key not in self._header:
