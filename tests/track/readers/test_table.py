@@ -61,11 +61,11 @@ def test_track_of_a_simulated_run(tmp_path: Path) -> None:
 def test_as_a_german_spreadsheet_writes_it(tmp_path: Path, encoding: str, ends: str) -> None:
     plain = read(tmp_path, LOCAL)
     lines = LOCAL.replace(",", ";").replace(".", ",").splitlines()
-    text = ends.join(["Höhe;" + lines[0], *("ä;" + line for line in lines[1:]), ";;;;;"]) + ends
+    text = ends.join(["Wärme;" + lines[0], *("ä;" + line for line in lines[1:]), ";;;;;"]) + ends
     german = read(tmp_path, text.encode(encoding))
     np.testing.assert_array_equal(german.place, plain.place)
     np.testing.assert_array_equal(german.time, plain.time)
-    assert german.further_columns == ("Höhe",)
+    assert german.further_columns == ("Wärme",)
 
 
 def test_separator_line_and_tabs(tmp_path: Path) -> None:
@@ -150,13 +150,19 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         (" \n\n", ["empty_file"]),
         ("time_s,x_m,y_m\n", ["empty_file", "header only"]),
         ("time_s,x_m\n0,1\n", ["missing_column", "column y_m", "time_s, x_m"]),
-        ("time_s,x_m,y\n0,1,2\n", ["missing_column", "column y_m"]),
+        ("time_s,x_m,why\n0,1,2\n", ["missing_column", "column y_m"]),
         ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "'latt'"]),
         ("x_m,y_m\n0,1\n", ["missing_column", "column time_s"]),
-        ("Time,Lat,Lon,Alt\n0,46,7,900\n", ["missing_column", "column alt_m", "'Alt'"]),
-        ("time_s,x_m,y_m,Speed [m/s]\n0,1,2,3\n", ["missing_column", "column speed_m_per_s"]),
-        ("Zeit [s];x [m];y (m)\n0;1,5;2\n", ["Likely time_s for 'Zeit [s]', x_m for 'x [m]', y_m for 'y (m)'."]),
-        ("Zeit,Breite,Länge,Höhe_m\n0,46,7,9\n", ["time for 'Zeit', lat for 'Breite', lon for 'Länge', alt_m for"]),
+        (
+            "time,lat,lon,Altitude [fathoms]\n0,46,7,900\n",
+            ["unknown_unit", "column alt_m", "'Altitude [fathoms]'", "ft"],
+        ),
+        ("time_s,x_m,y_m,speed_warp\n0,1,2,3\n", ["unknown_unit", "column speed_m_per_s", "'speed_warp'", "km/h"]),
+        ("Zeit [Tage];x;y\n0;1,5;2\n", ["unknown_unit", "column time_s", "'Zeit [Tage]'", "ms"]),
+        ("time,lat,lon,alt_m,Höhe [ft]\n0,46,7,9,9\n", ["column_twice", "column alt_m", "'alt_m, Höhe [ft]'"]),
+        ("t (s);t (ms);x;y\n0;1;2;3\n", ["column_twice", "column time_s", "'t (s), t (ms)'"]),
+        ("Zeit,x,y,Breite,Länge\n0,1,2,46,7\n", ["two_places"]),
+        ("time,lat,lon,Höhe [ft]\n0,46,7,9\n1,46,7,x\n", ["not_a_number", "row 3, column Höhe [ft]"]),
         ("time_s,x_m,y_m\n0,1,2\n1,one,2\n", ["not_a_number", "row 3, column x_m", "'one'", "decimal point"]),
         ("time_s,x_m,y_m\n0,1,2\n\n1,4OO,2\n", ["not_a_number", "row 4, column x_m", "'4OO'"]),
         ("time_s;x_m;y_m\n0;1,5;2,5\n1;1.5;2,5\n", ["not_a_number", "row 3, column x_m", "'1.5'", "decimal comma"]),
@@ -182,9 +188,49 @@ def test_refused(tmp_path: Path, content: str | bytes, told: list[str]) -> None:
         assert words in message
 
 
-def test_a_heading_in_another_unit_stands_for_no_column(tmp_path: Path) -> None:
-    message = refused(tmp_path, "Zeit [ms];x [cm];y [m];Geschwindigkeit [km/h];v m/s\n0;1;2;3;4\n")
-    assert message.endswith("'y [m]', speed_m_per_s for 'v m/s'.")
+@pytest.mark.parametrize(
+    ("header", "first", "second"),
+    [
+        ("timestamp,latitude,longitude,elevation,speed", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
+        ("Time (s),Latitude (°),Longitude (°),Height (m),Velocity (m/s)", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
+        ("t (ms),lat,lng,Altitude_m,Speed [km/h]", "0,46,7,100,36", "500,46.5,7.5,101,72"),
+        ("Zeit [s];Breite;Länge;Höhe;Geschwindigkeit [km/h]", "0;46;7;100;36", "0,5;46,5;7,5;101;72"),
+        ("ZEIT_ms\tBreitengrad\tLängengrad\tHöhe/m\tv (m/s)", "0\t46\t7\t100\t10", "500\t46,5\t7,5\t101\t20"),
+        (
+            "Zeitstempel;Breite [°];La\u0308nge [°];Ho\u0308he (cm);speed_kmh",
+            "2024-01-20T10:00:00Z;46;7;10000;36",
+            "2024-01-20T10:00:00.5Z;46,5;7,5;10100;72",
+        ),
+        (
+            "timestamp_ms,Lat,Lon,ele (ft),speed (kn)",
+            f"1705744800000,46,7,{100 / 0.3048},{10 * 3600 / 1852}",
+            f"1705744800500,46.5,7.5,{101 / 0.3048},{20 * 3600 / 1852}",
+        ),
+    ],
+)
+def test_headings_of_other_programs(tmp_path: Path, header: str, first: str, second: str) -> None:
+    """All are the same two points, which the columns' own names give."""
+    named = read(tmp_path, "time,lat,lon,alt_m,speed_mps\n0,46,7,100,10\n0.5,46.5,7.5,101,20\n")
+    track = read(tmp_path, f"{header}\n{first}\n{second}\n", "b.csv")
+    np.testing.assert_allclose(track.time, [0.0, 0.5], atol=1e-6)
+    np.testing.assert_allclose(track.place, named.place, rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(track.speed, [10.0, 20.0], rtol=1e-12)
+    assert track.further_columns == ()
+
+
+def test_local_metres_under_other_headings(tmp_path: Path) -> None:
+    track = read(tmp_path, "t (ms);x [cm];Nord;Höhe [m];v [km/h]\n500;100;2;3;3,6\n600;150;2,5;2;7,2\n")
+    np.testing.assert_allclose(track.place, [[1.0, 2.0, 3.0], [1.5, 2.5, 2.0]], rtol=1e-12)
+    np.testing.assert_allclose(track.speed, [1.0, 2.0], rtol=1e-12)
+    assert (track.first_time, track.time[1]) == pytest.approx((0.5, 0.1))
+
+
+@pytest.mark.parametrize("further", ["T", "t [°C]", "x [g]", "Easting", "time_zone", "speed_accuracy", "v_dop"])
+def test_further_columns_beside_those_that_are_read(tmp_path: Path, further: str) -> None:
+    """A letter that may mean another quantity, another form's place, and a remark about a column that is there."""
+    track = read(tmp_path, f"time,lat,lon,speed_mps,{further}\n0,46,7,3,9\n1,46,7,3,9\n")
+    assert track.further_columns == (further,)
+    np.testing.assert_array_equal(track.speed, [3.0, 3.0])
 
 
 def test_dates_that_run_backwards_are_reported_as_dates(tmp_path: Path) -> None:

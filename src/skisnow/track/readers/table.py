@@ -24,12 +24,12 @@ from .text import Cells, convert_serial_dates, decimal_mark_of, moment, require_
 TIMES: Final = ("time_s", "time")
 LOCAL: Final = ("x_m", "y_m", "z_m")
 GEODETIC: Final = ("lat", "lon", "alt_m")
-SPEEDS: Final = ("speed_m_per_s", "speed_mps")
+SPEED: Final = "speed_m_per_s"
 ODOMETER: Final = "dist_m"
 LOCAL_SD: Final = ("x_sd_m", "y_sd_m", "z_sd_m")
 GEODETIC_SD: Final = ("east_sd_m", "north_sd_m", "up_sd_m")
 SPEED_SD: Final = "speed_sd_m_per_s"
-COLUMNS: Final = (*TIMES, *LOCAL, *GEODETIC, *SPEEDS, ODOMETER, *LOCAL_SD, *GEODETIC_SD, SPEED_SD)
+COLUMNS: Final = (*TIMES, *LOCAL, *GEODETIC, SPEED, ODOMETER, *LOCAL_SD, *GEODETIC_SD, SPEED_SD)
 """Every column that is read."""
 _IN_EVERY_ROW: Final = Message("in every row")
 _FORMS: Final = "time_s, x_m, y_m[, z_m, speed_m_per_s] or time, lat, lon[, alt_m, speed_mps]"
@@ -42,12 +42,12 @@ def read_table(text: str, name: str) -> Recording:
         than the header.
     """
     table = _Table.of(split_cells(text, name), name)
-    is_geodetic = table.kind()
+    table.require_columns()
     table.require_rows()
+    is_geodetic = table.is_geodetic
     time, start, note = table.time()
     first_time = 0.0 if start is not None else float(time[0])
     place = table.vectors(GEODETIC if is_geodetic else LOCAL)
-    speeds = [column for column in SPEEDS if column in table.header]
     sd = GEODETIC_SD if is_geodetic else LOCAL_SD
     return Recording(
         name=name,
@@ -58,90 +58,83 @@ def read_table(text: str, name: str) -> Recording:
         time_scale="local" if start is None or start.tzinfo is None else "UTC",
         start=start,
         first_time=first_time,
-        speed=table.numbers(speeds[0]) if speeds else None,
+        speed=table.optional(SPEED),
         speed_kind="as the device gives it" if is_geodetic else "along the path",
-        place_sd=table.vectors(sd) if any(column in table.header for column in sd) else None,
+        place_sd=table.vectors(sd) if any(column in table.columns for column in sd) else None,
         speed_sd=table.optional(SPEED_SD),
         odometer=table.optional(ODOMETER),
-        further_columns=tuple(column for column in table.header if column not in table.used),
-        columns=dict(zip("xyz", GEODETIC if is_geodetic else LOCAL, strict=True)),
+        further_columns=table.further_columns,
+        columns={
+            axis: table.heading(column) for axis, column in zip("xyz", GEODETIC if is_geodetic else LOCAL, strict=True)
+        },
         not_finite=table.not_finite,
         notes=() if note is None else (note,),
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """Place of a column among the cells of a row, and the size of its unit in the unit that is read."""
+
+    place: int
+    factor: float = 1.0
+
+
 @dataclass(eq=False)
 class _Table:
-    """Cells with the file's name and decimal mark, the columns used so far, and the rows with `nan` or `inf`."""
+    """Cells with the file's name and decimal mark, the columns that are read, and the rows with `nan` or `inf`."""
 
     cells: Cells
     name: str
     mark: str
+    is_geodetic: bool
+    columns: dict[str, _Column]
     used: set[str]
     not_finite: BoolArray
 
     @classmethod
     def of(cls, cells: Cells, name: str) -> _Table:
-        """Build a table with rows as long as its header; the case of known headings is ignored."""
-        cells = dataclasses.replace(cells, header=tuple(map(_column_name, cells.header)))
-        twice = [column for column in COLUMNS if cells.header.count(column) > 1]
-        if twice:
-            raise track_error(
-                "column_twice",
-                name,
-                place=f"row {cells.header_line}",
-                column=twice[0],
-                allowed=Message("each column once"),
-                action=Message("Rename or remove one of them."),
-            )
+        """Build a table with rows as long as its header."""
+        place = f"row {cells.header_line}"
+        is_geodetic = _is_geodetic(cells.header, name, place)
+        columns = _columns(cells.header, is_geodetic, name, place)
         width = len(cells.header)
         require_width(cells, name)
         rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
-        places = [place for place, column in enumerate(cells.header) if column in COLUMNS]
+        places = [column.place for column in columns.values()]
         mark = decimal_mark_of((row[place] for place in places for row in rows), cells.separator)
-        return cls(dataclasses.replace(cells, rows=rows), name, mark, set(), np.zeros(len(rows), dtype=bool))
+        cells = dataclasses.replace(cells, rows=rows)
+        return cls(cells, name, mark, is_geodetic, columns, set(), np.zeros(len(rows), dtype=bool))
 
     @property
-    def header(self) -> tuple[str, ...]:
-        return self.cells.header
+    def further_columns(self) -> tuple[str, ...]:
+        """Headings of the columns that were not used."""
+        used = {self.columns[name].place for name in self.used}
+        return tuple(heading for place, heading in enumerate(self.cells.header) if place not in used)
 
-    def kind(self) -> bool:
-        """True if places are latitude and longitude, False if they are local metres."""
-        local, geodetic = (any(column in self.header for column in form[:2]) for form in (LOCAL, GEODETIC))
-        if local and geodetic:
-            raise track_error(
-                "two_places",
-                self.name,
-                place=f"row {self.cells.header_line}",
-                allowed=Message("the columns {forms}", forms=_FORMS),
-                action=Message("The file has places in metres and in degrees; take one of them away."),
-            )
-        for column in GEODETIC[:2] if geodetic else LOCAL[:2]:
-            if column not in self.header:
+    def heading(self, column: str) -> str:
+        """Heading of a column in the file; its name if the file does not have it."""
+        return self.cells.header[self.columns[column].place] if column in self.columns else column
+
+    def require_columns(self) -> None:
+        """Reject a table without two coordinates and a time."""
+        for column in GEODETIC[:2] if self.is_geodetic else LOCAL[:2]:
+            if column not in self.columns:
                 raise self._missing(column)
-        if not any(column in self.header for column in TIMES):
-            raise self._missing("time" if geodetic else "time_s")
-        optional = {(GEODETIC if geodetic else LOCAL)[2]} | ({SPEEDS[0]} if not {*SPEEDS} & {*self.header} else set())
-        for column in columns_by_synonym(self.header).values():
-            if column in optional:  # heights or speeds would be lost
-                raise self._missing(column)
-        return geodetic
+        if not any(column in self.columns for column in TIMES):
+            raise self._missing("time" if self.is_geodetic else "time_s")
 
     def _missing(self, column: str) -> Exception:
-        near = difflib.get_close_matches(column, self.header, n=1, cutoff=0.6)
-        likely = columns_by_synonym(self.header)
+        near = difflib.get_close_matches(column, self.cells.header, n=1, cutoff=0.6)
         action = Message("Name the column in the header.")
-        if likely:
-            pairs = [Message("{name} for {heading!r}", name=name, heading=heading) for heading, name in likely.items()]
-            action = joined([action, Message("Likely {pairs}.", pairs=pairs)])
-        elif near:
+        if near:
             action = joined([action, Message("Did you mean {similar!r}?", similar=near[0])])
         return track_error(
             "missing_column",
             self.name,
             place=f"row {self.cells.header_line}",
             column=column,
-            value=", ".join(self.header),
+            value=", ".join(self.cells.header),
             allowed=Message("the columns {forms}", forms=_FORMS),
             action=action,
         )
@@ -157,7 +150,7 @@ class _Table:
 
     def column(self, name: str) -> list[str]:
         self.used.add(name)
-        place = self.header.index(name)
+        place = self.columns[name].place
         return [row[place] for row in self.cells.rows]
 
     def numbers(self, name: str) -> FloatArray:
@@ -169,19 +162,19 @@ class _Table:
                 self.not_finite[place] = True
             elif cells[place]:
                 raise self._no_number(place, name, cells[place])
-        return values
+        return values * self.columns[name].factor
 
     def optional(self, name: str) -> FloatArray | None:
-        return self.numbers(name) if name in self.header else None
+        return self.numbers(name) if name in self.columns else None
 
     def vectors(self, names: tuple[str, ...]) -> FloatArray:
         """Columns side by side, NaN where one is absent."""
         absent = np.full(len(self.cells.rows), np.nan)
-        return np.column_stack([self.numbers(name) if name in self.header else absent for name in names])
+        return np.column_stack([self.numbers(name) if name in self.columns else absent for name in names])
 
     def time(self) -> tuple[FloatArray, datetime | None, str | None]:
         """Seconds, the moment of the first row if the column has dates, and a note on how it was read."""
-        name = next(column for column in TIMES if column in self.header)
+        name = next(column for column in TIMES if column in self.columns)
         cells = self.column(name)
         if name == "time_s" or not math.isnan(number(cells[0], self.mark)):
             seconds = self._seconds(name, cells)
@@ -197,7 +190,7 @@ class _Table:
         return np.array([(read - times[0]).total_seconds() for read in times]), times[0], None
 
     def _seconds(self, name: str, cells: list[str]) -> FloatArray:
-        values = np.array([number(cell, self.mark) for cell in cells])
+        values = np.array([number(cell, self.mark) for cell in cells]) * self.columns[name].factor
         for place in np.flatnonzero(~(np.abs(values) <= FARTHEST * 100.0)).tolist():
             raise self._no_time(place, name, cells[place])
         return values
@@ -212,7 +205,7 @@ class _Table:
             "not_a_number" if column == "time_s" else "not_a_time",
             self.name,
             place=f"row {self.cells.lines[place]}",
-            column=column,
+            column=self.heading(column),
             value=cell,
             allowed=joined([what, also]),
             action=Message("A point without a time cannot be put on a track; correct the cell."),
@@ -224,11 +217,115 @@ class _Table:
             "not_a_number",
             self.name,
             place=f"row {self.cells.lines[place]}",
-            column=column,
+            column=self.heading(column),
             value=cell,
             allowed=Message("a finite number with {mark}, or nothing", mark=mark),
             action=Message("Correct the cell."),
         )
+
+
+_METRES: Final = (
+    dict.fromkeys(("", "m", "meter", "metres", "meters"), 1.0)
+    | dict.fromkeys(("ft", "feet"), 0.3048)
+    | {"cm": 0.01, "mm": 0.001}
+)
+_DEGREES: Final = dict.fromkeys(("", "°", "deg", "degrees", "grad"), 1.0)
+_SPEEDS: Final = (
+    dict.fromkeys(("", "m/s", "mps", "m_s", "m_per_s", "ms-1"), 1.0)
+    | dict.fromkeys(("km/h", "kmh", "kph", "km_h", "km_per_h"), 1.0 / 3.6)
+    | dict.fromkeys(("kn", "kt", "kts", "knots"), 1852.0 / 3600.0)
+    | {"mph": 0.44704, "cm/s": 0.01}
+)
+_SECONDS: Final = (
+    dict.fromkeys(("s", "sec", "sek", "seconds", "sekunden"), 1.0)
+    | dict.fromkeys(("ms", "msec"), 1e-3)
+    | {"us": 1e-6, "\u03bcs": 1e-6, "ns": 1e-9}
+)
+_TIME_WORDS: Final = ("time", "timestamp", "zeit", "zeitstempel", "t")
+_HEIGHT_WORDS: Final = ("alt", "altitude", "ele", "elevation", "height", "höhe")
+_WORDS: Final[dict[str, tuple[tuple[str, ...], dict[str, float]]]] = {
+    "time": (_TIME_WORDS, {"": 1.0}),
+    "time_s": (_TIME_WORDS, _SECONDS),
+    "x_m": (("x", "rechtswert", "east", "easting", "ost"), _METRES),
+    "y_m": (("y", "hochwert", "north", "northing", "nord"), _METRES),
+    "z_m": (("z", *_HEIGHT_WORDS), _METRES),
+    "lat": (("lat", "latitude", "breite", "breitengrad"), _DEGREES),
+    "lon": (("lon", "lng", "long", "longitude", "länge", "längengrad"), _DEGREES),
+    "alt_m": (_HEIGHT_WORDS, _METRES),
+    SPEED: (("speed", "velocity", "geschwindigkeit", "v"), _SPEEDS),
+}
+"""Synonyms of each column in headings of other programs, and its units with their sizes."""
+_HEADING: Final = re.compile(
+    r"(?P<word>[^\W\d_]+)"
+    r"(?:[\s_]*[\[(/]\s*(?P<bracketed>[^\])]*?)\s*[\])]?|[\s_]+(?P<unit>\S+))?"
+)
+
+
+def _is_geodetic(headings: Sequence[str], name: str, place: str) -> bool:
+    """True if places are latitude and longitude, False if they are local metres; names have priority over synonyms."""
+    names = {_column_name(heading) for heading in headings}
+    local, geodetic = bool(names & {*LOCAL[:2]}), bool(names & {*GEODETIC[:2]})
+    if not local and not geodetic:
+        local, geodetic = (any(_meaning(heading, form[:2]) for heading in headings) for form in (LOCAL, GEODETIC))
+    if local and geodetic:
+        raise track_error(
+            "two_places",
+            name,
+            place=place,
+            allowed=Message("the columns {forms}", forms=_FORMS),
+            action=Message("The file has places in metres and in degrees; take one of them away."),
+        )
+    return geodetic
+
+
+def _columns(headings: Sequence[str], is_geodetic: bool, name: str, place: str) -> dict[str, _Column]:
+    """Columns by their names.
+
+    A word of one letter is a synonym only if no other heading has the meaning.
+
+    Raises FieldDataError: two headings have the same meaning, or the only one with a meaning has an unknown unit.
+    """
+    meanings: dict[str, list[tuple[int, float, bool]]] = {}
+    readable = [column for column in COLUMNS if column not in (LOCAL if is_geodetic else GEODETIC)]
+    for place_in_row, heading in enumerate(headings):
+        column, factor, is_vague = _column_name(heading), 1.0, False
+        if column not in COLUMNS:
+            meaning = _meaning(heading, readable)
+            if meaning is None:
+                continue
+            column, factor, is_vague = meaning
+        meanings.setdefault(column, []).append((place_in_row, factor, is_vague))
+    if "time" in meanings:  # a time zone next to the time is no time
+        meanings["time_s"] = [reading for reading in meanings.get("time_s", []) if reading[1]]
+    columns = {}
+    for column, places in meanings.items():
+        readings = [reading for reading in places if reading[1]] or places
+        readings = [reading for reading in readings if not reading[2]] or readings
+        if not readings:
+            continue
+        first, factor, _ = readings[0]
+        if not factor:
+            raise track_error(
+                "unknown_unit",
+                name,
+                place=place,
+                column=column,
+                value=headings[first],
+                allowed=Message("the units {units}", units=", ".join(filter(None, _WORDS[column][1]))),
+                action=Message("Give one of these units in the heading, or rename a column of something else."),
+            )
+        if len(readings) > 1:
+            raise track_error(
+                "column_twice",
+                name,
+                place=place,
+                column=column,
+                value=", ".join(headings[reading[0]] for reading in readings),
+                allowed=Message("each column once"),
+                action=Message("Rename or remove one of them."),
+            )
+        columns[column] = _Column(first, factor)
+    return columns
 
 
 def _column_name(heading: str) -> str:
@@ -241,42 +338,21 @@ def _column_name(heading: str) -> str:
     return name if name in COLUMNS else heading
 
 
-_METRES, _DEGREES = ("", "m"), ("", "°", "deg", "grad")
-_WORDS: Final = {
-    "time": (("zeit", "time", "t", "zeitstempel", "timestamp"), ("",)),
-    "time_s": (("zeit", "time", "t"), ("s", "sec", "sek")),
-    "x_m": (("x", "rechtswert", "east", "easting", "ost"), _METRES),
-    "y_m": (("y", "hochwert", "north", "northing", "nord"), _METRES),
-    "z_m": (("z",), _METRES),
-    "lat": (("latitude", "breite", "breitengrad"), _DEGREES),
-    "lon": (("lng", "long", "longitude", "länge", "längengrad"), _DEGREES),
-    "alt_m": (("alt", "altitude", "elevation", "höhe", "height"), _METRES),
-    "speed_m_per_s": (("speed", "v", "geschwindigkeit"), ("", "m/s")),
-}
-"""Synonyms of each column in headings of other programs, and the units that need no conversion."""
-_HEADING: Final = re.compile(
-    r"(?P<word>[^\W\d_]+)"
-    r"(?:[\s_]*[\[(/]\s*(?P<bracketed>[^\])]*?)\s*[\])]?|[\s_]+(?P<unit>\S+))?"
-)
+def _meaning(heading: str, columns: Sequence[str]) -> tuple[str, float, bool] | None:
+    """Column of which a heading is a synonym, the size of its unit (0: unknown), and True for a word of one letter.
 
-
-def columns_by_synonym(headings: Sequence[str]) -> dict[str, str]:
-    """Columns by headings that are synonyms; a heading with a different unit is not included.
-
-    >>> columns_by_synonym(["Zeit [s]", "x (m)", "Y", "Geschwindigkeit [km/h]"])
-    {'Zeit [s]': 'time_s', 'x (m)': 'x_m', 'Y': 'y_m'}
+    >>> [_meaning(heading, COLUMNS) for heading in ("t (ms)", "Breite", "Elevation [fathoms]", "Heart rate")]
+    [('time_s', 0.001, True), ('lat', 1.0, False), ('alt_m', 0.0, False), None]
     """
-    columns: dict[str, str] = {}
-    for heading in headings:
-        column = _column(" ".join(unicodedata.normalize("NFC", heading).split()).casefold())
-        if column is not None and column not in columns.values() and column not in headings:
-            columns[heading] = column
-    return columns
-
-
-def _column(heading: str) -> str | None:
-    match = _HEADING.fullmatch(heading)
+    match = _HEADING.fullmatch(" ".join(unicodedata.normalize("NFC", heading).split()).casefold())
     if match is None:
         return None
     unit = match["bracketed"] or match["unit"] or ""
-    return next((name for name, (words, units) in _WORDS.items() if match["word"] in words and unit in units), None)
+    names = [name for name, (words, _) in _WORDS.items() if name in columns and match["word"] in words]
+    is_vague = len(match["word"]) == 1
+    for name in names:
+        if unit in _WORDS[name][1]:
+            return name, _WORDS[name][1][unit], is_vague
+    if not names or (is_vague and match["bracketed"] is None):
+        return None
+    return names[-1], 0.0, is_vague
