@@ -131,6 +131,17 @@ def test_an_esri_grid_is_rejected_with_the_place_of_the_fault(tmp_path: Path, te
     assert str(error.value).startswith(str(path))
 
 
+@pytest.mark.parametrize("size", ["0.0125", "0.05"])
+@pytest.mark.parametrize("smoothing", [0.0, 10.0])
+def test_coarse_degrees_are_rejected_also_with_smoothing(tmp_path: Path, size: str, smoothing: float) -> None:
+    """Smoothing over metres makes such a grid flat; one wrong height among metres is a cliff."""
+    text = header(ncols="3", nrows="3", cellsize=size, xllcorner="11", yllcorner="47") + "2400 2410 2430\n" * 2
+    with raises(ParameterError, coded("in_degrees", target="EPSG:32632")):
+        read_terrain(written(tmp_path, text + "2390 2400 2420"), smoothing=smoothing)
+    with raises(ParameterError, "out_of_range"):
+        read_terrain(written(tmp_path, text.replace("10 2430", "00 2400", 2) + "2400 2400 2460"))
+
+
 UTM = (
     'PROJCS["WGS_1984_UTM_Zone_32N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],'
     'PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],'

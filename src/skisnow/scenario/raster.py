@@ -152,6 +152,17 @@ def require_places(path: str | Path, first: tuple[float, float], step: tuple[flo
         )
 
 
+def require_metres(path: str | Path, heights: PlacedValues, column: str, *, steepest: float) -> None:
+    """Reject degrees that are too coarse for `require_places`: most steps are steeper (m/m) than any slope."""
+    first, step = (heights.x[0], heights.y[0]), (heights.x[1] - heights.x[0], heights.y[1] - heights.y[0])
+    if max(step) >= 1.0 or np.abs(heights.x).max() > 360.0 or np.abs(heights.y).max() > 90.0:
+        return
+    rises = [np.median(np.abs(np.diff(heights.columns[column], axis=axis))) / step[axis] for axis in (0, 1)]
+    if max(rises) > steepest:
+        unit = Message("The unit of x and y looks like degrees.")
+        raise ParameterError(_in_degrees(path, unit, *first, step[0])).tag("in_degrees")
+
+
 def placed_heights(raster: Raster, *, column: str) -> PlacedValues:
     """Heights over places that rise, in m."""
     path, system, (n_rows, n_columns) = raster.path, raster.system, raster.values.shape

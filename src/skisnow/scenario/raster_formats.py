@@ -170,9 +170,9 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
             header[entry[1].lower()] = float(entry[2])
         except ValueError:
             line = text.count("\n", 0, entry.start(2)) + 1
-            raise ParameterError("{path}, line {line}: {key} is {value!r}. Allowed: a number.").tag(
-                "out_of_range", path=path, line=line, key=entry[1], value=entry[2]
-            ) from None
+            raise ParameterError(
+                "{path}, line {line}: {key} is {value!r}. Allowed: a number with a decimal point."
+            ).tag("out_of_range", path=path, line=line, key=entry[1], value=entry[2]) from None
         at = entry.end()
     return header, at
 

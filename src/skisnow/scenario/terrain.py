@@ -17,7 +17,7 @@ from .._support.units import Facts, Shown, amount, ends
 from ..geometry import surfaces
 from ..geometry.surfaces import Grid, smoothed
 from ..parameters import Allowed, Condition, Label, Quantity, Word, require_declared
-from .raster import PlacedValues
+from .raster import PlacedValues, require_metres
 from .raster_formats import read_esri_ascii, read_geotiff, read_grid_table
 from .slope import STEEPEST_DEG, Plane, Profile
 
@@ -175,6 +175,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
         The file cannot be read or is not a grid; file, row, column and value are named.
     """
     raster = _placed(Path(path))
+    require_metres(path, raster, HEIGHT, steepest=math.tan(math.radians(STEEPEST_DEG)))
     try:
         return Terrain(
             raster.x, raster.y, raster.columns[HEIGHT],
