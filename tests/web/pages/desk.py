@@ -111,21 +111,24 @@ class Sheet:
         self.fire(made, "change", {})
 
     def press(self, text: str, number: int = 0) -> None:
-        """Press a button."""
-        found = [each for each in self.of(ui.button) if text in (each.text, _name(each))]
-        assert len(found) > number, (text, self.outline())
-        self.fire(found[number], "click", {})
+        """Press a button; it is looked for in the loop of the page, which may draw it again at any time."""
+
+        def pressed() -> None:
+            found = [each for each in self.of(ui.button) if text in (each.text, _name(each))]
+            assert len(found) > number, (text, self.outline())
+            self._handle(found[number], "click", {})
+
+        self.desk.do(pressed, self.client)
 
     def fire(self, element: Element, event: str, args: object) -> None:
         """The browser's message about an element."""
+        self.desk.do(lambda: self._handle(element, event, args), self.client)
 
-        def fired() -> None:
-            for each in list(element._event_listeners.values()):
-                if each.type == event and not element.is_deleted:
-                    said = events.GenericEventArguments(sender=element, client=self.client, args=args)
-                    events.handle_event(each.handler, said)
-
-        self.desk.do(fired, self.client)
+    def _handle(self, element: Element, event: str, args: object) -> None:
+        for each in list(element._event_listeners.values()):
+            if each.type == event and not element.is_deleted:
+                said = events.GenericEventArguments(sender=element, client=self.client, args=args)
+                events.handle_event(each.handler, said)
 
     def until(self, holds: Callable[[], Answer]) -> Answer:
         """Wait until something holds; gives what it gave."""
