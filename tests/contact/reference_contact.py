@@ -115,7 +115,8 @@ class ReferenceRunner:
         """Wrench (6,) about the boot and beam loads (nodes, 3), a time (s) after the last update."""
         wrench, loads = np.zeros(6), np.zeros((2 if self.runner.nodes is None else len(self.runner.nodes), 3))
         for section in self._sections(pose):
-            if section.share > 0.0 and section.deepest > 0.0:
+            is_base_down = section.edges[0].place > section.edges[1].place
+            if section.share > 0.0 and section.deepest > 0.0 and is_base_down:
                 section.add(wrench, loads, dt)
         return wrench, loads
 

@@ -160,7 +160,11 @@ def _laws(seed: int, strength: float) -> dict[str, Any]:
 
 
 def differences(seed: int, *, steps: int) -> list[float]:
-    """Of wrench and beam loads over the largest force, along a short random walk."""
+    """Of wrench and beam loads over what is allowed, along a short random walk.
+
+    Allowed are 10⁻¹¹ of the largest force, and what 1 pm of depth bears on a base of 1.9 m by 0.07 m: the core takes
+    places nearer than that for one.
+    """
     rng = np.random.default_rng(seed)
     hardness, strength = (float(10.0 ** rng.uniform(*ends)) for ends in ((7.3, 11.0), (4.5, 6.5)))
     ratio = float(rng.uniform(1.0, 50.0))
@@ -180,9 +184,9 @@ def differences(seed: int, *, steps: int) -> list[float]:
             *placed, [pose.velocity], 1e-3 * (step > 0), beam_dofs=[pose.beam], beam_rates=[pose.rate]
         )
         wrench, loads = reference.force(pose, 1e-3 * (step > 0))
-        size = max(float(np.abs(wrench).max()), 1e-3)
-        out.append(float(np.abs(found.wrench[0] - wrench).max()) / size)
-        out.append(float(np.abs(found.beam_loads[0] - loads).max()) / size)
+        allowed = 1e-11 * max(float(np.abs(wrench).max()), 1e-3) + 1e-12 * ratio * hardness * 1.9 * 0.07
+        out.append(float(np.abs(found.wrench[0] - wrench).max()) / allowed)
+        out.append(float(np.abs(found.beam_loads[0] - loads).max()) / allowed)
         contact.update(*placed, 1e-3 * (step > 0), beam_dofs=[pose.beam])
         reference.update(pose)
         pose = a_pose(rng, pose)
@@ -191,13 +195,13 @@ def differences(seed: int, *, steps: int) -> list[float]:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_forces_are_those_of_the_plain_implementation(seed: int) -> None:
-    assert max(differences(seed, steps=3)) < 1e-11
+    assert max(differences(seed, steps=3)) < 1.0
 
 
 @pytest.mark.slow
 def test_forces_of_a_thousand_walks() -> None:
     worst = {seed: max(differences(seed, steps=3)) for seed in range(100, 1100)}
-    assert {seed: value for seed, value in worst.items() if not value < 1e-11} == {}
+    assert {seed: value for seed, value in worst.items() if not value < 1.0} == {}
 
 
 # What a contact says of itself; the widest instruction set of this processor is used, whatever compiler built it
