@@ -32,6 +32,9 @@ SUFFIXES: Final[dict[str, TrackFormat]] = {
     ".csv": "csv",
 }
 _HEAD: Final = 1 << 16
+_PACKED: Final = (b"PK\x03\x04", b"\x1f\x8b")
+_OTHER: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<|\{|A\w{3,}[^,;\t\n]*\r?\nH[FOP])")
+"""Begin of a file in XML (TCX, KML) or JSON, and of a flight recorder's (IGC)."""
 _UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 _UBX_NAVIGATION: Final = SYNC + b"\x01\x07"
 
@@ -156,6 +159,14 @@ def _recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
         return read_ubx(data, name)
     if kind == "nmea":
         return read_nmea(data, name)
+    if kind == "csv" and (data.startswith(_PACKED) or _OTHER.match(data)):
+        raise track_error(
+            "unreadable_file",
+            name,
+            value=data[:16].decode("latin-1"),
+            allowed=Message("CSV, GPX, FIT, NMEA, UBX or .pos of RTKLIB"),
+            action=Message("Export the track as GPX, or unpack it."),
+        )
     text = decode_text(data, name)
     if kind == "gpx":
         return read_gpx(text, name)

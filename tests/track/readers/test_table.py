@@ -33,6 +33,22 @@ def refused(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named
     return message
 
 
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<?xml version="1.0"?>\n<TrainingCenterDatabase/>',
+        b"\xef\xbb\xbf<kml></kml>",
+        '{"type": "FeatureCollection"}',
+        "AXYZ123\r\nHFDTE050126\r\n",
+        b"PK\x03\x04doc.kml",
+        b"\x1f\x8b\x08",
+    ],
+)
+def test_other_formats_are_named_as_such(tmp_path: Path, content: str | bytes) -> None:
+    """Not as tables without the right headings."""
+    assert "unreadable_file" in refused(tmp_path, content, "run.track")
+
+
 def test_local_metres(tmp_path: Path) -> None:
     track = read(tmp_path, LOCAL)
     np.testing.assert_allclose(track.time, [0.0, 0.1, 0.2], atol=1e-15)
