@@ -6,7 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import Final
 
@@ -238,10 +238,12 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     ParameterError
         It cannot be read, a column is missing, a cell is not a number, or its gates are not the course's.
     """
-    rows = list(csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again.")))
-    if not 0 < len(rows) <= len(course.gates):
-        raise ParameterError("{path}: it has {n_rows} rows. Allowed: 1 to {n_gates}, a row for each gate").tag(
-            "out_of_range", path=path, n_rows=len(rows), n_gates=len(course.gates)
+    most = len(course.gates)
+    table = csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again."))
+    rows = list(islice(table, most + 1))
+    if not 0 < len(rows) <= most:
+        raise ParameterError("{path}: it has no rows or too many. Allowed: 1 to {n_gates}, a row for each gate").tag(
+            "out_of_range", path=path, n_gates=most
         )
     for row, gate in zip(rows, course.gates, strict=False):
         if row.cells["gate"] != gate.name:
