@@ -114,12 +114,23 @@ def test_a_heading_in_newtons_is_believed(write_campaign: WriteCampaign, heading
         ("units.last = 'KG'", 9.80665),
         ('units.penetration.Last = "kg"', 9.80665),
         ('units.Last = "N"', 1.0),
-        ('units.Last = "N"\nunits.penetration.Last = "kN"', 1000.0),
+        ('units.Last = "N"\nunits.penetration.Last = "daN"', 10.0),
     ],
 )
 def test_a_unit_in_campaign_toml_is_believed(write_campaign: WriteCampaign, line: str, factor: float) -> None:
     folder = write_campaign(campaign(toml=line))
     assert loads_of(read_campaign(folder)) == pytest.approx([10.0 * factor, 30.0 * factor, 50.0 * factor])
+
+
+def test_depths_that_look_like_cm_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
+    """No snow has 142 N/mm³; the same 490 N at 1.41 mm are 1.42 N/mm³."""
+    loads = "1,A,ski,30,98.1,0.063\n1,A,ski,30,294.2,0.111\n1,A,ski,30,490.3,0.141\n"
+    (problem,) = problems(write_campaign(campaign(loads)))
+    assert (problem.code, problem.row, problem.column) == ("unit_missing", 4, "depth_mm")
+    volume = 200.0 * 1.41**2 / (2.0 * math.tan(math.radians(30.0)))
+    assert f"{490.3 / volume * 100.0:.4g} N/mm³" in problem.action
+    assert f"{490.3 / volume:.4g} in cm" in problem.action
+    assert problems(write_campaign(campaign(loads, toml='units.Tiefe = "cm"'))) == []
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..._support.arrays import FloatArray
 from ..._support.messages import Message
-from ..._support.units import DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
+from ..._support.units import CM, DEGREE, KILOGRAM_FORCE, MM, N_PER_MM2, N_PER_MM3
 from ..problems import Problem, warning
 from .campaign_file import CampaignFile
 from .columns import Table, is_unloading
@@ -130,6 +130,8 @@ LONGEST_LEVER_ARM: Final = 5000.0
 """In mm; no torque wrench is longer."""
 SHORTEST_LEVER_ARM: Final = 100.0
 """In mm; a smaller median is the length of a torque wrench in cm or m (modelling assumption)."""
+HARDEST: Final = 90.0
+"""In N/mm³; the hardest snow that was measured. A tool with a harder median may have depths in cm."""
 _METRES: Final = 5.0
 """Median below which the numbers are metres rather than centimetres."""
 
@@ -138,6 +140,8 @@ def check_missing_units(table: Table, described: CampaignFile | None) -> Iterato
     """Errors for columns whose heading states no unit and whose numbers suggest another unit."""
     if table.form == PENETRATION and "load_N" in table.unstated:
         yield from _loads_in_kg(table, described)
+    if table.form == PENETRATION and "depth_mm" in table.unstated:
+        yield from _depths_in_cm(table, described)
     if table.form == SHEAR and "lever_arm_mm" in table.unstated:
         yield from _lever_arms(table, described)
     for name in table.unstated:
@@ -168,6 +172,25 @@ def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Probl
         yield _missing_unit(table, "load_N", values, both, "kg", row)
 
 
+def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
+    """One error for each tool that finds snow harder than any measured one."""
+    tool, depth = table.names["tool"], table.numbers["depth_mm"]
+    for code, name in enumerate(tool.names):
+        rows = np.flatnonzero((tool.code == code) & np.isfinite(depth)).tolist()
+        largest = _largest_loads(table, rows)
+        row, hardness = _middle(_hardness(table, name, largest, described), largest or [0])
+        if not hardness > HARDEST:
+            continue
+        (other,) = _hardness(table, name, [row], described, depth_unit=CM)
+        values = f"{depth[rows].min():g} to {depth[rows].max():g} with tool {name}"
+        both = Message(
+            "H_V of this experiment is {hardness:.4g} N/mm³ if they are in mm, {other:.4g} in cm.",
+            hardness=hardness,
+            other=other,
+        )
+        yield _missing_unit(table, "depth_mm", values, both, "cm", row)
+
+
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
     """Row of the largest load of each experiment, among the given rows without unloading."""
     load, unloading, key = table.numbers["load_N"], is_unloading(table.names[BRANCH]), table.names[table.form.key].code
@@ -179,11 +202,13 @@ def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
     return list(largest.values()) or list(rows[:1])
 
 
-def _hardness(table: Table, tool: str, rows: list[int], described: CampaignFile | None) -> FloatArray:
-    """H_V (N/mm³, Eqn 1) of rows with loads in N; NaN if it is unknown."""
+def _hardness(
+    table: Table, tool: str, rows: list[int], described: CampaignFile | None, *, depth_unit: float = MM
+) -> FloatArray:
+    """H_V (N/mm³, Eqn 1) of rows with loads in N and depths in a unit (m); NaN if it is unknown."""
     if described is None or tool not in described.tools:
         return np.full(len(rows), np.nan)
-    depth, angle = table.numbers["depth_mm"][rows] * MM, table.numbers["edge_angle_deg"][rows] * DEGREE
+    depth, angle = table.numbers["depth_mm"][rows] * depth_unit, table.numbers["edge_angle_deg"][rows] * DEGREE
     volume = described.tools[tool].displaced_volume(depth, angle)
     with np.errstate(divide="ignore", invalid="ignore"):
         hardness = table.numbers["load_N"][rows] / volume / N_PER_MM3
