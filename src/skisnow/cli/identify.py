@@ -46,7 +46,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         nargs="+",
         type=Path,
         metavar="DATA",
-        help="tracks (CSV, GPX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
+        help="tracks (CSV, GPX, TCX, FIT, NMEA, UBX, .pos), photo-cell times or measured grooves (CSV); several are "
         "fitted together",
     )
     free = 'parameters to fit, such as mu_0,drag_area,S_f; default: those with a table [identify."KEY"] in the file'

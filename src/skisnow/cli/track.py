@@ -29,7 +29,7 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         help="evaluation of a measured track: distance, speed, runs, lifts, turns and their radii",
         description="Read a track, flag what is doubtful in it, smooth it, and find its runs, lifts and turns.",
     )
-    parser.add_argument("file", type=Path, metavar="FILE", help="CSV, GPX, FIT, NMEA, UBX or RTKLIB .pos")
+    parser.add_argument("file", type=Path, metavar="FILE", help="CSV, GPX, TCX, FIT, NMEA, UBX or RTKLIB .pos")
     parser.add_argument(
         "--window-s",
         type=number("s", lowest=0, highest=86_400, above=True),

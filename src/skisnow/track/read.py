@@ -21,9 +21,10 @@ from .readers.text import decode_text
 from .readers.ubx import SYNC, has_places, read_ubx
 from .track import FASTEST, GAP_FACTOR, Track
 
-TrackFormat: TypeAlias = Literal["csv", "gpx", "fit", "nmea", "ubx", "rtklib"]
+TrackFormat: TypeAlias = Literal["csv", "gpx", "tcx", "fit", "nmea", "ubx", "rtklib"]
 SUFFIXES: Final[dict[str, TrackFormat]] = {
     ".gpx": "gpx",
+    ".tcx": "tcx",
     ".fit": "fit",
     ".ubx": "ubx",
     ".nmea": "nmea",
@@ -34,7 +35,7 @@ SUFFIXES: Final[dict[str, TrackFormat]] = {
 _HEAD: Final = 1 << 16
 _PACKED: Final = (b"PK\x03\x04", b"\x1f\x8b")
 _OTHER: Final = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<|\{|A\w{3,}[^,;\t\n]*\r?\nH[FOP])")
-"""Begin of a file in XML (TCX, KML) or JSON, and of a flight recorder's (IGC)."""
+"""Begin of a file in XML (KML) or JSON, and of a flight recorder's (IGC)."""
 _UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
 _UBX_NAVIGATION: Final = SYNC + b"\x01\x07"
 
@@ -47,7 +48,7 @@ def read_track(
     fastest: float = FASTEST,
     gap_factor: float = GAP_FACTOR,
 ) -> Track:
-    """Read a track: CSV, GPX, FIT, NMEA, UBX or RTKLIB's ``.pos``.
+    """Read a track: CSV, GPX, TCX, FIT, NMEA, UBX or RTKLIB's ``.pos``.
 
     Parameters
     ----------
@@ -111,6 +112,7 @@ def recognise_format(data: bytes, suffix: str) -> TrackFormat:
         ("fit", data[8:12] == b".FIT"),
         ("ubx", _UBX_NAVIGATION in data),
         ("gpx", re.search(rb"<(?:\w+:)?gpx[\s>]", head)),
+        ("tcx", b"<TrainingCenterDatabase" in head),
         ("rtklib", HEADER.search(head.decode("latin-1").replace("\r", "\n"))),
         ("nmea", SENTENCE.search(data)),
         ("ubx", head.startswith(SYNC)),
@@ -164,10 +166,10 @@ def _recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
             "unreadable_file",
             name,
             value=data[:16].decode("latin-1"),
-            allowed=Message("CSV, GPX, FIT, NMEA, UBX or .pos of RTKLIB"),
+            allowed=Message("CSV, GPX, TCX, FIT, NMEA, UBX or .pos of RTKLIB"),
             action=Message("Export the track as GPX, or unpack it."),
         )
     text = decode_text(data, name)
-    if kind == "gpx":
+    if kind in ("gpx", "tcx"):
         return read_gpx(text, name)
     return read_rtklib(text, name) if kind == "rtklib" else read_table(text, name)

@@ -73,6 +73,42 @@ def test_no_fix(tmp_path: Path) -> None:
     assert track.usable.tolist() == [True, False, True]
 
 
+TCX = """<?xml version="1.0" encoding="UTF-8"?>
+<TrainingCenterDatabase xmlns="http://www.garmin.com/xmlschemas/TrainingCenterDatabase/v2">
+<Activities><Activity Sport="Other"><Id>2022-12-27T15:51:14Z</Id>
+<Lap StartTime="2022-12-27T15:51:14Z"><DistanceMeters>99</DistanceMeters><Track>
+<Trackpoint><Time>2022-12-27T15:51:14.000Z</Time><Position><LatitudeDegrees>47.0</LatitudeDegrees>
+<LongitudeDegrees>11.0</LongitudeDegrees></Position><AltitudeMeters>1500.5</AltitudeMeters>
+<DistanceMeters>3.0</DistanceMeters><HeartRateBpm><Value>120</Value></HeartRateBpm>
+<Extensions><ns3:TPX xmlns:ns3="http://www.garmin.com/xmlschemas/ActivityExtension/v2"><ns3:Speed>7.25</ns3:Speed>
+</ns3:TPX></Extensions></Trackpoint>
+<Trackpoint><Time>2022-12-27T15:51:14.500Z</Time></Trackpoint></Track></Lap>
+<Lap StartTime="2022-12-27T15:51:15Z"><Track>
+<Trackpoint><Time>2022-12-27T15:51:15Z</Time><Position><LatitudeDegrees>47.0001</LatitudeDegrees>
+<LongitudeDegrees>11.0</LongitudeDegrees></Position><AltitudeMeters>1500.5</AltitudeMeters>
+<DistanceMeters>14.0</DistanceMeters></Trackpoint></Track></Lap></Activity></Activities></TrainingCenterDatabase>
+"""
+
+
+@pytest.mark.parametrize("name", ["a.tcx", "export.txt"])
+def test_tcx(tmp_path: Path, name: str) -> None:
+    track = read(tmp_path, TCX, name)
+    assert (track.start, track.time_scale) == (datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC), "UTC")
+    np.testing.assert_array_equal(track.time, [0.0, 0.5, 1.0])
+    stretched = 1e-4 * metres_per_degree.north(47.0) * (1 + 1500.5 / 6.37e6)
+    np.testing.assert_allclose(track.place[[0, 2], :2], [[0.0, 0.0], [0.0, stretched]], atol=2e-5)
+    np.testing.assert_array_equal(track.speed, [7.25, np.nan, np.nan])
+    np.testing.assert_array_equal(track.odometer, [3.0, np.nan, 14.0])
+    assert track.usable.tolist() == [True, False, True]
+    assert "not_finite" not in track.flagged
+
+
+def test_damaged_tcx(tmp_path: Path) -> None:
+    assert "unreadable_file" in refused(tmp_path, TCX[:-40], "a.tcx")
+    assert "point 1, column lat" in refused(tmp_path, TCX.replace(">47.0<", ">north<"), "a.tcx")
+    assert "not_a_time" in refused(tmp_path, TCX.replace("<Time>2022-12-27T15:51:15Z</Time>", ""), "a.tcx")
+
+
 def test_other_encoding(tmp_path: Path) -> None:
     content = gpx(point(47.0, "14Z")).replace("UTF-8", "UTF-16").replace("a watch", "eine Uhr für Schi")
     assert len(read(tmp_path, content.encode("utf-16"), "a.gpx")) == 1

@@ -36,7 +36,7 @@ def refused(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named
 @pytest.mark.parametrize(
     "content",
     [
-        '<?xml version="1.0"?>\n<TrainingCenterDatabase/>',
+        '<?xml version="1.0"?>\n<kml/>',
         b"\xef\xbb\xbf<kml></kml>",
         '{"type": "FeatureCollection"}',
         "AXYZ123\r\nHFDTE050126\r\n",

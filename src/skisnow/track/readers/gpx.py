@@ -1,4 +1,4 @@
-"""Tracks in GPX 1.0 and 1.1, with speeds of GPX 1.0 or of an extension named ``speed``.
+"""Tracks in GPX 1.0 and 1.1 and in TCX, with speeds of GPX 1.0 or of an extension named ``speed``.
 
 The file is read in one pass with expat, without a tree. Nesting and number of elements are limited, and a file that
 declares entities is rejected. Heights of GPX are above mean sea level. Routes and waypoints are not read.
@@ -24,8 +24,16 @@ DEEPEST: Final = 100
 """Elements within each other; a point with extensions has about seven."""
 MOST_ELEMENTS: Final = 20_000_000
 """A week of points ten times a second, three elements each."""
-_POINT: Final = ("gpx", "trk", "trkseg", "trkpt")
-_TEXTS: Final = ("ele", "time", "speed", "fix")
+_POINT: Final[tuple[str, ...]] = ("gpx", "trk", "trkseg", "trkpt")
+_TCX_POINT: Final[tuple[str, ...]] = ("TrainingCenterDatabase", "Activities", "Activity", "Lap", "Track", "Trackpoint")
+_TEXTS: Final = {key: key for key in ("ele", "time", "speed", "fix")}
+_TCX_TEXTS: Final = {
+    "AltitudeMeters": "ele",
+    "DistanceMeters": "distance",
+    "Time": "time",
+    "Position/LatitudeDegrees": "lat",
+    "Position/LongitudeDegrees": "lon",
+}
 _TIME: Final = re.compile(
     r"([0-9]{4})-([0-9]{1,2})-([0-9]{1,2})[T ]([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(\.[0-9]{1,15})?"
     r"([Zz]|[+-][0-9]{2}(?::?[0-9]{2})?)?"
@@ -44,10 +52,9 @@ class _TooMuchError(Exception):
 class _Point:
     """Texts of a point as written, and the number of its segment."""
 
-    lat: str | None
-    lon: str | None
     segment: int
     texts: dict[str, str] = field(default_factory=dict)
+    needs_place: bool = True
 
 
 class _Reader:
@@ -57,6 +64,7 @@ class _Reader:
         self.points: list[_Point] = []
         self._segment = 0
         self._path: list[str] = []
+        self._point, self._texts = _POINT, _TEXTS
         self._count = 0
         self._text: list[str] | None = None
 
@@ -64,6 +72,8 @@ class _Reader:
         self._text = None
         self._path.append(name.rsplit("}", 1)[-1])
         self._count += 1
+        if self._path == [_TCX_POINT[0]]:
+            self._point, self._texts = _TCX_POINT, _TCX_TEXTS
         if len(self._path) > DEEPEST:
             raise _TooMuchError(
                 Message("{count} elements within each other", count=len(self._path)),
@@ -74,10 +84,11 @@ class _Reader:
                 Message("more than {most} elements", most=MOST_ELEMENTS),
                 Message("at most {most}", most=MOST_ELEMENTS),
             )
-        if tuple(self._path) == _POINT[:3]:
+        if tuple(self._path) == self._point[:-1]:
             self._segment += 1
-        elif tuple(self._path) == _POINT:
-            self.points.append(_Point(attributes.get("lat"), attributes.get("lon"), self._segment))
+        elif tuple(self._path) == self._point:
+            place = {key: attributes[key] for key in ("lat", "lon") if key in attributes}
+            self.points.append(_Point(self._segment, place, needs_place=self._point == _POINT))
         elif self._key() is not None:
             self._text = []
 
@@ -97,20 +108,24 @@ class _Reader:
 
     def _key(self) -> str | None:
         """Key under which the text of the current element is stored: that of a point, or a speed in its extensions."""
-        path = self._path
-        if len(path) < 5 or tuple(path[:4]) != _POINT:
+        size = len(self._point)
+        path = self._path[size:]
+        if not path or tuple(self._path[:size]) != self._point:
             return None
-        if len(path) == 5:
-            return path[4] if path[4] in _TEXTS else None
-        return "extended speed" if path[4] == "extensions" and path[-1].rsplit(":", 1)[-1].lower() == "speed" else None
+        if path[0].lower() == "extensions":
+            is_speed = len(path) > 1 and path[-1].rsplit(":", 1)[-1].lower() == "speed"
+            return "extended speed" if is_speed else None
+        return self._texts.get("/".join(path))
 
 
 def read_gpx(text: str, name: str) -> Recording:
-    """The recording in a GPX file: all points of all tracks and segments, in the order of the file.
+    """The recording in a GPX or TCX file: all points of all tracks and segments, in the order of the file.
 
-    Raises FieldDataError: the file is not GPX, a point has no time, or a place, height or speed is not a number.
+    Raises FieldDataError: the file is neither GPX nor TCX, a point has no time, or a place, height, speed or distance
+        is not a number.
     """
     points = _points(text, name)
+    distance = [_optional(point, name, place, "distance") for place, point in enumerate(points)]
     moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
     return Recording(
         name=name,
@@ -122,6 +137,7 @@ def read_gpx(text: str, name: str) -> Recording:
         start=moments[0] if moments else None,
         speed=np.array([_speed(point, name, place) for place, point in enumerate(points)], dtype=float),
         speed_kind="as the device gives it",
+        odometer=None if np.isnan(distance).all() else np.array(distance),
         fix=np.array([point.texts.get("fix") != "none" for point in points], dtype=bool),
         heights="above mean sea level, as recorded",
         segment=np.array([point.segment for point in points], dtype=np.int64),
@@ -142,7 +158,7 @@ def _points(text: str, name: str) -> list[_Point]:
         ) from error
     except expat.ExpatError as error:
         action = Message("The file is damaged or ends too early; export it again.")
-        raise _damaged(name, str(error), "GPX 1.0 or 1.1", action) from error
+        raise _damaged(name, str(error), "GPX 1.0, GPX 1.1 or TCX", action) from error
     return reader.points
 
 
@@ -188,11 +204,16 @@ def _zone(text: str | None) -> timezone:
 
 
 def _place(point: _Point, name: str, place: int) -> tuple[float, float, float]:
+    absent = None if point.needs_place else "nan"
     return (
-        _number(point.lat, name, place, "lat", "degrees"),
-        _number(point.lon, name, place, "lon", "degrees"),
-        _number(point.texts.get("ele", "nan") or "nan", name, place, "ele", "m"),
+        _number(point.texts.get("lat", absent), name, place, "lat", "degrees"),
+        _number(point.texts.get("lon", absent), name, place, "lon", "degrees"),
+        _optional(point, name, place, "ele"),
     )
+
+
+def _optional(point: _Point, name: str, place: int, key: str) -> float:
+    return _number(point.texts.get(key) or "nan", name, place, key, "m")
 
 
 def _speed(point: _Point, name: str, place: int) -> float:
@@ -218,5 +239,5 @@ def _number(text: str | None, name: str, place: int, column: str, unit: str) -> 
 
 
 def _has_not_finite_text(point: _Point) -> bool:
-    texts = (point.lat, point.lon, *(point.texts.get(key) for key in ("ele", "speed", "extended speed")))
+    texts = (point.texts.get(key) for key in ("lat", "lon", "ele", "distance", "speed", "extended speed"))
     return any(text is not None and is_not_finite(text) for text in texts)

@@ -155,7 +155,7 @@ def _track_form(*, is_open: bool) -> None:
     with folded(Message("Add a measured track"), is_open=is_open):
         sentence(
             Message(
-                "CSV, GPX, FIT, NMEA, UBX or RTKLIB, up to {largest_track_bytes} MB and {most_points:,} "
+                "CSV, GPX, TCX, FIT, NMEA, UBX or RTKLIB, up to {largest_track_bytes} MB and {most_points:,} "
                 "points. To show a track in latitude and longitude next to a run, state the compass direction in "
                 "which the slope falls. The track then begins at the start of the run. A track in the axes of a run "
                 "(x down the fall line, y left, z out of the snow, in m) keeps its place. Nothing is fitted.",
