@@ -148,7 +148,7 @@ VERSION_6 = """<?xml version="1.0" encoding="UTF-8"?>
  <stratProfile><Layer><depthTop{length}>10</depthTop><thickness{length}>4</thickness>
   <grainSize{grain}><Components><avg>2</avg></Components></grainSize></Layer></stratProfile>
  <tempProfile><Obs><depth{length}>20</depth><snowTemp{temperature}>14</snowTemp></Obs></tempProfile>
- <densityProfile><Layer><depthTop{length}>10</depthTop><thickness{length}>4</thickness><density{density}>0.3</density>
+ <densityProfile><Layer><depthTop{length}>10</depthTop><thickness{length}>4</thickness><density{density}>30</density>
  </Layer></densityProfile>
  <hardnessProfile><Layer><depthTop{length}>10</depthTop><hardness{force}>5</hardness></Layer></hardnessProfile>
  <hardnessProfile><MeasurementComponents{tuple}/><Measurements><tupleList>10,5 20,6</tupleList></Measurements>
@@ -212,7 +212,7 @@ def test_units_of_the_standard_are_the_default(tmp_path: Path, version: str) -> 
         assert (pit.latitude_deg, pit.longitude_deg) == (46.8, 9.8)
         assert (pit.air_temperature_C, pit.temperatures[0].temperature_C) == (14.0, 14.0)
         assert lengths(pit) == pytest.approx([1.5, 0.1, 0.04, 0.1, 0.04, 0.2, 0.1, 0.1, 0.2])
-        assert (pit.layers[0].grain_size, pit.densities[0].snow_density) == (2e-3, 0.3)
+        assert (pit.layers[0].grain_size, pit.densities[0].snow_density) == (2e-3, 30.0)
         assert [each.force.tolist() for each in pit.forces] == [[5.0], [5.0, 6.0]]
 
 
@@ -241,7 +241,14 @@ def test_lengths(tmp_path: Path, unit: str, factor: float) -> None:
 
 @pytest.mark.parametrize("unit", ["gcm-3", "g cm-3", "g/cm3", "g/cm³", "g cm^-3"])
 def test_densities(tmp_path: Path, unit: str) -> None:
-    assert read_caaml(in_units(tmp_path, density=unit)).densities[0].snow_density == pytest.approx(300.0)
+    assert read_caaml(in_units(tmp_path, density=unit)).densities[0].snow_density == pytest.approx(30_000.0)
+
+
+def test_densities_of_another_unit_than_stated_are_rejected(tmp_path: Path) -> None:
+    path = in_units(tmp_path, density="kgm-3")
+    path.write_text(path.read_text(encoding="utf-8").replace(">30</density>", ">0.3</density>"), encoding="utf-8")
+    with pytest.raises(FieldDataError, match=r"density.*0\.3 kg/m³"):
+        read_caaml(path)
 
 
 def test_forces_and_angles(tmp_path: Path) -> None:

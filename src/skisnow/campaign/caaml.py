@@ -13,6 +13,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 from typing import Final, NoReturn
 
 import numpy as np
@@ -32,6 +33,8 @@ NAMESPACE: Final = re.compile(
 )
 OWN_NAMESPACE: Final = "urn:skisnow:caaml:1"
 """Namespace of H_V and S_f in ``customData``."""
+LIGHTEST: Final = 5.0
+"""In kg/m³; a smaller median is another unit (assumption): the lightest new snow has about 10."""
 NIL: Final = ("", "inapplicable", "missing", "template", "unknown", "withheld", "n/a", "none")
 """Words for a missing value, which the standard allows instead of any number."""
 _UNIT_OF_PROFILE: Final = {"snowTemp": "uomTemp"}
@@ -121,7 +124,7 @@ class _Profile:
             snow_height=self._snow_height,
             air_temperature_C=self._quantity(TEMPERATURE, measured.child("weatherCond") or measured, "airTempPres"),
             layers=tuple(self._layer(*pair) for pair in self._of("stratProfile", "Layer")),
-            densities=tuple(self._density(*pair) for pair in self._of("densityProfile", "Layer")),
+            densities=self._densities(),
             temperatures=tuple(self._temperature(*pair) for pair in self._of("tempProfile", "Obs")),
             forces=tuple(self._forces(pair) for pair in measured.every("hardnessProfile")),
             snow_hardness=self._plate_value("snowHardness", SNOW_HARDNESS),
@@ -186,6 +189,18 @@ class _Profile:
             comment=layer.text_of("metaData", "comment") or layer.text_of("comment"),
             hardness_bottom=lower if upper and not hand else "",
         )
+
+    def _densities(self) -> tuple[LayerDensity, ...]:
+        densities = tuple(self._density(*pair) for pair in self._of("densityProfile", "Layer"))
+        middle = median(density.snow_density for density in densities) if densities else LIGHTEST
+        if 0.0 < middle < LIGHTEST:
+            self._refuse(
+                "density",
+                f"a median of {middle:g} kg/m³",
+                Message("{lightest:g} kg/m³ or more", lightest=LIGHTEST),
+                Message("If the numbers are g/cm³, state the unit gcm-3."),
+            )
+        return densities
 
     def _density(self, profile: Element, layer: Element) -> LayerDensity:
         top, thickness = self._top_and_thickness(profile, layer)
