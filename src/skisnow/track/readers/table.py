@@ -100,9 +100,10 @@ class _Table:
         columns = _columns(cells.header, is_geodetic, name, place)
         width = len(cells.header)
         require_width(cells, name)
-        rows = tuple((row + ("",) * (width - len(row)))[:width] for row in cells.rows)
+        blanks = [("",) * missing for missing in range(width, 0, -1)]
+        rows = tuple(row + blanks[len(row)] if len(row) < width else row[:width] for row in cells.rows)
         places = [column.place for column in columns.values()]
-        mark = decimal_mark_of((row[place] for place in places for row in rows), cells.separator)
+        mark = decimal_mark_of((row[place] for place in places for row in rows if row[place]), cells.separator)
         cells = dataclasses.replace(cells, rows=rows)
         return cls(cells, name, mark, is_geodetic, columns, set(), np.zeros(len(rows), dtype=bool))
 
@@ -156,11 +157,13 @@ class _Table:
     def numbers(self, name: str) -> FloatArray:
         """Column of numbers (n,); NaN for blank cells, and for `nan` and `inf`, which are flagged."""
         cells = self.column(name)
-        values = np.array([number(cell, self.mark) for cell in cells])
-        for place in np.flatnonzero(np.isnan(values)).tolist():
+        filled = [place for place, cell in enumerate(cells) if cell]
+        values = np.full(len(cells), np.nan)
+        values[filled] = [number(cells[place], self.mark) for place in filled]
+        for place in (place for place in filled if math.isnan(values[place])):
             if is_not_finite(cells[place]):
                 self.not_finite[place] = True
-            elif cells[place]:
+            else:
                 raise self._no_number(place, name, cells[place])
         return values * self.columns[name].factor
 
