@@ -130,13 +130,12 @@ def _headings(cells: Sequence[str]) -> int:
 
 def _records(text: CsvText, *, most: int | None = None) -> Rows:
     rows: Rows = []
-    for lines, records in text.records():
+    blank: list[str] = []  # shared by all blank lines
+    for lines, records in text.records(most):
         for line, cells in zip(lines, records, strict=True):
-            rows.extend([] for _ in range(line - 1 - len(rows)))
+            rows += [blank] * (line - 1 - len(rows))
             rows.append([" ".join(cell.split()) for cell in cells])
-        if most is not None and len(rows) >= most:
-            break
-    return rows[:most]
+    return rows
 
 
 _HEADING_ROWS: Final = 1000

@@ -93,19 +93,20 @@ class CsvText:
     separator: str
     separator_line: bool
 
-    def records(self) -> Iterator[Records]:
+    def records(self, most_lines: int | None = None) -> Iterator[Records]:
         """Split the file into records, in chunks; the first record is the header.
 
+        most_lines: read only records that begin on one of these first lines.
         An apostrophe that protects a text from being read as a formula is removed.
 
         Raises UnreadableTextError: a quote is never closed, so that all further lines would be one cell; or a cell or
             row is too long.
         """
-        for lines, rows in self._records():
+        for lines, rows in self._records(most_lines):
             _require_size(lines, rows)
             yield lines, rows
 
-    def _records(self) -> Iterator[Records]:
+    def _records(self, most_lines: int | None) -> Iterator[Records]:
         stream = io.TextIOWrapper(io.BytesIO(self.data), encoding=self.codec, newline="")
         skipped = len(stream.readline()[:1]) if self.separator_line else 0
         reader = csv.reader(chain(stream, (_END,)), delimiter=self.separator, skipinitialspace=True)
@@ -118,7 +119,8 @@ class CsvText:
                 if len(rows) >= RECORDS_AT_ONCE:
                     yield lines, rows
                     lines, rows = [], []
-                if len(cells) == 1 and cells[0] == _END and reader.line_num + skipped == line:
+                is_end = len(cells) == 1 and cells[0] == _END and reader.line_num + skipped == line
+                if is_end or (most_lines is not None and line > most_lines):
                     yield lines, rows
                     return
                 first = cells[0] if cells else ""
