@@ -173,6 +173,7 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
             "time,lat,lon,Altitude [fathoms]\n0,46,7,900\n",
             ["unknown_unit", "column alt_m", "'Altitude [fathoms]'", "ft"],
         ),
+        ("time_s,x_m,y_m,Speed\n0,1,2,3\n", ["unknown_unit", "column speed_m_per_s", "'Speed'"]),
         ("time_s,x_m,y_m,speed_warp\n0,1,2,3\n", ["unknown_unit", "column speed_m_per_s", "'speed_warp'", "km/h"]),
         ("Zeit [Tage];x;y\n0;1,5;2\n", ["unknown_unit", "column time_s", "'Zeit [Tage]'", "ms"]),
         ("time,lat,lon,alt_m,Höhe [ft]\n0,46,7,9,9\n", ["column_twice", "column alt_m", "'alt_m, Höhe [ft]'"]),
@@ -207,7 +208,7 @@ def test_refused(tmp_path: Path, content: str | bytes, told: list[str]) -> None:
 @pytest.mark.parametrize(
     ("header", "first", "second"),
     [
-        ("timestamp,latitude,longitude,elevation,speed", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
+        ("timestamp,latitude,longitude,elevation,speed_mps", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
         ("Time (s),Latitude (°),Longitude (°),Height (m),Velocity (m/s)", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
         ("t (ms),lat,lng,Altitude_m,Speed [km/h]", "0,46,7,100,36", "500,46.5,7.5,101,72"),
         ("Zeit [s];Breite;Länge;Höhe;Geschwindigkeit [km/h]", "0;46;7;100;36", "0,5;46,5;7,5;101;72"),

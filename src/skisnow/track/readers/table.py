@@ -234,7 +234,7 @@ _METRES: Final = (
 )
 _DEGREES: Final = dict.fromkeys(("", "°", "deg", "degrees", "grad"), 1.0)
 _SPEEDS: Final = (
-    dict.fromkeys(("", "m/s", "mps", "m_s", "m_per_s", "ms-1"), 1.0)
+    dict.fromkeys(("m/s", "mps", "m_s", "m_per_s", "ms-1"), 1.0)
     | dict.fromkeys(("km/h", "kmh", "kph", "km_h", "km_per_h"), 1.0 / 3.6)
     | dict.fromkeys(("kn", "kt", "kts", "knots"), 1852.0 / 3600.0)
     | {"mph": 0.44704, "cm/s": 0.01}
