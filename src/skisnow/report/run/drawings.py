@@ -143,8 +143,8 @@ _FIGURES: Final = {
         template(
             "Grip utilisation of each ski. Net: the sum of its side force over the capacity, the sum of S_f e; at 1 "
             "the ski side-slips. Gross: the sum of the sizes of the shear instead, which is more where parts of the "
-            "edge pull against each other. A place of snow slips by {slip} mm across while a ski passes; with a shear "
-            "displacement u_y of 0.5 to 1 mm such pulls end."
+            "edge pull against each other. A place of snow slips by {slip} mm across while a ski passes. In a carved "
+            "turn such pulls end with a shear displacement u_y of 0.5 to 1 mm."
         ),
         template("Grip utilisation of each ski over time."),
         lambda run: {"slip": significant(json_number(slip_of_a_place(run) / MM), 2)},
