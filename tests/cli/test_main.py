@@ -164,7 +164,7 @@ def test_a_place_that_cannot_be_written_is_a_sentence(
 @pytest.mark.parametrize(
     ("words", "allowed"),
     [
-        *((["analyse", "x", "--seed", seed], "whole number from 0") for seed in ("-1", "1.5", "x", f"{2**63}")),
+        *((["analyse", "x", "--seed", seed], "whole number") for seed in ("-1", "1.5", "x", f"{2**63}")),
         (["analyse", "x", "--resamples", "0"], "100 to 100000"),
         (["analyse", "x", "--resamples", "9" * 20], "100 to 100000"),
         (["analyse", "x", "--resamples", "9" * 5000], "whole number"),

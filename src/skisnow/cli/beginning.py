@@ -116,9 +116,8 @@ def add_ski(kinds: argparse._SubParsersAction[Parser]) -> None:
         "--like", default="carver", metavar="SKI", help="ski that the rest is taken from (default: carver)"
     )
     for name in ("column", "unit"):
-        what = "column" if name == "column" else "unit"
         ski.add_argument(
-            f"--{name}", action="append", default=[], metavar="HEADING=NAME", help=f"{what} of a heading (repeatable)"
+            f"--{name}", action="append", default=[], metavar="HEADING=NAME", help=f"{name} of a heading (repeatable)"
         )
     ski.set_defaults(run=run_ski)
 

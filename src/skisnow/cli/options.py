@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import math
 import re
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
+from .._support.errors import ParameterError, meant
 from .._support.messages import ENGLISH, languages
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from ..scenario import ScenarioFile
 
@@ -40,7 +40,8 @@ class Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Name the command that a misspelt one is most like; anything else as usual."""
         if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
-            self.error(f"there is no command {value}.{_meant(value, action.choices)} {self.prog} --help names all")
+            similar = meant(value, sorted(action.choices))
+            self.error(f"there is no command {value}. {similar}{self.prog} --help names all")
         super()._check_value(action, value)
 
     def _require_known(self, words: list[str]) -> None:
@@ -48,7 +49,7 @@ class Parser(argparse.ArgumentParser):
         for word in words[: words.index("--")] if "--" in words else words:
             name = word.split("=", 1)[0]
             if name.startswith("--") and not any(option.startswith(name) for option in options):
-                self.error(f"there is no option {name}.{_meant(name, options)} {self.prog} --help names all")
+                self.error(f"there is no option {name}. {meant(name, sorted(options))}{self.prog} --help names all")
 
 
 def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:
@@ -101,12 +102,6 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
     """Add the option for the number of processes."""
     workers = "processes; default: one for each core"
     parser.add_argument("--workers", type=whole_number(1, MOST_WORKERS), metavar="N", help=workers)
-
-
-def _meant(name: str, options: Iterable[str]) -> str:
-    by_small = {option.lower(): option for option in sorted(options)}
-    like = difflib.get_close_matches(name.lower(), by_small, n=1, cutoff=0.6)
-    return f" Did you mean {by_small[like[0]]}?" if like else ""
 
 
 def number(
@@ -165,17 +160,8 @@ def _shown(word: str, limit: int = 80) -> str:
     return repr(word if len(word) <= limit else f"{word[:limit]}…")
 
 
-def seed_number(word: str) -> int:
-    """A seed: a whole number from 0 to 2⁶³ - 1, so that it can be in every file."""
-    try:
-        seed = int(word)
-    except ValueError:
-        seed = -1
-    if not 0 <= seed < 2**63:
-        raise argparse.ArgumentTypeError(f"{_shown(word)} is not a whole number from 0 to 9223372036854775807")
-    return seed
-
-
+seed_number = whole_number(0, 2**63 - 1)
+"""Converter of a seed, which can be in every file."""
 LOCAL = ("processes", "threads")
 
 
@@ -192,8 +178,6 @@ def scheduler_of(options: argparse.Namespace) -> str | None:
     """
     scheduler: str | None = options.scheduler
     if scheduler is not None and scheduler not in LOCAL and options.workers is not None:
-        from .._support.errors import ParameterError
-
         raise ParameterError(
             "--workers is the number of processes of this computer; a scheduler has its own number. Remove one of them"
         ).tag("contradiction")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -83,7 +84,6 @@ def write_pages(options: argparse.Namespace) -> int:
 
 def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     """The measured track in the axes of the run."""
-    from .._support.errors import ParameterError
     from .._support.units import DEGREE
     from ..replay import measured_track
     from ..track.read import read_track
@@ -106,23 +106,16 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     return measured_track(track, starts_at=options.starts_at_s)
 
 
-def _link(folder: Path) -> None:
-    """A report that was written without a replay gets a link to it."""
-    from ..report.run.folder import link_replay
-
-    if (page := link_replay(folder)) is not None:
-        print(f"{page} now has a link to the replay.", file=sys.stderr)
-
-
 def _written(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
     from ..replay import write_moving_replay_model, write_replay, write_replay_model
+    from ..report.run.folder import link_replay
 
     own = options.folder if options.folder.is_dir() else options.folder.parent
     folder = options.out or own
     with announced("writing"):
         written = [write_replay(shown, folder / "replay.html", ghost=ghost, language=options.language)]
-        if folder.resolve() == own.resolve():
-            _link(folder)
+        if folder.resolve() == own.resolve() and (page := link_replay(folder)) is not None:
+            print(f"{page} now has a link to the replay.", file=sys.stderr)
         if options.model:
             written.append(folder / "replay.glb")
             write_moving_replay_model(shown, written[-1], exaggeration=options.exaggeration)
@@ -187,11 +180,7 @@ def serve_lab(options: argparse.Namespace) -> int:
             host=options.host,
             port=options.port,
             token=options.token,
-            tell=_printed,
+            tell=partial(print, flush=True),
             certificate=certificate,
         )
     return 0
-
-
-def _printed(address: str) -> None:
-    print(address, flush=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
@@ -111,41 +111,24 @@ def _values(action: argparse.Action) -> list[str]:
     """Choices of an option or an argument, where it can be named."""
     if action.choices is not None:
         return list(map(str, action.choices))
-    names = _NAMES.get(action.dest)
-    return [] if names is None else names()
+    return _known_names(action.dest)
 
 
-def _skis() -> list[str]:
-    from ..ski import ski_names
+def _known_names(stored_as: str) -> list[str]:
+    """Names of skisnow for an option or argument by the name that it is stored as."""
+    if stored_as == "ski":
+        from ..ski import ski_names as names
+    elif stored_as == "scenario":
+        from ..scenario import scenario_names as names
+    elif stored_as == "published":
+        from ..snow import published_names as names
+    elif stored_as == "changes":
+        from ..scenario.keys import SCENARIO_KEYS
 
-    return list(ski_names())
-
-
-def _scenarios() -> list[str]:
-    from ..scenario import scenario_names
-
-    return list(scenario_names())
-
-
-def _snows() -> list[str]:
-    from ..snow import published_names
-
-    return list(published_names())
-
-
-def _keys() -> list[str]:
-    from ..scenario.keys import SCENARIO_KEYS
-
-    return [f"{name}=" for name in SCENARIO_KEYS]
-
-
-_NAMES: Final[dict[str, Callable[[], list[str]]]] = {
-    "ski": _skis,
-    "scenario": _scenarios,
-    "published": _snows,
-    "changes": _keys,
-}
-"""Names that are known, by what the option or argument is stored as."""
+        return [f"{name}=" for name in SCENARIO_KEYS]
+    else:
+        return []
+    return list(names())
 
 
 def add_man(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -203,16 +203,8 @@ def _amounts(n_campaigns: int, n_entries: int) -> str:
 
 
 def _as_json(stored: StoredCampaign) -> Json:
-    return {
-        "id": stored.id,
-        "name": stored.name,
-        "added_at": stored.added_at.isoformat(),
-        "n_files": stored.n_files,
-        "n_bytes": stored.n_bytes,
-        "sha256": stored.sha256,
-        "n_errors": stored.n_errors,
-        "n_warnings": stored.n_warnings,
-    }
+    names = ("id", "name", "n_files", "n_bytes", "sha256", "n_errors", "n_warnings")
+    return {"added_at": stored.added_at.isoformat(), **{name: getattr(stored, name) for name in names}}
 
 
 def _entered_line(head: JournalHead) -> str:

@@ -12,11 +12,9 @@ from .options import add_fall_line_azimuth, add_language, number
 from .output import Progress, announced, prepare_output, print_json, print_warnings
 
 if TYPE_CHECKING:
-    import argparse
-
     from .._support.messages import Message
     from ..comparison import Comparison
-    from ..track.course import Course, CourseResult
+    from ..track.course import Course
     from ..track.course.gates_table import GateGap
     from ..track.projection import GeodeticPoint
     from ..track.track import Track
@@ -73,13 +71,17 @@ def summarise(options: argparse.Namespace) -> int:
 
         track = read_track(options.file, origin=None if course is None else _origin(course))
     with announced(f"smoothing {len(track)} points"):
+        from ..simulation.run_summary import time_gates
         from ..track.summary import summary_dict, track_summary
 
         summary = track_summary(track, window=options.window_s, place_noise=options.noise_m)
         values = summary_dict(summary)
-        result = None if course is None else _timed(course, track)
+        result = None if course is None else time_gates(course, track)
     if result is not None:
-        values |= _told(result)
+        from ..track.course.gates_table import gates_dict, time_warnings
+
+        print_warnings(time_warnings(result))
+        values |= gates_dict(result)
     if options.json:
         print_json(values)
     else:
@@ -117,19 +119,6 @@ def _origin(course: Course) -> GeodeticPoint | None:
     if course.latitude_deg is None or course.longitude_deg is None:
         return None
     return GeodeticPoint(course.latitude_deg, course.longitude_deg)
-
-
-def _timed(course: Course, track: Track) -> CourseResult:
-    from ..simulation.run_summary import time_gates
-
-    return time_gates(course, track)
-
-
-def _told(result: CourseResult) -> dict[str, Any]:
-    from ..track.course.gates_table import gates_dict, time_warnings
-
-    print_warnings(time_warnings(result))
-    return gates_dict(result)
 
 
 def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
