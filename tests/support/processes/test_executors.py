@@ -14,8 +14,8 @@ from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.processes import crews, dask_cluster
 from skisnow._support.processes.batch import Pool, require_executor, run_batch
 from skisnow._support.processes.crews import LOST, Identity
-from skisnow._support.processes.dask_cluster import crew_of_client, crew_of_scheduler, is_plain
-from skisnow._support.processes.kept_rows import KeptRows, row_text
+from skisnow._support.processes.dask_cluster import DaskCrew, crew_of_scheduler, is_plain
+from skisnow._support.processes.kept_rows import KeptRows, json_text
 from skisnow.identification import identify
 from tests.coded import Coded, coded, raises
 from tests.identification.straight_tracks import SCENARIO, track
@@ -60,7 +60,7 @@ def test_any_executor_gives_the_same_rows_in_few_chunks_and_is_left_open() -> No
 def test_what_is_finished_is_not_handed_out_again() -> None:
     """Nor chunks without a point, when some were finished before."""
     kept, executor = KeptRows(), Here()
-    kept.add([(number, row_text(ROWS[number])) for number in range(36)])
+    kept.add([(number, json_text(ROWS[number])) for number in range(36)])
     assert run_batch(POINTS, dict, kept=kept, executor=executor) == ROWS
     assert 1 <= executor.chunks <= 5
 
@@ -234,7 +234,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 def test_workers_are_counted_once_a_second(clock: Clock) -> None:
     client = Client()
-    crew = crew_of_client(client, dict)
+    crew = DaskCrew(dict, client)
     clock.now += 0.1
     assert (crew.size(), crew.size(), client.asked) == (7, 7, 1)
     client.threads = {"a": 2}
@@ -249,7 +249,7 @@ def test_workers_are_counted_once_a_second(clock: Clock) -> None:
 
 def test_a_scheduler_may_be_away_for_ten_seconds(clock: Clock) -> None:
     client = Client()
-    crew = crew_of_client(client, dict)
+    crew = DaskCrew(dict, client)
     clock.now += 50.0
     crew.require_alive()
     client.status = "connecting"
@@ -300,7 +300,7 @@ def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypa
 
 
 def test_errors_of_dask_are_reported() -> None:
-    crew = crew_of_client(Client(), dict)
+    crew = DaskCrew(dict, Client())
     for error in (ImportError("x"), RuntimeError("Can't get attribute 'f'"), ValueError("error while deserializing")):
         told = crew.told(error)
         assert told is not None and told.fields == {"error": str(error)}
@@ -310,7 +310,7 @@ def test_errors_of_dask_are_reported() -> None:
 
 def test_the_client_is_closed_at_the_end() -> None:
     client = Client()
-    crew_of_client(client, dict, client.close).end(at_once=False)
+    DaskCrew(dict, client, client.close).end(at_once=False)
     assert client.status == "closed"
 
 

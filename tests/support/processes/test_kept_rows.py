@@ -14,7 +14,7 @@ import pytest
 
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow._support.processes.batch import run_batch
-from skisnow._support.processes.kept_rows import KeptRows, forget, row_text
+from skisnow._support.processes.kept_rows import KeptRows, forget, json_text
 from tests.coded import raises
 
 POINTS = [[("n", n), ("third", n / 3.0), ("text", 'a "quoted", ü\nline')] for n in range(25)]
@@ -36,7 +36,7 @@ def rows_in(path: Path, fingerprint: str = "f") -> dict[int, object]:
 
 def test_a_row_that_cannot_be_kept_is_reported_with_its_file(place: Path) -> None:
     kept = KeptRows.opened(place, "f")
-    kept.add([(0, row_text(ROWS[0]))])
+    kept.add([(0, json_text(ROWS[0]))])
     kept._database.execute("pragma max_page_count = 3")  # as a disk that is full
     with raises(OutputError, "cannot_write"):
         kept.add([(number, '{"text":"' + "x" * 9000 + '"}') for number in (1, 2)])
@@ -46,7 +46,7 @@ def test_a_row_that_cannot_be_kept_is_reported_with_its_file(place: Path) -> Non
 
 def test_rows_stay_in_a_file_of_their_own_and_go_with_it(place: Path) -> None:
     kept = KeptRows.opened(place, "f", about={"points": "25"})
-    assert kept.add([(7, row_text(ROWS[7])), (3, row_text(ROWS[3]))]) == 2
+    assert kept.add([(7, json_text(ROWS[7])), (3, json_text(ROWS[3]))]) == 2
     assert (len(kept), list(kept.numbers()), 3 in kept, 4 in kept) == (2, [3, 7], True, False)
     assert kept.row(7) == ROWS[7]
     assert kept.about()["points"] == "25"
@@ -56,7 +56,7 @@ def test_rows_stay_in_a_file_of_their_own_and_go_with_it(place: Path) -> None:
 
 def test_values_of_columns_are_kept_in_place_of_names(place: Path) -> None:
     kept = KeptRows.opened(place, "f", columns=("n", "third", "absent"))
-    kept.add([(0, kept.form(row_text(ROWS[1])))])
+    kept.add([(0, kept.form(json_text(ROWS[1])))])
     assert kept.row(0) == {"n": 1, "third": 1 / 3.0, "absent": None}
     kept.close()
     assert KeptRows.read(place).columns == ("n", "third", "absent")
@@ -213,7 +213,7 @@ DAMAGED_ROWS = {number: {"n": number, "text": "x" * 400} for number in range(40)
 def damaged_place(tmp_path: Path) -> Path:
     path = tmp_path / "rows.partial"
     kept = KeptRows.opened(path, "f", about={"points": "40"})
-    kept.add((number, row_text(row)) for number, row in DAMAGED_ROWS.items())
+    kept.add((number, json_text(row)) for number, row in DAMAGED_ROWS.items())
     kept.close()
     with closing(sqlite3.connect(path)) as database:
         database.execute("pragma journal_mode = delete")

@@ -12,7 +12,7 @@ from typing import Any, Final, Self, TypeAlias
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
 from .crews import LOST, Crew, Done, GivenCrew, Numbered, PointFunction, ProcessCrew, ThreadCrew, lost_workers_message
-from .kept_rows import KeptRows, NumberedText, Row, row_text
+from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Takes the number of finished points and that of all."""
@@ -134,7 +134,7 @@ class Pool:
         count: number of points; may be omitted for a list.
         """
         if self._executor is None and self._workers == 1:
-            return ([(number, row_text(self._function(point)))] for number, point in points)
+            return ([(number, json_text(self._function(point)))] for number, point in points)
         if count is None:
             if not isinstance(points, Collection):
                 raise ParameterError("count, the number of points, is missing.").tag("count_missing")
@@ -225,12 +225,12 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
         return ProcessCrew(function, workers)
     if executor == "threads":
         return ThreadCrew(function, workers)
-    from .dask_cluster import crew_of_client, crew_of_scheduler
+    from .dask_cluster import DaskCrew, crew_of_scheduler
 
     if isinstance(executor, str):
         return crew_of_scheduler(executor, function)
     if hasattr(executor, "get_executor"):
-        return crew_of_client(executor, function)
+        return DaskCrew(function, executor)
     raise ParameterError(
         "executor is {executor!r}; it must be one of {names}, a concurrent.futures.Executor, a Dask client, or "
         "the address of a Dask scheduler"

@@ -30,7 +30,7 @@ from typing import Any, Final, NamedTuple, Protocol, TypeAlias, runtime_checkabl
 from ...compiled import core
 from ..errors import SkisnowError
 from ..messages import Message
-from .kept_rows import NumberedText, Row, row_text
+from .kept_rows import NumberedText, Row, json_text
 
 LOST: Final = "scheduler_lost"
 """Code of the error."""
@@ -264,7 +264,7 @@ def own_identity() -> Identity:
 def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
     """Rows of some points, and the mean time of a point (s)."""
     start = time.perf_counter()
-    rows = [(number, row_text(function(point))) for number, point in points]
+    rows = [(number, json_text(function(point))) for number, point in points]
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
 
 

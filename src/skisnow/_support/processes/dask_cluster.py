@@ -46,7 +46,7 @@ def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
         client = _distributed().Client(address, timeout=WAIT_S, name="skisnow")
     except (OSError, ValueError, TypeError) as error:
         raise SkisnowError(_unanswered(address, error)).tag("no_scheduler") from error
-    return crew_of_client(client, function, close=client.close)
+    return DaskCrew(function, client, client.close)
 
 
 def _unanswered(address: str, error: Exception) -> Message:
@@ -65,17 +65,12 @@ def _unanswered(address: str, error: Exception) -> Message:
     )
 
 
-def crew_of_client(client: Any, function: PointFunction, close: Callable[[], None] | None = None) -> Crew:
-    """Workers of a Dask client."""
-    return _DaskCrew(function, client, close)
-
-
-class _DaskCrew(GivenCrew):
-    """The scheduler gives a chunk of a worker that was lost to another one."""
+class DaskCrew(GivenCrew):
+    """Workers of a Dask client. The scheduler gives a chunk of a worker that was lost to another one."""
 
     chunk_s = CHUNK_S
 
-    def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None) -> None:
+    def __init__(self, function: PointFunction, client: Any, close: Callable[[], None] | None = None) -> None:
         super().__init__(function, client.get_executor(pure=False), self._threads, close)
         self._client = client
         self._counted, self._at, self._last_seen = 1, -COUNTED_EVERY_S, time.monotonic()

@@ -73,7 +73,9 @@ class KeptRows:
         entries = {"form": _FORM, "fingerprint": fingerprint, **(about or {})}
         if columns is not None:
             entries["columns"] = json.dumps(list(columns))
-        return cls._begun(path, entries, columns)
+        rows = cls._locked(path, entries)
+        rows.columns = None if columns is None else tuple(columns)
+        return rows
 
     @classmethod
     def read(cls, path: Path) -> Self:
@@ -82,27 +84,21 @@ class KeptRows:
             raise ParameterError("{path} cannot be read: the file does not exist. Check the path.").tag(
                 "cannot_read", path=path
             )
+        rows = cls._locked(path)
+        columns = rows.about().get("columns")
+        rows.columns = None if columns is None else tuple(own_json(columns))
+        return rows
+
+    @classmethod
+    def _locked(cls, path: Path, about: Mapping[str, str] | None = None) -> Self:
+        """Rows of a locked file; `about` begins a new file, and must have the fingerprint of an existing one."""
         with _errors(path):
             rows = cls(path)
         try:
             with rows._told():
-                rows._take()
-                columns = rows.about().get("columns")
-            rows.columns = None if columns is None else tuple(own_json(columns))
-        except BaseException:
-            rows.close()
-            raise
-        return rows
-
-    @classmethod
-    def _begun(cls, path: Path, about: Mapping[str, str], columns: Sequence[str] | None) -> Self:
-        with _errors(path):
-            rows = cls(path, columns=columns)
-        try:
-            with rows._told():
                 rows._take(about)
                 entries = rows.about()
-            if entries["fingerprint"] != about["fingerprint"]:
+            if about is not None and entries["fingerprint"] != about["fingerprint"]:
                 raise _another(path)
         except BaseException:
             rows.close()
@@ -220,13 +216,8 @@ def forget(path: Path) -> None:
         path.with_name(name).unlink(missing_ok=True)
 
 
-def row_text(row: Row | list[Any]) -> str:
-    """A row as JSON on one line."""
-    return json_text(row)
-
-
 def json_text(value: Any) -> str:
-    """JSON on one line."""
+    """A value, such as a row, as JSON on one line."""
     return json.dumps(value, ensure_ascii=True, separators=(",", ":"))
 
 
