@@ -275,7 +275,8 @@ class CarvedTurn:
                 self._cells = _add_table(names, self.facts)
             self._headline.clear()
             with self._headline:
-                self._radii = [_headline(number) for number in range(len(names))]
+                colours = [style["colour"] for style in STYLES[: len(names)]]
+                self._radii = [Words("").classes("value").style(f"color: {colour}") for colour in colours]
         for words, answer in zip(self._radii, answers, strict=True):
             words.set_text(_radius(answer))
         for key, (_, unit) in self.facts.items():
@@ -299,10 +300,6 @@ def _range(key: str, answers: list[dict[str, Any]]) -> tuple[float, float] | Non
     """Range of the chart of depths, which grow downwards; the height above the snow is limited."""
     depths = [depth for answer in answers for depth in (answer[key] or ()) if depth is not None]
     return (1.1 * max(depths), -ABOVE_MM) if key == "edge_depth_mm" and depths else None
-
-
-def _headline(number: int) -> Words:
-    return Words("").classes("value").style(f"color: {STYLES[number]['colour']}")
 
 
 def _radius(answer: dict[str, Any]) -> str:

@@ -68,12 +68,15 @@ def is_loopback(host: str) -> bool:
     >>> [is_loopback(host) for host in ("127.0.0.1", "localhost", "::1", "0.0.0.0", "192.168.1.7")]
     [True, True, True, False, False]
     """
-    if host == "localhost":
-        return True
+    address = _ip_address(host)
+    return host == "localhost" or (address is not None and address.is_loopback)
+
+
+def _ip_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
     try:
-        return ipaddress.ip_address(host).is_loopback
+        return ipaddress.ip_address(text)
     except ValueError:
-        return False
+        return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +101,7 @@ class Access:
         name = (urlsplit(f"//{host}").hostname or "").lower()
         if name in self._names:
             return True
-        return not is_loopback(self.host) and _is_address(name)
+        return not is_loopback(self.host) and _ip_address(name) is not None
 
     @property
     def cookie(self) -> str:
@@ -115,14 +118,6 @@ class Access:
     def is_token(self, text: str) -> bool:
         """True for the token; compared in constant time."""
         return self.token is not None and hmac.compare_digest(text.encode(), self.token.encode())
-
-
-def _is_address(name: str) -> bool:
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
 
 
 class Guard:
@@ -255,11 +250,10 @@ class Tries:
 
 def _network(address: str) -> str:
     """Address without the host part of IPv6: one person can have all addresses of a /64 network."""
-    try:
-        parsed = ipaddress.ip_address(address)
-    except ValueError:
+    parsed = _ip_address(address)
+    if parsed is None or parsed.version == 4:
         return address
-    return address if parsed.version == 4 else str(ipaddress.ip_network((int(parsed) >> 64 << 64, 64)))
+    return str(ipaddress.ip_network((int(parsed) >> 64 << 64, 64)))
 
 
 def token_page(

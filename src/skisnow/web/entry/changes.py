@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from nicegui import ui
@@ -15,6 +15,7 @@ from ...campaign.store import (
     JournalEntry,
     NewEntry,
     Position,
+    Reading,
     ReplayedTest,
     attachments_of,
     photo_entry,
@@ -77,6 +78,41 @@ def ask_reason(
         reason.run_method("focus")
     if focus and usual:
         reason.run_method("select")
+
+
+def ask_correction(
+    view: TableView,
+    place: ui.element,
+    row: tuple[ReplayedTest, Reading],
+    changed: Mapping[str, str],
+    *,
+    lines: Sequence[str],
+    show: Callable[[], object],
+    leave: Callable[[], object],
+) -> bool:
+    """Ask for the reason of changed cells of a row; True, also if none is changed.
+
+    lines: descriptions of the changes.
+    show, leave: functions that are called after the correction is stored, or not made.
+    """
+    if not changed:
+        view.say(Message("Nothing is different."))
+        return True
+
+    def correct(why: str) -> bool:
+        test, reading = row
+        if not view.correct(test, reading.entered.sequence, changed, why):
+            return False
+        show()
+        return True
+
+    def left() -> None:
+        view.say(LEFT_AS_IT_WAS)
+        leave()
+
+    ask_reason(place, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=left)
+    view.say(ASKED, "")
+    return True
 
 
 def change_message(name: str, old: str, new: str) -> Message:
@@ -245,13 +281,9 @@ class Attachments:
         if not test:
             self._view.say(Message("Store a test first; then add its photo or position."), "bad")
             return
-        try:
-            self._view.session.write_down(entry(self._view.file, test, self._view.writer), seen=0)
-        except SkisnowError as error:
-            self._view.say(error.message, "bad")
-            return
-        self._view.say(Message("Stored with test {test}.", test=test))
-        self.show()
+        new = entry(self._view.file, test, self._view.writer)
+        if self._view.write(new, 0, Message("Stored with test {test}.", test=test)):
+            self.show()
 
     def show(self) -> None:
         """List the photos and positions of the current test."""

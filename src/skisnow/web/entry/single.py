@@ -13,7 +13,7 @@ from ..elements import choice, field
 from ..layout import heading, sentence
 from ..page_requests import asking_button, entering, form
 from ..words import label, number_said
-from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, ask_reason, change_message, changes
+from .changes import UNANSWERED, ask_correction, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
 from .table_view import EntryList, LiveResults, Places, TableView
 
@@ -201,28 +201,14 @@ class SingleForm:
             return False
         stored = row.cells
         changed = {column: text for column, text in cells.items() if text != stored.get(column, "")}
-        if not changed:
-            self._view.say(Message("Nothing is different."))
-            return True
-
-        def correct(why: str) -> bool:
-            if not self._view.correct(test, row.entered.sequence, changed, why):
-                return False
-            self.show(test.name, row=_number(row))
-            return True
-
         lines = [
             change_message(label(column), number_said(stored.get(column, "")), number_said(new))
             for column, new in changed.items()
         ]
-        act = (Message("Correct it"), correct)
-        ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(test, row))
-        self._view.say(ASKED, "")
-        return True
-
-    def _leave(self, test: ReplayedTest, row: Reading) -> None:
-        self._view.say(LEFT_AS_IT_WAS)
-        self._draw(row.cells, (test, row))
+        return ask_correction(
+            self._view, self._ask, (test, row), changed, lines=lines,
+            show=lambda: self.show(test.name, row=_number(row)), leave=lambda: self._draw(row.cells, (test, row)),
+        )  # fmt: skip
 
 
 def _number(row: Reading) -> str:

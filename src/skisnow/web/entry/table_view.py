@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from nicegui import background_tasks, run, ui
 
-from ..._support.errors import FieldDataError, ParameterError, StoreError
+from ..._support.errors import FieldDataError, SkisnowError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import natural_number
 from ...campaign import QUALITY_FLAGS
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from ...campaign.reading.table_forms import TableForm
     from ...campaign.store import Reading, ReplayedTest
+    from ...campaign.store.journal_entry import Action
     from ...report.charts import SeriesCurve
     from ..edit_session import EditSession, QuickResults, TestKey
 
@@ -94,16 +95,8 @@ class TableView:
 
     def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
         """Store a row; True if it is stored, now or by an earlier request with the same key."""
-        entry = NewEntry(
-            action="add",
-            file=self.file,
-            test=name,
-            cells=cells,
-            position=position,
-            who=self.writer,
-            once=current_request().once,
-        )
-        return self._write(entry, seen, said)
+        once = current_request().once
+        return self.write(self._entry("add", name, cells=cells, position=position, once=once), seen, said)
 
     def stored_before(self) -> str | None:
         """Name of the test that an earlier request with the same key stored; None without one."""
@@ -124,24 +117,16 @@ class TableView:
         if not why.strip():
             self.say(Message("A correction needs a reason."), "bad")
             return False
-        entry = NewEntry(
-            action="correct",
-            file=self.file,
-            test=test.name,
-            about=row,
-            cells=cells,
-            who=self.writer,
-            why=why.strip(),
-        )
-        return self._write(entry, test.last, said)
+        entry = self._entry("correct", test.name, about=row, cells=cells, why=why.strip())
+        return self.write(entry, test.last, said)
 
     def cancel(self, test: ReplayedTest, why: str) -> bool:
         """Store the cancellation of a test with its reason."""
         if not why.strip():
             self.say(Message("A test is cancelled with a reason."), "bad")
             return False
-        entry = NewEntry(action="cancel", file=self.file, test=test.name, who=self.writer, why=" ".join(why.split()))
-        return self._write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
+        entry = self._entry("cancel", test.name, why=" ".join(why.split()))
+        return self.write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
 
     def undo(self, test: ReplayedTest) -> bool:
         """Store the undo of the last entry."""
@@ -149,21 +134,23 @@ class TableView:
         if last is None:
             self.say(Message("There is nothing to undo."), "bad")
             return False
-        entry = NewEntry(action="undo", file=self.file, test=test.name, about=last.sequence, who=self.writer)
-        return self._write(entry, test.last, Message("Undone."))
+        entry = self._entry("undo", test.name, about=last.sequence)
+        return self.write(entry, test.last, Message("Undone."))
 
     def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
         """Show the outcome of the last action; ``items``: problems in the language of the page."""
         self._status.say(in_words(text), kind, items)
 
-    def _write(self, entry: NewEntry, seen: int, said: str) -> bool:
+    def _entry(self, action: Action, test: str, **fields: Any) -> NewEntry:
+        return NewEntry(action=action, file=self.file, test=test, who=self.writer, **fields)
+
+    def write(self, entry: NewEntry, seen: int, said: str) -> bool:
+        """Store an entry and show ``said``, or why it is rejected; True if it is stored."""
         try:
             self.session.write_down(entry, seen=seen)
-        except OvertakenError as error:
-            self.session.refresh()
-            self.say(error.message, "bad")
-            return False
-        except (StoreError, ParameterError) as error:
+        except SkisnowError as error:
+            if isinstance(error, OvertakenError):
+                self.session.refresh()
             self.say(error.message, "bad")
             return False
         self.say(said)

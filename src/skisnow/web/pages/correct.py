@@ -14,12 +14,9 @@ from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import choice, field, folded, link
 from ..entry.changes import (
-    ASKED,
-    LEFT_AS_IT_WAS,
     UNANSWERED,
-    USUAL_REASON,
     Attachments,
-    ask_reason,
+    ask_correction,
     change_message,
     changes,
 )
@@ -154,30 +151,14 @@ class ImportedTestForm:
         changed = self._changed(stored)
         if changed is None:
             return False
-        if not changed:
-            self._view.say(Message("Nothing is different."))
-            return True
-
-        def correct(why: str) -> bool:
-            if not self._view.correct(test, test.rows[0].entered.sequence, changed, why):
-                return False
-            self.show(name)
-            return True
-
         columns = {key: self._view.label(key.split("/", 1)[1]) for key in changed}
         lines = list(
             dict.fromkeys(
                 change_message(columns[key], number_said(stored[key]), number_said(new)) for key, new in changed.items()
             )
         )
-        act = (Message("Correct it"), correct)
-        ask_reason(self._ask, lines, act, usual=USUAL_REASON, leave=lambda: self._leave(name))
-        self._view.say(ASKED, "")
-        return True
-
-    def _leave(self, name: str) -> None:
-        self._view.say(LEFT_AS_IT_WAS)
-        self.show(name)
+        row, show = (test, test.rows[0]), lambda: self.show(name)
+        return ask_correction(self._view, self._ask, row, changed, lines=lines, show=show, leave=show)
 
     def _changed(self, stored: Mapping[str, str]) -> dict[str, str] | None:
         """Changed cells by key; None if one is rejected."""
