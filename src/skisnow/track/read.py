@@ -161,7 +161,7 @@ def _recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
         return read_ubx(data, name)
     if kind == "nmea":
         return read_nmea(data, name)
-    if kind == "csv" and (data.startswith(_PACKED) or _OTHER.match(data)):
+    if data.startswith(_PACKED) or (kind == "csv" and _OTHER.match(data)):
         raise track_error(
             "unreadable_file",
             name,

@@ -106,6 +106,9 @@ def test_tcx(tmp_path: Path, name: str) -> None:
 def test_damaged_tcx(tmp_path: Path) -> None:
     assert "unreadable_file" in refused(tmp_path, TCX[:-40], "a.tcx")
     assert "point 1, column lat" in refused(tmp_path, TCX.replace(">47.0<", ">north<"), "a.tcx")
+    assert "'3 Trackpoint'" in refused(
+        tmp_path, TCX.replace("Activity", "Course").replace("Activities", "Courses"), "a.tcx"
+    )
     assert "not_a_time" in refused(tmp_path, TCX.replace("<Time>2022-12-27T15:51:15Z</Time>", ""), "a.tcx")
 
 
@@ -123,6 +126,9 @@ def test_other_encoding(tmp_path: Path) -> None:
         (gpx(point(47.0, "14Z") + point(47.0, "13Z")), ["time_backwards", "point 2", "15:51:13"]),
         (gpx(point(47.0, "14Z", "<ele>high</ele>")), ["not_a_number", "point 1, column ele", "'high'"]),
         (gpx(""), ["empty_file"]),
+        (gpx(point(47.0, "14Z")).replace("trkpt", "rtept"), ["'1 rtept'", "trkpt"]),
+        (gpx().replace("gpx", "kml"), ["'<kml>'", "trkpt"]),
+        (gpx(point(47.0, "14Z").replace("2022-12-27T", "27.12.2022 ")), ["not_a_time", "'27.12.2022 15:51:14Z'"]),
         (gpx(point(47.0, "14Z"))[:-30], ["unreadable_file", "ends too early"]),
         (
             gpx(point(47.0, "14Z", "<extensions><speed>7,5</speed></extensions>")),

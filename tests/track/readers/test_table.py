@@ -47,6 +47,7 @@ def refused(tmp_path: Path, content: str | bytes, name: str = "run.csv", **named
 def test_other_formats_are_named_as_such(tmp_path: Path, content: str | bytes) -> None:
     """Not as tables without the right headings."""
     assert "unreadable_file" in refused(tmp_path, content, "run.track")
+    assert "unreadable_file" in refused(tmp_path, content, "run.gpx")
 
 
 def test_local_metres(tmp_path: Path) -> None:

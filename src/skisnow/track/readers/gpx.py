@@ -26,6 +26,8 @@ MOST_ELEMENTS: Final = 20_000_000
 """A week of points ten times a second, three elements each."""
 _POINT: Final[tuple[str, ...]] = ("gpx", "trk", "trkseg", "trkpt")
 _TCX_POINT: Final[tuple[str, ...]] = ("TrainingCenterDatabase", "Activities", "Activity", "Lap", "Track", "Trackpoint")
+_OTHERS: Final = ("wpt", "rtept", "trkpt", "Trackpoint")
+"""Points of a file; only those of recorded tracks are read."""
 _TEXTS: Final = {key: key for key in ("ele", "time", "speed", "fix")}
 _TCX_TEXTS: Final = {
     "AltitudeMeters": "ele",
@@ -64,6 +66,8 @@ class _Reader:
         self.points: list[_Point] = []
         self._segment = 0
         self._path: list[str] = []
+        self.root = ""
+        self.others: dict[str, int] = {}
         self._point, self._texts = _POINT, _TEXTS
         self._count = 0
         self._text: list[str] | None = None
@@ -72,6 +76,7 @@ class _Reader:
         self._text = None
         self._path.append(name.rsplit("}", 1)[-1])
         self._count += 1
+        self.root = self._path[0]
         if self._path == [_TCX_POINT[0]]:
             self._point, self._texts = _TCX_POINT, _TCX_TEXTS
         if len(self._path) > DEEPEST:
@@ -89,6 +94,8 @@ class _Reader:
         elif tuple(self._path) == self._point:
             place = {key: attributes[key] for key in ("lat", "lon") if key in attributes}
             self.points.append(_Point(self._segment, place, needs_place=self._point == _POINT))
+        elif self._path[-1] in _OTHERS:
+            self.others[self._path[-1]] = self.others.get(self._path[-1], 0) + 1
         elif self._key() is not None:
             self._text = []
 
@@ -121,8 +128,8 @@ class _Reader:
 def read_gpx(text: str, name: str) -> Recording:
     """The recording in a GPX or TCX file: all points of all tracks and segments, in the order of the file.
 
-    Raises FieldDataError: the file is neither GPX nor TCX, a point has no time, or a place, height, speed or distance
-        is not a number.
+    Raises FieldDataError: the file is neither GPX nor TCX, or has no recorded track; a point has no time; or a place,
+        height, speed or distance is not a number.
     """
     points = _points(text, name)
     distance = [_optional(point, name, place, "distance") for place, point in enumerate(points)]
@@ -159,6 +166,14 @@ def _points(text: str, name: str) -> list[_Point]:
     except expat.ExpatError as error:
         action = Message("The file is damaged or ends too early; export it again.")
         raise _damaged(name, str(error), "GPX 1.0, GPX 1.1 or TCX", action) from error
+    if not reader.points and (reader.others or reader.root not in (_POINT[0], _TCX_POINT[0])):
+        counted = ", ".join(f"{count} {element}" for element, count in reader.others.items())
+        raise _damaged(
+            name,
+            counted or f"<{reader.root}>",
+            " > ".join(_TCX_POINT if reader.root == _TCX_POINT[0] else _POINT),
+            Message("The file has no recorded track. Waypoints, routes and courses are not read."),
+        )
     return reader.points
 
 
@@ -167,13 +182,15 @@ def _damaged(name: str, value: str, allowed: str, action: str) -> Exception:
 
 
 def _required_moment(point: _Point, name: str, place: int) -> datetime:
-    moment = _moment(point.texts.get("time", ""))
+    text = point.texts.get("time", "")
+    moment = _moment(text)
     if moment is None:
         raise track_error(
             "not_a_time",
             name,
             place=f"point {place + 1}",
             column="time",
+            value=text or None,
             allowed=Message("a time such as 2022-12-27T15:51:14Z in every point"),
             action=Message("The point has no readable time. A drawn route is not a recorded track."),
         )
