@@ -83,6 +83,12 @@ def test_corners() -> None:
     assert min(outcomes[word] for word in ("equilibrium", "slips", "bridges")) > 0
 
 
+def test_flat_skis_on_ice() -> None:
+    """A few stations bear all: the snow's memory grows in more than a hundred stages."""
+    _, missing = sweep(("giant-slalom", "carver"), (70.0, 200.0), (0.0, 0.2), (3000.0,), (50.0, math.inf))
+    assert missing == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
 def test_everything(name: str) -> None:

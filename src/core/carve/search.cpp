@@ -11,8 +11,8 @@ namespace skisnow {
 
 namespace {
 
-constexpr int MOST_STAGES = 40;
-constexpr double ROUGHNESS = 0.05;  // of the greatest depth: correction at which a stage on the way ends
+constexpr double SMALLEST_STRIDE = 1e-3;  // share of a path of conditions: a shorter stage is not tried
+constexpr double ROUGHNESS = 0.05;        // of the greatest depth: correction at which a stage on the way ends
 constexpr double SOFTENINGS[] = {1000.0, 30.0, 3.0};
 // A ski bent so that its edge is straight in the snow, as deep as a rigid one of that contact length would be.
 CarveState first_guess(const CarvedSki& ski, const CarveConditions& given) {
@@ -128,7 +128,7 @@ class Search {
   template <class Path>
   bool follows(const Path& path) {
     double reached = 0.0, stride = 1.0;
-    for (int stage = 0; stage < MOST_STAGES; stage++) {
+    while (stride > SMALLEST_STRIDE) {
       const double target = std::min(reached + stride, 1.0);
       if (reaches(path(target), target < 1.0)) {
         if (target == 1.0) return true;
