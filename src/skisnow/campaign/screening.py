@@ -60,6 +60,7 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
         return {code: np.zeros(0, dtype=np.bool_) for code in QUALITY_FLAGS if code not in NEED_HARDNESS}
     largest_depth = tests.penetration_depth[reading_at_largest_load(tests)]
     deepest = np.maximum.reduceat(tests.penetration_depth, tests.first[:-1]) if len(tests) else np.zeros(0)
+    unloaded = np.zeros(0, dtype=np.int64) if tests.unloading is None else tests.unloading.series_of_reading
     return {
         "cancelled": _is_filled(tests.cancelled),
         "too_few_loads": np.diff(tests.first) < FEWEST_LOADS,
@@ -68,23 +69,18 @@ def screen_penetration(campaign: Campaign, *, geometry: GeometryForm = "extended
         "zero_depth": largest_depth == 0,
         "beyond_tool": deepest > maximum_depths(campaign, tests, geometry) * (1 + _ROUNDING),
         "below_resolution": _is_below_resolution(largest_depth, campaign.gauge_resolution),
-        "creeps": _any_reading(tests, find_creep(campaign, tests)),
-        **{code: _flagged_series(tests, bad) for code, bad in find_implausible_unloading(campaign, tests).items()},
+        "creeps": _any_reading(tests.series_of_reading, find_creep(campaign, tests), len(tests)),
+        **{
+            code: _any_reading(unloaded, bad, len(tests))
+            for code, bad in find_implausible_unloading(campaign, tests).items()
+        },
     }
 
 
-def _any_reading(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
-    """True (m,) for series with at least one of the bad readings (n,)."""
-    flagged = np.zeros(len(tests), dtype=np.bool_)
-    flagged[tests.series_of_reading[bad]] = True
-    return flagged
-
-
-def _flagged_series(tests: PenetrationTests, bad: BoolArray) -> BoolArray:
-    """True (m,) for series with at least one of the bad readings of the unloading."""
-    flagged = np.zeros(len(tests), dtype=np.bool_)
-    if tests.unloading is not None:
-        flagged[tests.unloading.series_of_reading[bad]] = True
+def _any_reading(series: IntArray, bad: BoolArray, count: int) -> BoolArray:
+    """True (count,) for series with at least one of the bad readings (n,), given the series of each reading."""
+    flagged = np.zeros(count, dtype=np.bool_)
+    flagged[series[bad]] = True
     return flagged
 
 

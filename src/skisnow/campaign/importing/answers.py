@@ -219,6 +219,17 @@ def ask(
     return Question(option, key, choices, proposed, problem)
 
 
-def is_asked(questions: Iterable[Question | Problem], option: str, key: str) -> bool:
-    """True if one of the questions has this option and key."""
-    return any(isinstance(item, Question) and (item.option, item.key) == (option, key) for item in questions)
+@dataclass(slots=True)
+class Dialogue:
+    """Answers of the user, with the open questions and errors so far."""
+
+    answers: Answers
+    open: list[Question | Problem] = field(default_factory=list)
+
+    def ask(self, option: str, key: str, place: str, **further: Any) -> None:
+        """Add a question; parameters as of the function `ask`."""
+        self.open.append(ask(option, key, place, **further))
+
+    def has_asked(self, option: str, key: str) -> bool:
+        """True if one of the questions has this option and key."""
+        return any(isinstance(item, Question) and (item.option, item.key) == (option, key) for item in self.open)

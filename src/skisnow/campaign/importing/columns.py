@@ -25,7 +25,7 @@ from ..reading.headings import (
     units_for,
 )
 from ..reading.table_forms import TableForm
-from .answers import NONE, Answers, Question, ask
+from .answers import NONE, Dialogue, Question, ask
 from .sections import NO_UNIT, Section
 from .sheets import EXCLUDED, FROM_NOTES, HIDDEN, column_letters
 
@@ -51,24 +51,24 @@ def number_columns(form: TableForm) -> list[str]:
     return [column.name for column in form.numbers if column.name not in form.further]
 
 
-def choose_columns(
-    section: Section, form: TableForm, answers: Answers, notes: Sequence[Note], open_: list[Question | Problem]
-) -> list[ColumnChoice]:
-    """Columns of a section; open questions and errors are added to `open_`."""
+def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes: Sequence[Note]) -> list[ColumnChoice]:
+    """Columns of a section; open questions and errors are added to the dialogue."""
     table = form.file.removesuffix(".csv")
-    if section.sheet.hidden_columns & set(section.columns) and HIDDEN not in answers.cells:
-        open_.append(ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no")))
+    if section.sheet.hidden_columns & set(section.columns) and HIDDEN not in dialogue.answers.cells:
+        dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
-    stated = [_stated(form, answers.of_heading("column", table, heading), heading) for heading in section.headings]
-    open_.extend(_bad_answers(section, form, answers))
-    open_.extend(_column_questions(section, form, stated))
+    stated = [
+        _stated(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
+    ]
+    dialogue.open.extend(_bad_answers(section, form, dialogue))
+    dialogue.open.extend(_column_questions(section, form, stated))
     choices = []
     for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
         unit = None
         if column in number_columns(form):
-            unit = _unit(section, form, heading, column, place, answers, notes, open_)
+            unit = _unit(section, form, heading, column, place, dialogue, notes)
         elif column in form.further and unit_of_column(column):
-            units = _statements(section, heading, column, place, answers, table, notes)
+            units = _statements(section, heading, column, place, dialogue, table, notes)
             column = column if units == {own_unit(column)} else heading  # noqa: PLW2901
         choices.append(ColumnChoice(place, heading, "" if column == NONE else column or heading, unit))
     return choices
@@ -78,10 +78,10 @@ def _stated(form: TableForm, answer: str, heading: str) -> str:
     return answer if answer in form.known or answer == NONE else stated_column(form, heading)
 
 
-def _bad_answers(section: Section, form: TableForm, answers: Answers) -> Iterator[Problem]:
+def _bad_answers(section: Section, form: TableForm, dialogue: Dialogue) -> Iterator[Problem]:
     table = form.file.removesuffix(".csv")
     for heading in section.headings:
-        answer = answers.of_heading("column", table, heading)
+        answer = dialogue.answers.of_heading("column", table, heading)
         if answer and answer != NONE and answer not in form.known:
             allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
             action = Message("Correct --{option}.", option="column")
@@ -116,37 +116,34 @@ def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) 
 
 
 def _statements(
-    section: Section, heading: str, column: str, place: int, answers: Answers, table: str, notes: Sequence[Note]
+    section: Section, heading: str, column: str, place: int, dialogue: Dialogue, table: str, notes: Sequence[Note]
 ) -> set[str]:
     """Units that answer, heading, row of units and notes state for a column."""
     below = section.units[section.columns.index(place)] if section.units else ""
     named = own_unit(column) if heading == column else named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
     return {
-        *filter(None, (known_unit(answers.of_heading("unit", table, heading)), named, known_unit(below))),
+        *filter(None, (known_unit(dialogue.answers.of_heading("unit", table, heading)), named, known_unit(below))),
         *of_notes,
     }
 
 
 def _unit(
-    section: Section,
-    form: TableForm,
-    heading: str,
-    column: str,
-    place: int,
-    answers: Answers,
-    notes: Sequence[Note],
-    open_: list[Question | Problem],
+    section: Section, form: TableForm, heading: str, column: str, place: int, dialogue: Dialogue, notes: Sequence[Note]
 ) -> UnitConversion | None:
     table = form.file.removesuffix(".csv")
-    units = _statements(section, heading, column, place, answers, table, notes)
+    units = _statements(section, heading, column, place, dialogue, table, notes)
     sizes = {conversion(unit, column) for unit in units}
     below = section.units[section.columns.index(place)] if section.units else ""
     is_unknown = not known_unit(below) and below.casefold() not in NO_UNIT and below != heading
-    if len(sizes) == 1 and None not in sizes and (not is_unknown or answers.of_heading("unit", table, heading)):
+    if (
+        len(sizes) == 1
+        and None not in sizes
+        and (not is_unknown or dialogue.answers.of_heading("unit", table, heading))
+    ):
         return sizes.pop()
     if sizes:
-        open_.append(
+        dialogue.open.append(
             error(
                 "other_unit",
                 section.key,
@@ -160,7 +157,7 @@ def _unit(
         )
     else:
         choices = tuple(units_for(column).split(", "))
-        open_.append(ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices))
+        dialogue.ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices)
     return None
 
 

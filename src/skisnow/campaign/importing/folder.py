@@ -5,10 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePath
-from typing import Final
+from typing import Final, Literal
 
 from ..._support.errors import OutputError
 from ..._support.messages import Message
@@ -18,7 +18,7 @@ from ..._support.user_files import own_json, toml_text
 from ..problems import Problem, error
 from ..reading.campaign_file import CAMPAIGN_FILE
 from ..reading.table_forms import TableForm
-from .answers import SECTION, Answers, Question, ask, is_asked
+from .answers import SECTION, Answers, Dialogue
 from .columns import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
 from .rows import ImportedTable
 
@@ -138,9 +138,6 @@ class ToolText:
     keys: tuple[tuple[str, str], ...]
 
 
-PlateText = ToolText
-
-
 def parse_tool(name: str, text: str) -> ToolText | None:
     """Tool of a text; None for any other text.
 
@@ -164,35 +161,22 @@ def parse_tool(name: str, text: str) -> ToolText | None:
     return ToolText(name or text.strip(), keys)
 
 
-def parse_plate(name: str, text: str) -> PlateText | None:
+def parse_plate(name: str, text: str) -> ToolText | None:
     """Blade of a text such as "100 mm"; None for any other text."""
     match = PLATE.fullmatch(text.strip())
     return ToolText(name or text.strip(), (("length_mm", f"{length_mm(match[2], match[3]):g}"),)) if match else None
 
 
-def tools_of(
-    tables: Sequence[ImportedTable], answers: Answers, notes: Sequence[Note], open_: list[Question | Problem]
-) -> Mapping[tuple[str, str], ToolText]:
-    """Tools by sheet and by the name in the table, "" without a name."""
-    return _described("tool", tables, answers.tool, notes, (stated_tools, parse_tool, TOOL_FORM), open_)
+_READING: Final = {"tool": (stated_tools, parse_tool, TOOL_FORM), "plate": (stated_plates, parse_plate, PLATE_FORM)}
+"""Functions that find and parse the texts of tools and blades, and an example of such a text."""
 
 
-def plates_of(
-    tables: Sequence[ImportedTable], answers: Answers, notes: Sequence[Note], open_: list[Question | Problem]
-) -> Mapping[tuple[str, str], PlateText]:
-    """Blades, likewise."""
-    return _described("plate", tables, answers.plate, notes, (stated_plates, parse_plate, PLATE_FORM), open_)
-
-
-def _described(
-    kind: str,
-    tables: Sequence[ImportedTable],
-    answers: Mapping[str, str],
-    notes: Sequence[Note],
-    reading: tuple[Callable[[Sequence[Note]], set[str]], Callable[[str, str], ToolText | None], str],
-    open_: list[Question | Problem],
+def described_tools(
+    kind: Literal["tool", "plate"], tables: Sequence[ImportedTable], dialogue: Dialogue, notes: Sequence[Note]
 ) -> dict[tuple[str, str], ToolText]:
-    stated_in, parse, form = reading
+    """Tools or blades by sheet and by the name in the table, "" without a name."""
+    stated_in, parse, form = _READING[kind]
+    answers: Mapping[str, str] = getattr(dialogue.answers, kind)
     with_tables = {table.section.sheet.name for table in tables}
     described: dict[tuple[str, str], ToolText] = {}
     for table in tables:
@@ -208,10 +192,10 @@ def _described(
             if len(tools) == 1 and (tool := tools.pop()) is not None:
                 described[sheet, name] = tool
             elif name in answers and parse(name, answers[name]) is None:
-                open_.append(_bad_answer(kind, table.section.key, answers[name], form))
-            elif not is_asked(open_, kind, name):
+                dialogue.open.append(_bad_answer(kind, table.section.key, answers[name], form))
+            elif not dialogue.has_asked(kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
-                open_.append(ask(kind, name, table.section.key, value=value, proposed=form))
+                dialogue.ask(kind, name, table.section.key, value=value, proposed=form)
     return described
 
 

@@ -18,9 +18,9 @@ from ..problems import Problem, error
 from ..reading.campaign import campaign_of_files
 from ..reading.table_forms import TableForm
 from ..records import Campaign
-from .answers import NONE, Answers, Question, ask, is_asked
+from .answers import NONE, Answers, Dialogue, Question, ask
 from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
-from .folder import PlateText, ToolText, campaign_files, description, plates_of, table_text, tools_of
+from .folder import ToolText, campaign_files, described_tools, description, table_text
 from .rows import ImportedTable, StoredRow, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
 from .sheets import HIDDEN, KINDS, Ignored, Sheet, read_sheets
@@ -61,24 +61,25 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     ignored = Ignored(frozenset(answers.ignore), answers.cells.get(HIDDEN) == "no")
     sheets = read_sheets(name, data)
     sections = {sheet.name: find_sections(sheet, answers.table, ignored) for sheet in sheets}
-    open_: list[Question | Problem] = []
-    kinds = [(section, _kind(section, answers, open_)) for on_sheet in sections.values() for section in on_sheet]
+    dialogue = Dialogue(answers)
+    kinds = [(section, _kind(section, dialogue)) for on_sheet in sections.values() for section in on_sheet]
     forms = [(section, form) for section, form in kinds if form is not None]
     notes = _notes(sheets, [section for section, _ in kinds], ignored)
     if not kinds:
-        open_.append(_no_table(name))
-    tables = [_table(section, form, answers, ignored, notes, open_) for section, form in forms]
+        dialogue.open.append(_no_table(name))
+    tables = [_table(section, form, dialogue, ignored, notes) for section, form in forms]
     qualifying = {(section.sheet.name, section.header) for section, _ in forms if section.qualified()}
-    open_.extend(
+    dialogue.open.extend(
         ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
         for note in notes
         if is_about_numbers(note) or (note.sheet, note.row) in qualifying
     )
-    open_.extend(_repeated(tables))
-    tools, plates = tools_of(tables, answers, notes, open_), plates_of(tables, answers, notes, open_)
-    tables = _with_names(tables, answers, notes, (tools, plates), open_)
-    questions = tuple(dict.fromkeys(item for item in open_ if isinstance(item, Question)))
-    problems = tuple(dict.fromkeys(item.problem if isinstance(item, Question) else item for item in open_))
+    dialogue.open.extend(_repeated(tables))
+    tools = described_tools("tool", tables, dialogue, notes)
+    plates = described_tools("plate", tables, dialogue, notes)
+    tables = _with_names(tables, dialogue, notes, (tools, plates))
+    questions = tuple(dict.fromkeys(item for item in dialogue.open if isinstance(item, Question)))
+    problems = tuple(dict.fromkeys(item.problem if isinstance(item, Question) else item for item in dialogue.open))
     files: Mapping[str, bytes] = {}
     if not problems:
         described = _description(name, data, answers, tables, tools, plates, notes)
@@ -87,12 +88,12 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
 
 
-def _kind(section: Section, answers: Answers, open_: list[Question | Problem]) -> TableForm | None:
-    form = table_of(section, answers)
+def _kind(section: Section, dialogue: Dialogue) -> TableForm | None:
+    form = table_of(section, dialogue.answers)
     if form is None:
         value = ", ".join(section.headings)
         proposed = likely_table(section)
-        open_.append(ask("table", section.key, section.key, value=value, choices=(*KINDS, NONE), proposed=proposed))
+        dialogue.ask("table", section.key, section.key, value=value, choices=(*KINDS, NONE), proposed=proposed)
     return form
 
 
@@ -124,19 +125,14 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
 
 
 def _table(
-    section: Section,
-    form: TableForm,
-    answers: Answers,
-    ignored: Ignored,
-    notes: Sequence[Note],
-    open_: list[Question | Problem],
+    section: Section, form: TableForm, dialogue: Dialogue, ignored: Ignored, notes: Sequence[Note]
 ) -> ImportedTable:
     own = [note for note in notes if _concerns(note, section.sheet.name, {section.sheet.name})]
-    before = len(open_)
-    columns = choose_columns(section, form, answers, own, open_)
-    if len(open_) > before:  # rows would repeat the same error in each
+    before = len(dialogue.open)
+    columns = choose_columns(section, form, dialogue, own)
+    if len(dialogue.open) > before:  # rows would repeat the same error in each
         return ImportedTable(section, form, tuple(columns), ())
-    rows = stored_rows(section, columns, form, answers, ignored, open_)
+    rows = stored_rows(section, columns, form, dialogue, ignored)
     return ImportedTable(section, form, tuple(columns), tuple(rows))
 
 
@@ -174,10 +170,9 @@ def _repeated(tables: Sequence[ImportedTable]) -> list[Problem]:
 
 def _with_names(
     tables: Sequence[ImportedTable],
-    answers: Answers,
+    dialogue: Dialogue,
     notes: Sequence[Note],
-    described: tuple[Mapping[tuple[str, str], ToolText], Mapping[tuple[str, str], PlateText]],
-    open_: list[Question | Problem],
+    described: tuple[Mapping[tuple[str, str], ToolText], Mapping[tuple[str, str], ToolText]],
 ) -> list[ImportedTable]:
     """Tables with sites, tools, days and unique names of tests in each row."""
     with_tables = {table.section.sheet.name for table in tables}
@@ -186,7 +181,7 @@ def _with_names(
     for table in tables:
         sheet = table.section.sheet.name
         own = _notes_above(table, tables, notes)
-        site = "" if any("site" in row.cells for row in table.rows) else _site(sheet, table, answers, own, open_)
+        site = "" if any("site" in row.cells for row in table.rows) else _site(sheet, table, dialogue, own)
         days = stated_days(note for note in notes if _concerns(note, sheet, with_tables))
         added = {"site": site} | ({"time": days.pop()} if len(days) == 1 else {})
         rows = []
@@ -198,7 +193,7 @@ def _with_names(
                     cells[name] = text.name if text is not None else ""
             rows.append(replace(row, cells=cells))
         named.append(replace(table, rows=tuple(rows)))
-    return _unique(named, answers, open_)
+    return _unique(named, dialogue)
 
 
 def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: Sequence[Note]) -> list[Note]:
@@ -211,29 +206,27 @@ def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: S
     return near if stated_sites(section.sheet.name, near) else own
 
 
-def _site(
-    sheet: str, table: ImportedTable, answers: Answers, notes: Sequence[Note], open_: list[Question | Problem]
-) -> str:
+def _site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Sequence[Note]) -> str:
     for key in (table.section.key, sheet):
-        if key in answers.site:
-            return answers.site[key]
+        if key in dialogue.answers.site:
+            return dialogue.answers.site[key]
     stated = stated_sites(sheet, notes)
     if len(stated) == 1:
         return stated.pop()
-    if not is_asked(open_, "site", sheet):
+    if not dialogue.has_asked("site", sheet):
         value = ", ".join(sorted(stated)) or None
-        open_.append(ask("site", sheet, table.section.key, value=value, choices=tuple(sorted(stated)), proposed=sheet))
+        dialogue.ask("site", sheet, table.section.key, value=value, choices=tuple(sorted(stated)), proposed=sheet)
     return ""
 
 
-def _unique(tables: Sequence[ImportedTable], answers: Answers, open_: list[Question | Problem]) -> list[ImportedTable]:
+def _unique(tables: Sequence[ImportedTable], dialogue: Dialogue) -> list[ImportedTable]:
     """Tables whose tests have the site in their names where a name occurs in several tables of a kind.
 
     If a site has the name in several tables, the sheet is put before it, too, after a question.
     """
     by_site = _renamed(tables, _repeated_names(tables), lambda _, row: row.cells["site"])
     again = _repeated_names(by_site)
-    if answers.cells.get(BY_SHEET) == "yes":
+    if dialogue.answers.cells.get(BY_SHEET) == "yes":
         kinds = Counter((table.form.file, table.section.sheet.name) for table in tables)
         alone = {sheet for (_, sheet), count in kinds.items() if count == 1}
         return _renamed(
@@ -241,9 +234,9 @@ def _unique(tables: Sequence[ImportedTable], answers: Answers, open_: list[Quest
         )
     for table in by_site:
         names = {row.cells.get(table.form.key, "") for row in table.rows} & again.get(table.form.file, set())
-        if names and not is_asked(open_, "cells", BY_SHEET):
+        if names and not dialogue.has_asked("cells", BY_SHEET):
             value = Message("{name} in several tables", name=min(names))
-            open_.append(ask("cells", BY_SHEET, table.section.key, value=value, choices=("yes",), proposed="yes"))
+            dialogue.ask("cells", BY_SHEET, table.section.key, value=value, choices=("yes",), proposed="yes")
     return by_site
 
 
@@ -291,7 +284,7 @@ def _description(
     answers: Answers,
     tables: Sequence[ImportedTable],
     tools: Mapping[tuple[str, str], ToolText],
-    plates: Mapping[tuple[str, str], PlateText],
+    plates: Mapping[tuple[str, str], ToolText],
     notes: Sequence[Note],
 ) -> str:
     """Text of campaign.toml."""

@@ -13,7 +13,7 @@ from ..._support.spreadsheet_text import is_number
 from ..problems import Problem, error
 from ..reading.headings import letters
 from ..reading.table_forms import TableForm
-from .answers import Answers, Question, ask, is_asked
+from .answers import Dialogue
 from .columns import ColumnChoice, number_columns
 from .sections import Section
 from .sheets import EXCLUDED, Ignored, column_letters
@@ -69,18 +69,13 @@ def data_rows(section: Section, choices: Sequence[ColumnChoice], form: TableForm
 
 
 def stored_rows(
-    section: Section,
-    choices: Sequence[ColumnChoice],
-    form: TableForm,
-    answers: Answers,
-    ignored: Ignored,
-    open_: list[Question | Problem],
+    section: Section, choices: Sequence[ColumnChoice], form: TableForm, dialogue: Dialogue, ignored: Ignored
 ) -> list[StoredRow]:
-    """Rows of a section; open questions and errors are added to `open_`."""
+    """Rows of a section; open questions and errors are added to the dialogue."""
     sheet, numbers = section.sheet, number_columns(form)
     rows = data_rows(section, choices, form, ignored)
     used = {choice.column: choice for choice in choices if choice.column}
-    mark = _mark(section, [choice for choice in used.values() if choice.column in numbers], rows, answers, open_)
+    mark = _mark(section, [choice for choice in used.values() if choice.column in numbers], rows, dialogue)
     stored, above = [], dict[str, str]()
     for row in rows:
         cells = {
@@ -88,33 +83,27 @@ def stored_rows(
             for name, choice in used.items()
         }
         if _is_summary(cells, form):
-            open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=cells.get(form.key)))
-        _fill_down(section, row, cells, above, form, answers, open_)
+            dialogue.ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=cells.get(form.key))
+        _fill_down(section, row, cells, above, form, dialogue)
         above = dict(cells)
-        if _is_excluded(section, row, [choice.place for choice in used.values()], answers, open_):
+        if _is_excluded(section, row, [choice.place for choice in used.values()], dialogue):
             continue
         partly = next((choice.place for choice in used.values() if (row, choice.place) in sheet.partly_struck), None)
         if partly is not None:
             value = Message("a cell that is struck through in part: {text}", text=sheet.cell(row, partly))
-            open_.append(ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=value))
+            dialogue.ask("ignore", f"{sheet.name}!{row + 1}", section.key, row=row + 1, value=value)
             continue
         for name in numbers:
             if name in used and cells[name]:
                 choice = used[name]
-                cells[name] = _number(section, row, choice, cells[name], mark, answers, open_)
+                cells[name] = _number(section, row, choice, cells[name], mark, dialogue)
         stored.append(StoredRow(row + 1, cells))
-    open_.extend(_strays(section, rows, ignored))
-    open_.extend(_split_numbers(section, choices, rows, numbers))
+    dialogue.open.extend(_strays(section, rows, ignored))
+    dialogue.open.extend(_split_numbers(section, choices, rows, numbers))
     return stored
 
 
-def _mark(
-    section: Section,
-    choices: Sequence[ColumnChoice],
-    rows: Sequence[int],
-    answers: Answers,
-    open_: list[Question | Problem],
-) -> str:
+def _mark(section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], dialogue: Dialogue) -> str:
     """Decimal mark of typed numbers; a question if each of them may have a thousands separator instead."""
     sheet = section.sheet
     typed = [
@@ -123,7 +112,7 @@ def _mark(
         for choice in choices
         if (row, choice.place) not in sheet.fractions
     ]
-    if answer := answers.cells.get(DECIMAL):
+    if answer := dialogue.answers.cells.get(DECIMAL):
         return answer
     clear = {
         mark
@@ -136,7 +125,7 @@ def _mark(
     if len(clear) == 1:
         return clear.pop()
     if clear or unclear:
-        open_.append(ask("cells", DECIMAL, section.key, value=unclear or ", .", choices=(",", ".")))
+        dialogue.ask("cells", DECIMAL, section.key, value=unclear or ", .", choices=(",", "."))
     return "."
 
 
@@ -145,29 +134,21 @@ def _without_groups(text: str, mark: str) -> str:
     return re.sub(rf"[^\d+{mark}-]", "", text) if _GROUPED[mark].fullmatch(text) else text
 
 
-def _number(
-    section: Section,
-    row: int,
-    choice: ColumnChoice,
-    text: str,
-    mark: str,
-    answers: Answers,
-    open_: list[Question | Problem],
-) -> str:
+def _number(section: Section, row: int, choice: ColumnChoice, text: str, mark: str, dialogue: Dialogue) -> str:
     """A number in the unit of its column."""
     sheet = section.sheet
     written = "." if (row, choice.place) in sheet.fractions else mark
     plain = _without_groups(text.replace("−", "-"), written)
     if not is_number(plain, written) and _THOUSANDS.fullmatch(plain):
         separator = "," if written == "." else "."
-        if answers.cells.get(THOUSANDS) == separator:
+        if dialogue.answers.cells.get(THOUSANDS) == separator:
             plain = plain.replace(separator, "")
         else:
-            if not any(is_asked(open_, "cells", key) for key in (DECIMAL, THOUSANDS)):
-                open_.append(ask("cells", THOUSANDS, section.key, row=row + 1, value=text, choices=(separator,)))
+            if not any(dialogue.has_asked("cells", key) for key in (DECIMAL, THOUSANDS)):
+                dialogue.ask("cells", THOUSANDS, section.key, row=row + 1, value=text, choices=(separator,))
             return ""
     if not is_number(plain, written):
-        open_.append(
+        dialogue.open.append(
             error(
                 "not_a_number",
                 sheet.name,
@@ -187,39 +168,29 @@ def _number(
 
 
 def _fill_down(
-    section: Section,
-    row: int,
-    cells: dict[str, str],
-    above: dict[str, str],
-    form: TableForm,
-    answers: Answers,
-    open_: list[Question | Problem],
+    section: Section, row: int, cells: dict[str, str], above: dict[str, str], form: TableForm, dialogue: Dialogue
 ) -> None:
     """Fill blank names, and blank angles within a test, from the row above if the user says so."""
     for name in (*form.names, "edge_angle_deg"):
         if name not in cells or cells[name] or not above.get(name):
             continue
-        if answers.cells.get(FILL_DOWN) == "yes":
+        if dialogue.answers.cells.get(FILL_DOWN) == "yes":
             cells[name] = above[name]
-        elif not is_asked(open_, "cells", FILL_DOWN):
+        elif not dialogue.has_asked("cells", FILL_DOWN):
             value = Message("a blank cell below {value}", value=above[name])
-            open_.append(
-                ask("cells", FILL_DOWN, section.key, row=row + 1, value=value, choices=("yes",), proposed="yes")
-            )
+            dialogue.ask("cells", FILL_DOWN, section.key, row=row + 1, value=value, choices=("yes",), proposed="yes")
 
 
-def _is_excluded(
-    section: Section, row: int, places: Sequence[int], answers: Answers, open_: list[Question | Problem]
-) -> bool:
+def _is_excluded(section: Section, row: int, places: Sequence[int], dialogue: Dialogue) -> bool:
     """True if the user leaves out rows that are hidden or have cells that are struck through; a question without it."""
     reasons = [
         reason for reason, cells in section.sheet.excluded.items() if any((row, place) in cells for place in places)
     ]
     for reason in reasons:
-        if reason not in answers.cells and not is_asked(open_, "cells", reason):
+        if reason not in dialogue.answers.cells and not dialogue.has_asked("cells", reason):
             value = EXCLUDED[reason]
-            open_.append(ask("cells", reason, section.key, row=row + 1, value=value, choices=("yes", "no")))
-    return any(answers.cells.get(reason) == "no" for reason in reasons)
+            dialogue.ask("cells", reason, section.key, row=row + 1, value=value, choices=("yes", "no"))
+    return any(dialogue.answers.cells.get(reason) == "no" for reason in reasons)
 
 
 def _is_summary(cells: dict[str, str], form: TableForm) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
 
@@ -344,22 +344,18 @@ def _table(
     return read_table(form, text, corrections=corrections, files=files, headings=headings, progress=progress)
 
 
+_SAME: Final = {field.name for field in fields(CampaignFile)} & {field.name for field in fields(Campaign)} - {
+    "name", "snow_micro_pen", "weather",
+}  # fmt: skip
+"""Fields of a campaign that campaign.toml states as they are."""
+
+
 def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
     tables = contents.tables
     return Campaign(
         name=described.name or contents.folder.resolve().name,
-        place=described.place,
-        observers=described.observers,
         folder=contents.folder,
-        gauge_resolution=described.gauge_resolution,
-        load_uncertainty=described.load_uncertainty,
-        seating=described.seating,
-        moment_uncertainty=described.moment_uncertainty,
-        lever_arm_uncertainty=described.lever_arm_uncertainty,
-        load_steps=described.load_steps,
-        tools=described.tools,
-        plates=described.plates,
-        excluding=described.excluding,
+        **{name: getattr(described, name) for name in _SAME},
         penetration=penetration_tests(tables[PENETRATION.file]) if PENETRATION.file in tables else None,
         shear=shear_tests(tables[SHEAR.file]) if SHEAR.file in tables else None,
         density=density_samples(tables[DENSITY.file]) if DENSITY.file in tables else None,
@@ -369,7 +365,6 @@ def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
         corrections=contents.corrections,
         unread_files=contents.unread,
         places=contents.places,
-        pole_stiffness=described.pole_stiffness,
         snow_micro_pen=snow_micro_pen_recordings(
             tables[SNOW_MICRO_PEN.file], contents.recordings, described.snow_micro_pen
         )

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Final
 
-from ..._support.messages import Message, joined
+from ..._support.messages import Message
 from ..._support.units import MM
 from ..._support.user_files import GivenError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
@@ -135,12 +134,7 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
         name=top.text("name", blank_allowed=True),
         place=top.text("place", blank_allowed=True) or "",
         observers=top.texts("observers"),
-        gauge_resolution=_length(top, CAMPAIGN_KEYS["gauge_resolution_mm"]),
-        load_uncertainty=top.number(CAMPAIGN_KEYS["load_uncertainty_N"]),
-        seating=_length(top, CAMPAIGN_KEYS["seating_mm"]),
-        moment_uncertainty=top.number(CAMPAIGN_KEYS["moment_uncertainty_Nm"]),
-        lever_arm_uncertainty=_length(top, CAMPAIGN_KEYS["lever_arm_uncertainty_mm"]),
-        pole_stiffness=_stiffness(top),
+        **{key.field: _in_si(top, key) for key in CAMPAIGN_KEYS.values() if key.kind == "number"},
         load_steps=top.numbers(CAMPAIGN_KEYS["load_steps_N"]),
         tools=tools,
         plates=plates,
@@ -227,25 +221,18 @@ def _shape_name(entry: TomlValues) -> str | None:
     shape = entry.text("shape")
     if shape is None or shape in SHAPES:
         return shape
-    near = difflib.get_close_matches(shape.lower(), SHAPES, n=1)
-    entry.refuse(
-        "shape",
-        allowed,
-        Message("Did you mean {similar}? Correct the shape.", similar=near[0])
-        if near
-        else Message("Correct the shape."),
-    )
+    entry.refuse_unknown("shape", shape, SHAPES, allowed, Message("Correct the shape."))
     return None
 
 
 def _needed_length(entry: TomlValues, quantity: Quantity) -> float | None:
     if quantity.name not in entry.values:
         entry.refuse(quantity.name, Message("a length in mm above 0"), Message("Add {name}.", name=quantity.name))
-    return _length(entry, quantity)
+    return _in_si(entry, quantity)
 
 
-def _length(entry: TomlValues, quantity: Quantity) -> float | None:
-    """A length in m, with a warning if it is probably not in mm."""
+def _in_si(entry: TomlValues, quantity: Quantity) -> float | None:
+    """A number in SI, with a warning if it is a length that is probably not in mm."""
     value = entry.number(quantity)
     if value is not None and quantity.usual is not None and not quantity.usual[0] <= value <= quantity.usual[1]:
         low, high = quantity.usual
@@ -263,12 +250,6 @@ def _length(entry: TomlValues, quantity: Quantity) -> float | None:
     return None if value is None else quantity.in_si(value)
 
 
-def _stiffness(top: TomlValues) -> float | None:
-    quantity = CAMPAIGN_KEYS["pole_stiffness_Nm_per_deg"]
-    value = top.number(quantity)
-    return None if value is None else quantity.in_si(value)
-
-
 def _excluding(top: TomlValues) -> frozenset[str]:
     """Codes of the quality flags that exclude: the file's list or the default, and those that always exclude."""
     screening = top.table("screening")
@@ -278,14 +259,8 @@ def _excluding(top: TomlValues) -> frozenset[str]:
     codes = screening.texts("exclude")
     for code in codes:
         if code not in QUALITY_FLAGS:
-            near = difflib.get_close_matches(code, QUALITY_FLAGS, n=1)
-            correct = Message("Correct the code.")
-            screening.refuse(
-                "exclude",
-                Message("codes among {quality_flags}", quality_flags=list(QUALITY_FLAGS)),
-                joined([Message("Did you mean {similar}?", similar=near[0]), correct]) if near else correct,
-                value=code,
-            )
+            allowed = Message("codes among {quality_flags}", quality_flags=list(QUALITY_FLAGS))
+            screening.refuse_unknown("exclude", code, QUALITY_FLAGS, allowed, Message("Correct the code."))
     return (frozenset(codes) & frozenset(QUALITY_FLAGS)) | ALWAYS_EXCLUDE
 
 

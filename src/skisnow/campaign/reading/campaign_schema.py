@@ -16,6 +16,8 @@ _NAME: Final[Schema] = {"type": "string", "pattern": "\\S", "description": "Uniq
 
 def campaign_schema() -> Schema:
     """JSON Schema of a parsed campaign.toml."""
+    words = "Codes of the quality flags that exclude an experiment; replaces the default."
+    exclude = {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
     return {
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:campaign:1",
@@ -31,9 +33,15 @@ def campaign_schema() -> Schema:
             "columns": _by_heading("Column of the numbers or texts below a heading"),
             "units": _by_heading("Unit of the numbers below a heading that names none"),
             "import": {"type": "object", "description": "File, answers and notes of skisnow import."},
-            "snow_micro_pen": _recordings(),
-            "weather": _weather(),
-            "screening": {"type": "object", "properties": {"exclude": _exclude()}},
+            "snow_micro_pen": {
+                "description": "How the recordings that snow_micro_pen.csv names are evaluated.",
+                **table_schema(own_quantities(SnowMicroPenSettings)),
+            },
+            "weather": {
+                "description": "Readings of a weather station, in SMET.",
+                **table_schema(own_quantities(WeatherSettings)),
+            },
+            "screening": {"type": "object", "properties": {"exclude": exclude}},
         },
         "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
     }
@@ -43,29 +51,12 @@ def _one_or_several(item: Schema) -> Schema:
     return {"anyOf": [item, {"type": "array", "items": item}]}
 
 
-def _exclude() -> Schema:
-    words = "Codes of the quality flags that exclude an experiment; replaces the default."
-    return {"description": words, **_one_or_several({"$ref": "#/$defs/mark"})}
-
-
 def _by_heading(words: str) -> Schema:
     """Schema of a mapping from headings to texts, for all tables or nested for one table; ``words`` describe it."""
     pairs = {"type": "object", "additionalProperties": {"type": "string"}}
     either: Schema = {"anyOf": [{"type": "string"}, pairs]}
     words = f"{words}; in a table of a table's name, such as penetration, for that one."
     return {"description": words, "type": "object", "additionalProperties": either}
-
-
-def _recordings() -> Schema:
-    """Settings of recordings of a SnowMicroPen."""
-    words = "How the recordings that snow_micro_pen.csv names are evaluated."
-    return {"description": words, **table_schema(own_quantities(SnowMicroPenSettings))}
-
-
-def _weather() -> Schema:
-    """Settings of a weather station."""
-    words = "Readings of a weather station, in SMET."
-    return {"description": words, **table_schema(own_quantities(WeatherSettings))}
 
 
 def _tool() -> Schema:

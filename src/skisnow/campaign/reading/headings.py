@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, TypeAlias
 
 from ..._support.arrays import FloatArray
-from ..._support.messages import Message, joined
+from ..._support.messages import Message
 from ..._support.units import DEGREE, KILOGRAM_FORCE, ZERO_CELSIUS
 from .table_forms import CORRECTIONS, TABLES, TableForm
 from .toml_values import TomlValues
@@ -70,52 +69,39 @@ def plain_heading(heading: str) -> str:
 
 def parse_headings(top: TomlValues) -> Headings:
     """Read ``[columns]`` and ``[units]``; each for all tables, or for one under ``[columns.penetration]``."""
-    units, units_of_table = _units_of(top.table(UNITS_KEY))
-    section = top.table(KEY)
+    return Headings(*_by_table(top.table(KEY), _name), *_by_table(top.table(UNITS_KEY), _unit))
+
+
+Entry: TypeAlias = "Callable[[TomlValues, str, tuple[str, ...]], dict[str, str]]"
+
+
+def _by_table(section: TomlValues, entry: Entry) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
+    """Entries by plain heading: those for all tables, and by file those for one table.
+
+    entry: reader of the value of a heading in a section, given the names of the columns.
+    """
     everywhere: dict[str, str] = {}
     of_table: dict[str, dict[str, str]] = {}
     every_name = tuple(dict.fromkeys(name for form in FORMS.values() for name in form.known))
     for heading, value in section.values.items():
         if heading in FORMS and isinstance(value, Mapping):
-            form = FORMS[heading]
-            of_table[form.file] = _names(section.table(heading), form.known)
+            form, table, entries = FORMS[heading], section.table(heading), dict[str, str]()
+            for name in table.values:
+                entries |= entry(table, name, form.known)
+            of_table[form.file] = entries
         else:
-            everywhere |= _name(section, heading, every_name)
-    return Headings(everywhere, of_table, units, units_of_table)
-
-
-def _units_of(section: TomlValues) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Units of all tables and of single ones: ``"Last" = "kg"``."""
-    everywhere: dict[str, str] = {}
-    of_table: dict[str, dict[str, str]] = {}
-    for heading, value in section.values.items():
-        if heading in FORMS and isinstance(value, Mapping):
-            table = section.table(heading)
-            of_table[FORMS[heading].file] = {
-                plain_heading(name): unit for name in table.values if (unit := _unit(table, name))
-            }
-        elif unit := _unit(section, heading):
-            everywhere[plain_heading(heading)] = unit
+            everywhere |= entry(section, heading, every_name)
     return everywhere, of_table
 
 
-def _unit(section: TomlValues, heading: str) -> str:
+def _unit(section: TomlValues, heading: str, _columns: tuple[str, ...]) -> dict[str, str]:
+    """Unit of a heading by plain heading, such as ``"Last" = "kg"``; empty, with an error, if it is unknown."""
     value = section.values[heading]
-    unit = known_unit(value) if isinstance(value, str) else ""
-    if not unit:
-        section.refuse(
-            heading,
-            Message("one of the units {every_unit}", every_unit=every_unit()),
-            Message("Write the unit in quotes."),
-        )
-    return unit
-
-
-def _names(section: TomlValues, columns: tuple[str, ...]) -> dict[str, str]:
-    names: dict[str, str] = {}
-    for heading in section.values:
-        names |= _name(section, heading, columns)
-    return names
+    if unit := known_unit(value) if isinstance(value, str) else "":
+        return {plain_heading(heading): unit}
+    allowed = Message("one of the units {every_unit}", every_unit=every_unit())
+    section.refuse(heading, allowed, Message("Write the unit in quotes."))
+    return {}
 
 
 def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> dict[str, str]:
@@ -123,10 +109,10 @@ def _name(section: TomlValues, heading: str, columns: tuple[str, ...]) -> dict[s
     value = section.values[heading]
     if isinstance(value, str) and value.strip() in columns:
         return {plain_heading(heading): value.strip()}
-    near = difflib.get_close_matches(str(value).lower(), columns, n=1)
     write = Message("Write the heading, an equals sign and the column's name, both in quotes.")
-    action = joined([Message("Did you mean {similar}?", similar=near[0]), write]) if near else write
-    section.refuse(heading, Message("one of the columns {columns}", columns=list(columns)), action)
+    section.refuse_unknown(
+        heading, value, columns, Message("one of the columns {columns}", columns=list(columns)), write
+    )
     return {}
 
 

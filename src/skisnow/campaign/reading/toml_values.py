@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias, TypeVar
 
 from ..._support.errors import ParameterError
-from ..._support.messages import Message
+from ..._support.messages import Message, joined
 from ...parameters import Quantity, made, own_quantities
 from ..problems import Problem, error, warning
 
@@ -48,6 +48,12 @@ class TomlValues:
         self.problems.append(
             error(code, self.file, column=self.path_of(key), value=text, allowed=allowed, action=action)
         )
+
+    def refuse_unknown(self, key: str, value: object, words: Iterable[str], allowed: str, action: str) -> None:
+        """Report an unknown word, with the known one that is most like it."""
+        near = difflib.get_close_matches(_shown(value).lower(), list(words), n=1)
+        meant = [Message("Did you mean {similar}?", similar=near[0])] if near else []
+        self.refuse(key, allowed, joined([*meant, action]), value=value)
 
     def text(self, key: str, *, blank_allowed: bool = False) -> str | None:
         """Stripped text; None if it is missing, invalid or blank."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +10,7 @@ import numpy as np
 from ..._support.arrays import FloatArray
 from ..._support.errors import OutputError
 from ..._support.spreadsheet_text import csv_text
+from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2
 from ..reading.table_forms import LOADING, UNLOADING
 from . import design
@@ -77,35 +76,12 @@ def write_reference(
         "shear.csv": _shear_csv(drawn),
         "density.csv": _density_csv(drawn),
         "drop_cone.csv": _drop_cone_csv(drawn),
-        "campaign.toml": _campaign_toml(drawn),  # moved last: without it the folder is not a campaign
+        "campaign.toml": _campaign_toml(drawn),
     }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        _move_into_place(folder, files)
-    except OSError as failure:
-        raise OutputError(
-            f"{folder}: the reference campaign could not be written ({failure.strerror or failure}); nothing of it was "
-            "left there. Choose a folder that you may write to, on a disk with room."
-        ) from failure
-
-
-def _move_into_place(folder: Path, files: Mapping[str, str]) -> None:
-    """Write all files into a temporary folder, then move them; undo the moves after an error."""
-    moved: list[Path] = []
-    with tempfile.TemporaryDirectory(prefix=".reference-", dir=folder) as temporary:
+    prepare_folder(folder)
+    with staged(folder, last="campaign.toml") as stage:  # without it the folder is not a campaign
         for name, text in files.items():
-            with (Path(temporary) / name).open("w", encoding="utf-8", newline="") as stream:
-                stream.write(text)
-                stream.flush()
-                os.fsync(stream.fileno())
-        try:
-            for name in files:
-                (Path(temporary) / name).replace(folder / name)
-                moved.append(folder / name)
-        except BaseException:
-            for path in moved:
-                path.unlink()
-            raise
+            write_file(stage.path / name, text)
 
 
 def _csv(header: Sequence[str], columns: Iterable[Sequence[str]]) -> str:
