@@ -166,6 +166,8 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("", ["empty_file"]),
         (" \n\n", ["empty_file"]),
         ("time_s,x_m,y_m\n", ["empty_file", "header only"]),
+        ("My run;;\ntime_s;x_m;y_m\n0;1;2\n", ["missing_column", "row 1:", "'My run'", "semicolon"]),
+        ("time_s|x_m|y_m\n0|1|2\n", ["missing_column", "row 1:", "'time_s|x_m|y_m'", "semicolon"]),
         ("time_s,x_m\n0,1\n", ["missing_column", "column y_m", "time_s, x_m"]),
         ("time_s,x_m,why\n0,1,2\n", ["missing_column", "column y_m"]),
         ("time,latt,lon\n0,46,7\n", ["missing_column", "column lat", "'latt'"]),
@@ -255,6 +257,36 @@ def test_dates_that_run_backwards_are_reported_as_dates(tmp_path: Path) -> None:
     message = refused(tmp_path, "time,lat,lon\n2022-12-27T15:51:14Z,46,7\n2022-12-27T15:51:13.5Z,46,7\n")
     assert "row 3" in message
     assert "2022-12-27 15:51:13.5" in message
+
+
+def test_letters_of_hemispheres(tmp_path: Path) -> None:
+    track = read(tmp_path, "time,Latitude,N/S,Longitude,E/W,State\n0,46,S,70.5,W,N\n1,46,N,70.5,e,S\n")
+    assert track.origin is not None
+    assert (track.origin.latitude_deg, track.origin.longitude_deg) == (-46.0, -70.5)
+    east = 6.389e6 * np.cos(np.radians(46.0)) * np.sin(np.radians(2 * 70.5))
+    assert track.place[1, 0] == pytest.approx(east, rel=1e-3)
+    assert track.further_columns == ("State",)
+
+
+@pytest.mark.parametrize(("unit", "ratio"), [("km/h", 3.6), ("mph", 1 / 0.44704)])
+def test_speeds_in_another_unit_than_the_heading(tmp_path: Path, unit: str, ratio: float) -> None:
+    """Along a slalom of 10 m/s, with the receiver at rest at first."""
+    rows = [f"{t},0,0,0.01" for t in range(10)]
+    rows += [f"{t + 10},{9 * t},{3 * np.sin(2 * t)},{10 * ratio}" for t in range(20)]
+    message = refused(tmp_path, "time_s,x_m,y_m,speed_mps\n" + "\n".join(rows))
+    assert "unknown_unit" in message
+    assert unit in message
+    as_stated = "\n".join(rows).replace(str(10 * ratio), "10")
+    assert read(tmp_path, f"time_s,x_m,y_m,speed_mps\n{as_stated}").notes == ()
+
+
+def test_zeros_of_a_device_without_speeds(tmp_path: Path) -> None:
+    rows = "\n".join(f"{t},{9 * t},0,0" for t in range(8))
+    track = read(tmp_path, f"time_s,x_m,y_m,speed_mps\n{rows}\n")
+    assert np.isnan(track.speed).all()
+    assert "All recorded speeds are 0" in track.notes[0]
+    at_rest = read(tmp_path, "time_s,x_m,y_m,speed_mps\n" + "\n".join(f"{t},1,2,0" for t in range(8)))
+    np.testing.assert_array_equal(at_rest.speed, np.zeros(8))
 
 
 def test_origin_on_earth_needs_places_on_earth(tmp_path: Path) -> None:

@@ -38,6 +38,7 @@ def build_track(
     negative = np.isfinite(speed) & (speed < 0.0)
     time, rounded = spread_times(recording.time - recording.time[0], place[:, :2])
     time = time - time[0]
+    speed, notes = _checked_speed(recording, np.where(negative, np.nan, speed), time, place[:, :2])
     solution = None if recording.solution is None else np.where(fix, recording.solution, "")
     flags = point_flags(
         time,
@@ -55,7 +56,7 @@ def build_track(
         name=recording.name,
         time=time,
         place=place,
-        speed=np.where(negative, np.nan, speed),
+        speed=speed,
         time_scale=recording.time_scale,
         frame=_frame(recording, at),
         velocity=velocity,
@@ -71,8 +72,59 @@ def build_track(
         speed_kind=recording.speed_kind,
         further_columns=recording.further_columns,
         left_out={words: count for words, count in recording.left_out.items() if count},
-        notes=recording.notes,
+        notes=(*recording.notes, *notes),
     )
+
+
+_PAIR: Final = (1.0, 2.0)
+"""Least and most seconds between two points whose speed is compared with the recorded one."""
+_MOVING: Final = 3.0
+"""m/s by places above which speeds are compared."""
+_FEWEST_PAIRS: Final = 5
+_OTHER_UNIT: Final = 2.1
+"""Minimum ratio of the recorded speed to that of the places in another unit: 2.2 mph or 3.6 km/h are 1 m/s.
+
+Seen from above a path on 45° is 1.4 times shorter, and so is an arc of 3 rad than its chord.
+"""
+_KINDS: Final = ("as the device gives it", "along the path")
+"""Kinds of speeds whose unit is not part of a binary format or a sentence."""
+_STRAIGHT: Final = 10.0
+"""Percentile of the ratios: on the straightest parts the chord is the path."""
+
+
+def _checked_speed(
+    recording: Recording, speed: FloatArray, time: FloatArray, place: FloatArray
+) -> tuple[FloatArray, tuple[str, ...]]:
+    """Speeds (n,) (m/s), and a note; NaN if a device that has no speed wrote zeros.
+
+    time: (n,) s. place: (n, 2) m.
+    Raises FieldDataError: the speeds of a format that states no unit do not fit the places and times.
+    """
+    known = np.flatnonzero(np.isfinite(place).all(axis=1) & np.isfinite(speed))
+    if not len(known):
+        return speed, ()
+    after = np.searchsorted(time[known], time[known] + _PAIR[0])
+    begin, end = known[after < len(known)], known[after[after < len(known)]]
+    begin, end = begin[time[end] - time[begin] <= _PAIR[1]], end[time[end] - time[begin] <= _PAIR[1]]
+    by_places = np.hypot(*(place[end] - place[begin]).T) / (time[end] - time[begin])
+    moving = by_places > _MOVING
+    if np.count_nonzero(moving) < _FEWEST_PAIRS:
+        return speed, ()
+    if not np.any(speed > 0.0):
+        return np.full(len(speed), np.nan), (
+            "All recorded speeds are 0, although the places move. They are estimated from the places.",
+        )
+    ratio = float(np.percentile((speed[begin] + speed[end])[moving] / 2.0 / by_places[moving], _STRAIGHT))
+    if ratio > _OTHER_UNIT and recording.speed_kind in _KINDS:
+        raise track_error(
+            "unknown_unit",
+            recording.name,
+            column="speed",
+            value=Message("{ratio:.2g} times the speed of the places", ratio=ratio),
+            allowed=Message("speeds in m/s, times in s"),
+            action=Message("Correct the unit of the speeds (km/h: 3.6, mph: 2.2) or of the times."),
+        )
+    return speed, ()
 
 
 def _fix(recording: Recording) -> BoolArray:

@@ -82,7 +82,10 @@ class _Column:
 
 @dataclass(eq=False)
 class _Table:
-    """Cells with the file's name and decimal mark, the columns that are read, and the rows with `nan` or `inf`."""
+    """Cells with the file's name and decimal mark, the columns that are read, and the rows with `nan` or `inf`.
+
+    hemispheres: places of the columns whose letters give the signs of latitude and longitude.
+    """
 
     cells: Cells
     name: str
@@ -90,12 +93,22 @@ class _Table:
     is_geodetic: bool
     columns: dict[str, _Column]
     used: set[str]
+    hemispheres: set[int]
     not_finite: BoolArray
 
     @classmethod
     def of(cls, cells: Cells, name: str) -> _Table:
         """Build a table with rows as long as its header."""
         place = f"row {cells.header_line}"
+        if sum(map(bool, cells.header)) == 1:
+            raise track_error(
+                "missing_column",
+                name,
+                place=place,
+                value=cells.header[0],
+                allowed=Message("headings separated by comma, semicolon or tab in the first row"),
+                action=Message("Remove lines above the headings, or export the file with one of these separators."),
+            )
         is_geodetic = _is_geodetic(cells.header, name, place)
         columns = _columns(cells.header, is_geodetic, name, place)
         width = len(cells.header)
@@ -105,12 +118,12 @@ class _Table:
         places = [column.place for column in columns.values()]
         mark = decimal_mark_of((row[place] for place in places for row in rows if row[place]), cells.separator)
         cells = dataclasses.replace(cells, rows=rows)
-        return cls(cells, name, mark, is_geodetic, columns, set(), np.zeros(len(rows), dtype=bool))
+        return cls(cells, name, mark, is_geodetic, columns, set(), set(), np.zeros(len(rows), dtype=bool))
 
     @property
     def further_columns(self) -> tuple[str, ...]:
         """Headings of the columns that were not used."""
-        used = {self.columns[name].place for name in self.used}
+        used = {self.columns[name].place for name in self.used} | self.hemispheres
         return tuple(heading for place, heading in enumerate(self.cells.header) if place not in used)
 
     def heading(self, column: str) -> str:
@@ -165,7 +178,19 @@ class _Table:
                 self.not_finite[place] = True
             else:
                 raise self._no_number(place, name, cells[place])
-        return values * self.columns[name].factor
+        return self._signed(name, values * self.columns[name].factor)
+
+    def _signed(self, name: str, values: FloatArray) -> FloatArray:
+        """Latitudes or longitudes (n,), negative in rows that a column of hemispheres names S or W."""
+        letters = _HEMISPHERES.get(name)
+        if letters is None:
+            return values
+        for place, heading in enumerate(self.cells.header):
+            cells = np.array([row[place].upper() for row in self.cells.rows])
+            if _HEMISPHERE.search(heading) and np.isin(cells, (*letters, "")).all() and np.any(cells != ""):
+                self.hemispheres.add(place)
+                return np.where(cells == letters[1], -np.abs(values), values)
+        return values
 
     def optional(self, name: str) -> FloatArray | None:
         return self.numbers(name) if name in self.columns else None
@@ -227,6 +252,9 @@ class _Table:
         )
 
 
+_HEMISPHERE: Final = re.compile(r"(?<![^\W_])(?:n[\W_]?s|e[\W_]?w)(?![^\W_])|hemi", re.IGNORECASE)
+"""Heading of a column with the letters of hemispheres: N/S, EW, Latitude hemisphere."""
+_HEMISPHERES: Final = {"lat": ("N", "S"), "lon": ("E", "W")}
 _METRES: Final = (
     dict.fromkeys(("", "m", "meter", "metres", "meters"), 1.0)
     | dict.fromkeys(("ft", "feet"), 0.3048)
