@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from skisnow._support.errors import ParameterError
-from skisnow.carving.equilibrium import carve
+from skisnow.carving.equilibrium import carve, differentiable_carve
 from skisnow.carving.outputs import At, output_growth
 from skisnow.carving.result import Equilibrium
 from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives, CarveRequest
@@ -241,6 +241,43 @@ def test_at_a_kink_both_sides_have_their_derivative() -> None:
     assert np.ptp(np.array(found.one_sided, float)) > 0.01
     elastic = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), load=800.0, edge_angle=0.5, unloading_ratio=1.0))
     assert elastic._beside("unloading_ratio", -1e-6, output) is None  # no snow is softer when it unloads
+
+
+FORMS: list[dict[str, Any]] = [{"moment_balance": "free", "moment": 20.0}, {"side_force_spread": "base-reaction"}]
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_each_form_of_a_carve_has_its_outputs_and_derivatives(form: dict[str, Any]) -> None:
+    """Those of `carve`; a known solution makes the search shorter if its mesh is the same."""
+    ski, case = read_ski("slalom"), {"edge_angle": 0.8, "load": 800.0, "unloading_ratio": 10.0, **form}
+    found, exact = carve(ski, snow(0.21, 0.52), **case), differentiable_carve(ski, snow(0.21, 0.52), **case)
+    assert exact is not None
+    assert found.edge_depth is not None
+    assert found.force_per_length is not None
+    radii = found.turn_radius_boot, found.turn_radius_chord, found.turn_radius_median
+    known = (*radii, 1e3 * found.edge_depth.max(), found.grip_utilisation)
+    assert [exact.output(name) for name in OUTPUTS[:5]] == pytest.approx(known, rel=1e-9)
+    assert exact.output(OUTPUTS[6]) == pytest.approx(found.force_per_length.max(), rel=1e-9)
+    assert exact.output(OUTPUTS[7]) == pytest.approx(found.contact_length, rel=1e-9)
+    reference, _ = differences(exact.request, exact.at.solution, "edge_angle_deg", math.degrees(0.8))
+    steeper = [exact.derivative(output, "edge_angle_deg") for output in OUTPUTS]
+    assert steeper == pytest.approx(reference, rel=1e-6)
+    searches = [
+        differentiable_carve(ski, snow(0.21, 0.52), **case, elements=elements, near=near)
+        for elements in (160, 80)
+        for near in (None, exact.at.solution)
+    ]
+    cold, warm, coarse, other = [0 if each is None else each.request.solution.iterations for each in searches]
+    assert 0 < warm < cold
+    assert 0 < coarse == other
+
+
+def test_outputs_that_do_not_exist() -> None:
+    """A ski that lies in the snow to its tip has no ends of contact, a flat ski no side force."""
+    drowned = derivatives(carve(read_ski("slalom"), snow(2e-3, 0.5), edge_angle=0.2, load=800.0, unloading_ratio=2.0))
+    flat = derivatives(carve(read_ski("slalom"), snow(0.2, 0.5), edge_angle=0.0, load=800.0, unloading_ratio=2.0))
+    missing = [[name for name in OUTPUTS if each.output(name) is None] for each in (drowned, flat)]
+    assert missing == [[OUTPUTS[1], OUTPUTS[2], OUTPUTS[7]], [*OUTPUTS[:3], OUTPUTS[4]]]
 
 
 def test_a_rigid_wedge_in_closed_form() -> None:

@@ -13,6 +13,8 @@ import pytest
 
 import skisnow
 from skisnow._support.errors import SkisnowError
+from skisnow.carving.answer import CarveAnswer, answer_dict
+from skisnow.carving.question import CarveQuestion
 from skisnow.cli import main
 from skisnow.cli.shell import json_schema
 from skisnow.ski.ski_file import keys_text
@@ -349,3 +351,8 @@ def test_intervals_of_the_snow_give_intervals_of_the_answer() -> None:
     exact = found.derivatives()
     (depth,) = exact.sensitivity("edge_depth_mm", ["snow.H_V_N_per_mm3"])
     assert exact.half_interval("edge_depth_mm", snow) == pytest.approx(0.02 * abs(depth.derivative), rel=1e-9)
+    question = CarveQuestion(ski="slalom", edge_angle_deg=45.0, load_N=800.0, unloading_ratio=10.0)
+    (radius,) = exact.sensitivity("turn_radius_boot_m", ["snow.H_V_N_per_mm3"])
+    answered = CarveAnswer(question, skisnow.read_ski("slalom"), snow, found, ())
+    (change,) = answer_dict(answered)["radius_changes_by_snow_m"]
+    assert change == pytest.approx(0.02 * radius.derivative, rel=1e-9)

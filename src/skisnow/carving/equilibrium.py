@@ -152,10 +152,8 @@ def carve(
     if laws is None or not (laws.shear is not None or laws.along_base_normal):
         require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
-    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
-    conditions = _under(laws, ski, conditions)._replace(by_reaction=side_force_spread == "base-reaction")
-    if moment_balance == "free":
-        conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
+    forms = side_force_bending, twist, side_force_spread, moment_balance
+    conditions = _under(laws, ski, _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms))
     find = solved if groove == "edge" else _following_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -196,10 +194,8 @@ def differentiable_carve(
     require_ranges(edge_angle, load, ratio, moment)
     require_strength(snow)
     model = clamped(ski, clamp_length, elements)
-    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), side_force_bending, twist)
-    conditions = conditions._replace(by_reaction=side_force_spread == "base-reaction")
-    if moment_balance == "free":
-        conditions = conditions._replace(pitch_of_force=math.cos(edge_angle), pitch_of_shear=math.sin(edge_angle))
+    forms = side_force_bending, twist, side_force_spread, moment_balance
+    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
     solution = solved(model, conditions, near=near if near is not None and len(near.u) == model.size else None)
     if not solution.converged:
         return None
@@ -288,7 +284,10 @@ def _conditions(
     unloading_ratio: float,
     side_force_bending: bool,
     twist: bool,
+    side_force_spread: SideForceSpread = "depth",
+    moment_balance: MomentBalance = "boot",
 ) -> Conditions:
+    free = moment_balance == "free"
     return Conditions(
         edge_angle=edge_angle,
         hardness=snow.snow_hardness,
@@ -302,9 +301,9 @@ def _conditions(
         bevel_width=ski.edge_width,
         side=ski.side_edge,
         radius=ski.edge_radius,
-        pitch_of_force=1.0,
-        pitch_of_shear=0.0,
-        by_reaction=False,
+        pitch_of_force=math.cos(edge_angle) if free else 1.0,
+        pitch_of_shear=math.sin(edge_angle) if free else 0.0,
+        by_reaction=side_force_spread == "base-reaction",
     )
 
 

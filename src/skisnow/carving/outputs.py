@@ -116,7 +116,8 @@ def _radius_over(
     line = EdgeLine(at.model, angle, at.solution)
     width, height, deflection, twist = sections = line.sections(x.ravel())
     y = line.across(*sections).reshape(x.shape)
-    if any(circle_radius(*zip(a, b, strict=True)) is None for a, b in zip(x.T, y.T, strict=True)):
+    turns = at.conditions.side_force != 0.0
+    if not turns or any(circle_radius(*zip(a, b, strict=True)) is None for a, b in zip(x.T, y.T, strict=True)):
         return None
     radius, by_x, by_y = _circle_gradient(x, y)
     by_x, by_y = weight * by_x, (weight * by_y).ravel()
