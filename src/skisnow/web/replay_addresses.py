@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial, wraps
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import quote
@@ -113,34 +114,39 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
     """Add the addresses of the replays of these runs."""
 
     def show(request: Request, run: str, ghost: str = "", track: str = "") -> Response:
-        try:
-            for name in (run, ghost) if ghost else (run,):
-                runs.folder_of(name)
-        except ParameterError as error:
-            return PlainTextResponse(str(error), 404)
+        for name in (run, ghost) if ghost else (run,):
+            runs.folder_of(name)
         language = language_of_request(request)
         return HTMLResponse(show_page(run, ghost or None, track, language, title=runs.title(run)))
 
     def data(request: Request, name: str, track: str = "") -> Response:
-        try:
-            content = replay_bytes(in_language(runs.replay(name, track), language_of_request(request)))
-        except ParameterError as error:
-            return PlainTextResponse(str(error), 404)
+        content = replay_bytes(in_language(runs.replay(name, track), language_of_request(request)))
         return Response(content, media_type="application/octet-stream", headers={"cache-control": "no-cache"})
 
     def model(name: str, time: float = 0.0, exaggeration: float = 1.0) -> Response:
-        try:
-            content = replay_model(runs.replay(name), time, exaggeration=_limit_exaggeration(exaggeration))
-        except ParameterError as error:
-            return PlainTextResponse(str(error), 404)
+        content = replay_model(runs.replay(name), time, exaggeration=_limit_exaggeration(exaggeration))
         return _model_file(content, f"{name}-{time:.2f}s")
 
     def moving_model(name: str, exaggeration: float = 1.0) -> Response:
-        try:
-            content = moving_replay_model(runs.replay(name), exaggeration=_limit_exaggeration(exaggeration))
-        except ParameterError as error:
-            return PlainTextResponse(str(error), 404)
+        content = moving_replay_model(runs.replay(name), exaggeration=_limit_exaggeration(exaggeration))
         return _model_file(content, name)
+
+    def first() -> Response:
+        headers = {"content-encoding": "gzip", "cache-control": "no-cache"}
+        return Response(FIRST_FILE.read_bytes(), media_type="application/octet-stream", headers=headers)
+
+    _add_route(app, SHOW, show)
+    _add_route(app, FIRST, first)
+    _add_route(app, f"{FILES}/{{name}}", program_file)
+    _add_route(app, f"{DATA}/{{name}}", data)
+    _add_route(app, f"{MODEL}/{{name}}.glb", model)
+    _add_route(app, f"{MOVING_MODEL}/{{name}}.glb", moving_model)
+    _add_tables(app, runs)
+
+
+def _add_tables(app: FastAPI, runs: RunFolders) -> None:
+    """Add the pages that compare runs or tracks, and the files of a track."""
+    tracks = TrackFolders(runs.folder)
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
         def arguments() -> tuple[Path | str, ...]:
@@ -151,15 +157,15 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
 
     def turns(request: Request, track: str, other: str = "") -> Response:
         def arguments() -> tuple[Path | str, ...]:
-            files = map(TrackFolders(runs.folder).file, (track, other) if other else (track,))
+            files = map(tracks.file, (track, other) if other else (track,))
             named = [part for path, placing in files for part in (path, placing.called)]
             return *named, language_of_request(request)
 
-        return _confined_page(request, _page_of_tracks if other else _page_of_track, arguments)
+        return _confined_page(request, partial(page_of_tracks if other else page_of_track, back=LIST), arguments)
 
     def track_file(request: Request, track: str, file: str) -> Response:
         def arguments() -> tuple[Path, str, str]:
-            path, placing = TrackFolders(runs.folder).file(track)
+            path, placing = tracks.file(track)
             return path, placing.called, file
 
         if file not in TRACK_FILES:
@@ -168,23 +174,22 @@ def add_addresses(app: FastAPI, runs: RunFolders) -> None:
             request, file_of_track, arguments, lambda text: _download(text, f"{track}-{file}", TRACK_FILES[file])
         )
 
-    def first() -> Response:
-        headers = {"content-encoding": "gzip", "cache-control": "no-cache"}
-        return Response(FIRST_FILE.read_bytes(), media_type="application/octet-stream", headers=headers)
+    _add_route(app, GATES, gates)
+    _add_route(app, TURNS, turns)
+    _add_route(app, f"{TURNS}/{{file}}", track_file)
 
-    answers = (
-        (SHOW, show),
-        (GATES, gates),
-        (TURNS, turns),
-        (f"{TURNS}/{{file}}", track_file),
-        (FIRST, first),
-        (f"{FILES}/{{name}}", program_file),
-    )
-    for address, answer in answers:
-        app.add_api_route(address, answer, include_in_schema=False, response_model=None)
-    models = ((f"{MODEL}/{{name}}.glb", model), (f"{MOVING_MODEL}/{{name}}.glb", moving_model))
-    for address, of_run in ((f"{DATA}/{{name}}", data), *models):
-        app.add_api_route(address, of_run, include_in_schema=False, response_model=None)
+
+def _add_route(app: FastAPI, address: str, answer: Callable[..., Response]) -> None:
+    """Add the answer of an address; unknown runs and tracks are not found."""
+
+    @wraps(answer)
+    def answered(*arguments: Any, **options: Any) -> Response:
+        try:
+            return answer(*arguments, **options)
+        except ParameterError as error:
+            return PlainTextResponse(str(error), 404)
+
+    app.add_api_route(address, answered, include_in_schema=False, response_model=None)
 
 
 def _confined_page(
@@ -204,14 +209,6 @@ def _confined_page(
 
 def _page_of_folders(folder: Path, other: Path, name: str, other_name: str, language: str) -> str:
     return page_of_folders(folder, other, language, names=(name, other_name), back=LIST)
-
-
-def _page_of_tracks(path: Path, name: str, other: Path, other_name: str, language: str) -> str:
-    return page_of_tracks(path, name, other, other_name, language, back=LIST)
-
-
-def _page_of_track(path: Path, name: str, language: str) -> str:
-    return page_of_track(path, name, language, back=LIST)
 
 
 def _limit_exaggeration(exaggeration: float) -> float:
