@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,19 +9,11 @@ from openpyxl import Workbook
 from openpyxl.cell.rich_text import CellRichText, TextBlock
 from openpyxl.cell.text import InlineFont
 from openpyxl.styles import Font
-from tests.coded import raises
 
-from skisnow._support.errors import OutputError, ParameterError
-from skisnow.campaign import read_campaign
 from skisnow.campaign.importing import (
     Answers,
     Proposal,
     propose,
-    read_template,
-    save_template,
-    saved_templates,
-    undo_import,
-    write_import,
 )
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
@@ -442,77 +433,6 @@ def test_each_table_of_a_sheet_has_the_site_above_it() -> None:
     assert campaign.penetration.site == ("A", "B")
 
 
-PAIR = ["Last [kg]", "Tiefe [mm]"]
-PAIRS: list[list[Any]] = [PAIR * 2, [10, 0.63, 10, 0.72], [50, 1.41, 50, 1.59]]
-ROWS = [["1", 30, 10, 0.63], ["1", 30, 50, 1.41], ["2", 45, 10, 0.72], ["2", 45, 50, 1.59]]
-RIGHT = [
-    # series in neighbouring columns
-    ([["Hang oben"], ["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel: 45 °"], *PAIRS], {}),
-    ([["Versuch 1, Kantwinkel 30°", None, "Versuch 2, Kantwinkel 45°"], *PAIRS], {}),
-    ([["Versuch", 1, None, 2], ["Kantwinkel [°]", 30.0, None, 45.0], [None, *PAIR * 2],
-        [None, *PAIRS[1]], [None, *PAIRS[2]]], {}),
-    ([["Hang oben"], [1, None, 2], [30, None, 45], *PAIRS], {
-        "column": {"Hang oben:2": "experiment", "Hang oben:3": "edge_angle_deg"}, "unit": {"Hang oben:3": "°"}}),
-    ([["Versuch", 1, 2], ["Kantwinkel [°]", 30, 45], ["Last [kg]", "Tiefe [mm]", "Tiefe [mm]"], [10, 0.63, 0.72],
-        [50, 1.41, 1.59]], {}),
-    ([["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel 45°"], [*PAIR, "Last [N]", "Tiefe [cm]"],
-        [10, 0.63, 10 * G, 0.072], [50, 1.41, 50 * G, 0.159]], {}),
-    ([["Versuch", "Kantwinkel [°]", *PAIR] * 2, [1, 30, 10, 0.63, 2, 45, 10, 0.72], [1, 30, 50, 1.41, 2, 45, 50, 1.59]],
-        {}),
-    # headings on two rows
-    ([["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel [°]", "[kg]", "tiefe [mm]"], *ROWS], {}),
-    ([["Versuch", "Kant-", "Last", "Eindring-"], ["Nr.", "winkel", None, "tiefe"], [None, "°", "kg", "mm"], *ROWS], {}),
-    ([["Test", "Edge", "Load", "Penetration"], ["no.", "angle [°]", "[kg]", "depth [mm]"], *ROWS], {}),
-    ([[None, None, "Last"], ["Versuch", "Kantwinkel [°]", "[kg]", "Tiefe [mm]"], *ROWS], {}),
-    ([["Versuch", "Kantwinkel", "Last", "Tiefe"], [None, None, "in kg", "in mm"], *ROWS],
-        {"unit": {"Kantwinkel": "°"}}),
-]  # fmt: skip
-ASKED = [
-    [["Hang oben"], *PAIRS],
-    [["Hang oben"], ["A", None, "B"], [30, None, 45], *PAIRS],
-    [["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°"], *PAIRS],
-    [["Versuch 1", None, "Versuch 2"], ["Kantwinkel", 30, "Kantwinkel 45°"], *PAIRS],
-    [["Versuch 1", None, "Versuch 2"], ["Kantwinkel 30°", None, "Kantwinkel 45°"], [*PAIR, *PAIR[::-1]], *PAIRS[1:]],
-    [["Versuch", "Kantwinkel [°]", *PAIR, "Tiefe [mm]"], [1, 30, 10, 0.63, 0.72], [1, 30, 50, 1.41, 1.59]],
-    [["Versuch", "Kant-", "Last", "Nach-"], ["Nr.", "winkel [°]", "[kg]", "tiefe [mm]"], *ROWS],
-    [[None, None, None, "Nach-"], ["Versuch", "Kantwinkel [°]", "Last [kg]", "tiefe [mm]"], *ROWS],
-    [[None, None, "Auflast", "Kegel"], ["Versuch", "Kantwinkel [°]", "Last [kg]", "Tiefe [mm]"], *ROWS],
-    [["Versuch", "Kantwinkel", "Last", None, "Tiefe"], ["Nr.", "°", "Masse [kg]", "Kraft [N]", "mm"],
-        ["1", 30, 10, 98.1, 0.63]],
-    [["Versuch", "Kantwinkel", "Last", "Tiefe"], ["A", "30°", "100 N", "0,5 mm"], ["A", "30°", "200 N", "0,9 mm"]],
-]  # fmt: skip
-
-
-def _book(rows: list[list[Any]]) -> bytes:
-    book = Workbook()
-    sheet = book.active
-    sheet.title = "Hang oben"
-    for row in rows:
-        sheet.append(row)
-    book.create_sheet("Notizen").append(["Skistück 200 x 62 mm"])
-    return bytes_of(book)
-
-
-@pytest.mark.parametrize(("rows", "answers"), RIGHT)
-def test_series_side_by_side_and_headings_on_two_rows(
-    rows: list[list[Any]], answers: dict[str, dict[str, str]]
-) -> None:
-    proposal = propose(FILE, _book(rows), Answers(**{"site": {"Hang oben": "Hang oben"}, **answers}))
-    assert not proposal.problems, [str(problem) for problem in proposal.problems]
-    campaign = campaign_of_files(proposal.files)
-    assert campaign.penetration is not None
-    assert campaign.penetration.load.tolist() == pytest.approx([10 * G, 50 * G] * 2)
-    expected = [hardness(50, 1.41, 30), hardness(50, 1.59, 45)]
-    assert (experiment_hardness(campaign) / 1e9).tolist() == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize("rows", ASKED)
-def test_unclear_series_and_headings_are_errors_with_an_option(rows: list[list[Any]]) -> None:
-    proposal = propose(FILE, _book(rows), Answers(site={"Hang oben": "Hang oben"}))
-    assert not proposal.files
-    assert any(f"--{question.option}" in str(question.problem) for question in proposal.questions)
-
-
 def test_csv_with_titles_is_read_with_its_separator() -> None:
     text = (
         "Messung, Hang oben, 14.02.2026, Skistück 200 x 62 mm\n\nVersuch;Kantwinkel;Last;Tiefe\n;°;kg;mm\n"
@@ -526,51 +446,6 @@ def test_csv_with_titles_is_read_with_its_separator() -> None:
     assert not propose("Hang oben.csv", split.encode()).files
     with_texts = split.replace("Tiefe\n", "Tiefe,Bemerkung,Wetter\n")
     assert "split_number" in {problem.code for problem in propose("Hang oben.csv", with_texts.encode()).problems}
-
-
-def test_written_campaign_repeats_the_mapping_and_is_undone(tmp_path: Path) -> None:
-    book = everyday()
-    book["Hang oben"]["C6"] = None
-    data = bytes_of(book)
-    write_import(propose(FILE, data, Answers(unit={"Last": "kg"})).files, tmp_path / "a")
-    assert not [problem for problem in read_campaign(tmp_path / "a").problems if problem.needs_action]
-    assert (tmp_path / "a/original" / FILE).read_bytes() == data
-    template = read_template(tmp_path / "a")
-    require_right(propose(FILE, data, template))
-    book["Hang oben"]["C6"] = "N"
-    assert "other_unit" in {problem.code for problem in propose(FILE, bytes_of(book), template).problems}
-    with raises(OutputError, "not_empty"):
-        write_import({}, tmp_path / "a")
-    undo_import(tmp_path / "a")
-    assert not (tmp_path / "a").exists()
-
-
-def test_changed_files_are_not_undone(tmp_path: Path) -> None:
-    write_import(propose(FILE, bytes_of(everyday())).files, tmp_path / "a")
-    (tmp_path / "a/shear.csv").write_text("changed")
-    with raises(OutputError, "changed_since", files=["shear.csv"]):
-        undo_import(tmp_path / "a")
-    assert (tmp_path / "a/penetration.csv").exists()
-
-
-def test_a_template_has_a_name(tmp_path: Path) -> None:
-    """Saved once, it answers the next file; other answers under its name are an error, as names of other files are."""
-    book = everyday()
-    book["Hang oben"]["C6"] = None
-    answers = Answers.of_options({"unit": ["Last=kg"]})
-    campaign = propose(FILE, bytes_of(book), answers).files["campaign.toml"]
-    save_template("Gletscher 2026", campaign, folder=tmp_path)
-    save_template("Gletscher 2026", campaign, folder=tmp_path)
-    assert list(saved_templates(tmp_path)) == ["Gletscher 2026"]
-    require_right(propose(FILE, bytes_of(book), read_template("Gletscher 2026", named=tmp_path)))
-    other = propose(FILE, bytes_of(book), answers.with_("column", "Bemerkung", "-")).files["campaign.toml"]
-    with raises(ParameterError, "name_in_use", name="Gletscher 2026"):
-        save_template("Gletscher 2026", other, folder=tmp_path)
-    for name in ("../other", "", ".hidden", "a/b", "a" * 61):
-        with raises(ParameterError, "bad_name", name=name):
-            save_template(name, campaign, folder=tmp_path)
-    with raises(ParameterError, "no_template", name="Gletscher", saved=["Gletscher 2026"]):
-        read_template("Gletscher", named=tmp_path)
 
 
 def test_force_at_a_lever_arm_is_no_penetration_test() -> None:
