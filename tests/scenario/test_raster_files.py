@@ -64,6 +64,7 @@ def test_places_are_the_middles_of_cells_and_rows_begin_in_the_north(tmp_path: P
         header() + "5 6\n7 1\n\n2 3\n",
         header().replace("\n", " ") + VALUES,
         header(cellsize=None, dx="2.0", dy="2.0") + VALUES,
+        header(xllcenter="101") + VALUES,
         header(cellsize=None, DX="2", DY="2", NODATA_value=None, nodata="-1") + VALUES,
         header().replace("\n", "\r\n") + VALUES.replace("\n", "\r"),
     ],
@@ -71,6 +72,7 @@ def test_places_are_the_middles_of_cells_and_rows_begin_in_the_north(tmp_path: P
 def test_values_count_and_not_lines(tmp_path: Path, text: str) -> None:
     terrain = read_terrain(written(tmp_path, text))
     assert (terrain.x.tolist(), terrain.y.tolist()) == ([101.0, 103.0, 105.0], [51.0, 53.0])
+    assert read_terrain(written(tmp_path, text, "heights.txt")).height.tolist() == terrain.height.tolist()
     assert terrain.height.tolist() == [[1.0, 5.0], [2.0, 6.0], [3.0, 7.0]]
 
 
@@ -108,6 +110,8 @@ def test_cells_need_not_be_square(tmp_path: Path) -> None:
         (header(cellsize=None, dx="2") + VALUES, "invalid"),
         (header(dx="3", dy="3") + VALUES, "invalid"),
         (header(cellsize="0") + VALUES, "invalid"),
+        ("cellsize 3\n" + header() + VALUES, coded("repeated", key="cellsize")),
+        (header(xllcenter="999") + VALUES, "invalid"),
         (header(cellsize="inf") + VALUES, "invalid"),
         (header(cellsize="1e300") + VALUES, coded("out_of_range", size=1e300)),
         (header(xllcorner=None) + VALUES, "invalid"),
@@ -178,8 +182,12 @@ def test_units_of_a_map_system(text: str, in_degrees: bool, unit: float, height_
 
 def test_the_prj_file_gives_the_units_of_an_esri_grid(tmp_path: Path) -> None:
     path = written(tmp_path, header(xllcorner="500000", yllcorner="5200000", cellsize="20") + VALUES)
-    written(tmp_path, FEET, "heights.prj")
-    assert read_terrain(path).x == pytest.approx(np.array([500010.0, 500030.0, 500050.0]) * US_FOOT)
+    written(tmp_path, FEET, "heights.PRJ")
+    with pytest.raises(ParameterError, match="unit of the heights is missing"):
+        read_terrain(path)
+    (tmp_path / "heights.PRJ").unlink()
+    written(tmp_path, "Projection STATEPLANE\nUnits FEET\nZunits METERS\n", "heights.prj")
+    assert read_terrain(path).x == pytest.approx(np.array([500010.0, 500030.0, 500050.0]) * 0.3048)
     assert read_terrain(path).height[2].tolist() == [3.0, 7.0]
     written(tmp_path, HEIGHT_FEET, "heights.prj")
     assert read_terrain(path).height[2].tolist() == pytest.approx([3.0 * US_FOOT, 7.0 * US_FOOT])

@@ -92,9 +92,17 @@ def _heights(path: str | Path, source: Any) -> FloatArray:
 
 
 def _height_unit(path: str | Path, name: str | None, system: MapSystem | None) -> float:
-    """Length (m) of one unit of the heights."""
+    """Length (m) of one unit of the heights.
+
+    Raises ParameterError: an unknown unit, two units, or none where x and y are in another unit than m.
+    """
     vertical = None if system is None else system.height_unit
     if not (name or "").strip():
+        if vertical is None and system is not None and not system.in_degrees and system.unit != 1.0:
+            raise ParameterError(
+                "{path}: One unit of x and y is {unit:.7g} m, and the unit of the heights is missing. Fix: state it, "
+                "such as by gdal_edit -units ft, or by a line Zunits METERS in a .prj file."
+            ).tag("missing", path=path, unit=system.unit)
         return 1.0 if vertical is None else vertical
     unit = length_unit(str(name))
     if unit is None:
@@ -120,6 +128,8 @@ def _require_north_up(path: str | Path, transform: Any, system: MapSystem | None
         )
 
 
+ROUNDED: Final = 0.01
+"""Share of the spacing by which a place may lie off its even place: it was written rounded."""
 MOST_BYTES: Final = 1 << 28
 _MOST_BYTES_OF_SYSTEM: Final = 1 << 20
 _WORDS: Final = (
@@ -143,14 +153,15 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     counts = int(header["ncols"]), int(header["nrows"])
     steps = _cell(path, header, "dx"), _cell(path, header, "dy")
     west, south = (_lower_left(path, header, axis, size) for axis, size in zip("xy", steps, strict=True))
-    file = Path(path).with_suffix(".prj")
-    system = map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM)) if is_file(file) else None
+    files = (Path(path).with_suffix(suffix) for suffix in (".prj", ".PRJ"))
+    file = next(filter(is_file, files), None)
+    system = None if file is None else map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM))
     raster = Raster(
         path=path,
         values=_values(path, text, first, counts, header.get("nodata_value", header.get("nodata"))),
         first=(west, south + (counts[1] - 1) * steps[1]),
         step=(steps[0], -steps[1]),
-        height_unit=1.0 if system is None or system.height_unit is None else system.height_unit,
+        height_unit=_height_unit(path, None, system),
         system=system,
         where=lambda row, at: _where(text, first, row * counts[0] + at),
     )
@@ -166,8 +177,14 @@ def _header(path: str | Path, text: str) -> tuple[dict[str, float], int]:
     header: dict[str, float] = {}
     at = 0
     while (entry := _ENTRY.match(text, at)) and entry[1].lower() in _WORDS:
+        word = entry[1].lower()
+        if word in header:
+            line = text.count("\n", 0, entry.start(1)) + 1
+            raise ParameterError("{path}, line {line}: {key} is there twice. Remove one of them.").tag(
+                "repeated", path=path, line=line, key=entry[1]
+            )
         try:
-            header[entry[1].lower()] = float(entry[2])
+            header[word] = float(entry[2])
         except ValueError:
             line = text.count("\n", 0, entry.start(2)) + 1
             raise ParameterError(
@@ -196,6 +213,8 @@ def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: 
     if corner is None and middle is None:
         _refuse(path, f"The header has no {axis}llcorner and no {axis}llcenter. Add the one that the grid begins with")
     corner_place = middle if middle is not None else (corner or 0.0) + size / 2.0
+    if corner is not None and abs(corner + size / 2.0 - corner_place) > ROUNDED * size:
+        _refuse(path, f"{axis}llcorner is {corner:.10g}, but {axis}llcenter is {middle:.10g}. Remove one of them")
     if not math.isfinite(corner_place):
         _refuse(path, f"{axis} of the lower left is {corner_place}. Allowed: a finite number in m")
     return corner_place
@@ -250,9 +269,6 @@ def _where(text: str, first: int, cell: int) -> str:
         cell -= len(words)
     raise AssertionError(cell)
 
-
-ROUNDED: Final = 0.01
-"""Share of the spacing by which a place may lie off its even place: it was written rounded."""
 
 SPARSE: Final = 10
 """Places for each row beyond which rows lie on no grid at all."""

@@ -14,6 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import Facts, Shown, amount, ends
+from .._support.user_files import is_file
 from ..geometry import surfaces
 from ..geometry.surfaces import Grid, smoothed
 from ..parameters import Allowed, Condition, Label, Quantity, Word, require_declared
@@ -146,15 +147,16 @@ def _require_no_cliff(surface: Grid) -> None:
         if steepest[i] > math.tan(math.radians(STEEPEST_DEG)):
             j, degrees = int(np.argmax(rows[i])), math.degrees(math.atan(steepest[i]))
             raise ParameterError(
-                "the grid has a cliff of {degrees:.3g} degrees at x = {x:g} m, y = {y:g} m; at most {steepest_deg:g} "
-                "degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over more metres, or "
-                "cut out a part without it"
+                "the grid has a cliff of {degrees:.3g} degrees at x = {x:.10g} m, y = {y:.10g} m; at most "
+                "{steepest_deg:g} degrees are allowed, a ski cannot follow more. Correct its heights, smooth it over "
+                "more metres, or cut out a part without it"
             ).tag("out_of_range", degrees=degrees, x=x[i], y=y[j], steepest_deg=STEEPEST_DEG)
 
 
 HEIGHT: Final = "z_m"
 _ACTION: Final = Message(
-    "Write one row for each place of an even grid, with a decimal point, in m, under a first line x_m,y_m,z_m."
+    "Write one row for each place of an even grid, with a decimal point, in m, under a first line x_m,y_m,z_m; or an "
+    "ESRI ASCII grid (.asc) or a GeoTIFF (.tif)."
 )
 
 
@@ -164,8 +166,8 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
     Parameters
     ----------
     path
-        ``.asc`` or ``.agr``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF, with the heights in the first band. Any
-        other: CSV with the columns ``x_m``, ``y_m``, ``z_m``, rows in any order.
+        ``.asc``, ``.agr``, or a file that begins with ``ncols``: ESRI ASCII grid. ``.tif`` or ``.tiff``: GeoTIFF, with
+        the heights in the first band. Any other: CSV with the columns ``x_m``, ``y_m``, ``z_m``, rows in any order.
     smoothing, origin_x, origin_y
         As of `Terrain` (m).
 
@@ -191,6 +193,10 @@ def _placed(path: Path) -> PlacedValues:
         return read_esri_ascii(path, column=HEIGHT)
     if kind in (".tif", ".tiff"):
         return read_geotiff(path, column=HEIGHT)
+    if is_file(path):
+        with path.open("rb") as file:
+            if file.read(64).lstrip().lower().startswith(b"ncols"):
+                return read_esri_ascii(path, column=HEIGHT)
     return read_grid_table(path, (HEIGHT,), action=_ACTION)
 
 
