@@ -293,3 +293,8 @@ def test_points_without_a_place_at_the_ends(tmp_path: Path) -> None:
     assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=UTC)
     assert list(track.left_out.values()) == [60, 1]
     np.testing.assert_array_equal(track.time, [0.0, 1.0, 3.0])
+
+
+def test_fit_records_without_a_date_are_counted(tmp_path: Path) -> None:
+    record = {name: value for name, value in RECORDS[0].items() if name != "timestamp"}
+    assert "1 records without a date" in refused(tmp_path, fit_file([record]), "a.fit")

@@ -174,6 +174,7 @@ def _require_points(recording: Recording) -> None:
         raise track_error(
             "empty_file",
             recording.name,
+            value=", ".join(f"{count} {words}" for words, count in recording.left_out.items() if count) or None,
             allowed=Message("at least one point"),
             action=Message("The file has no point; was anything recorded?"),
         )
