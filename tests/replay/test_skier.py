@@ -8,7 +8,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from skisnow._support.units import DEGREE
+from skisnow.cli.simulate import _write_joints
 from skisnow.geometry.vectors import axes_of
+from skisnow.interop.opensim import read_motion
 from skisnow.replay import (
     Replay,
     moving_replay_model,
@@ -263,3 +265,42 @@ def test_meshes_are_closed_and_look_outward(replay: Replay) -> None:
         volumes.append(float(np.einsum("ta,ta->t", a, np.cross(b, c)).sum()) / 6.0)
     assert min(volumes) > 0.0
     assert 0.05 < sum(volumes) < 0.11
+
+
+def test_joint_angles_for_opensim_lead_to_the_joints_and_boots(tmp_path: Path) -> None:
+    """From the pelvis down by OpenSim's order of rotations; x ahead, y up, z to the right."""
+    run = run_of_skier()
+    _write_joints(run, tmp_path / "turn.sto")
+    table = read_motion(tmp_path / "turn_joints.mot")
+    assert table.in_degrees
+    angles, replay = table.columns, replay_of_run(run)
+    assert replay.skier is not None
+    assert replay.skis.boots is not None
+
+    def turn(order: str, *names: str, sign: float = 1.0) -> Rotation:
+        senses = np.array([1.0, sign, sign])[: len(names)]
+        return Rotation.from_euler(order, np.stack([angles[name] for name in names], axis=1) * senses, degrees=True)
+
+    def down(rotation: Rotation, length: float) -> np.ndarray:
+        return np.asarray(rotation.apply([0.0, -length * HEIGHT, 0.0]))
+
+    body = Rotation.from_quat(np.roll(replay.attitude, -1, axis=1))
+    joints = {
+        name: (replay.place + body.apply(replay.skier.joints[:, k]))[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
+        for k, name in enumerate(JOINTS)
+    }
+    place = np.stack([angles[f"pelvis_t{axis}"] for axis in "xyz"], axis=1)
+    assert np.allclose(place, joints["pelvis"], atol=1e-9)
+    pelvis = turn("ZXY", "pelvis_tilt", "pelvis_list", "pelvis_rotation")
+    for k, (side, end, sign) in enumerate((("left", "_l", -1.0), ("right", "_r", 1.0))):
+        thigh = pelvis * turn("ZXY", f"hip_flexion{end}", f"hip_adduction{end}", f"hip_rotation{end}", sign=sign)
+        shank = thigh * turn("Z", f"knee_angle{end}").inv()
+        foot = shank * turn("ZX", f"ankle_angle{end}", f"subtalar_angle{end}", sign=sign)
+        knee = joints[f"{side} hip"] + down(thigh, THIGH.length)
+        assert np.allclose(knee, joints[f"{side} knee"], atol=1e-9)
+        assert np.allclose(knee + down(shank, SHANK.length), joints[f"{side} ankle"], atol=1e-9)
+        boot = Rotation.from_quat(np.roll(replay.skis.boots.attitude[:, k], -1, axis=1))
+        sole = boot.apply([0.0, 0.0, 1.0])[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
+        assert np.allclose(foot.apply([0.0, 1.0, 0.0]), sole, atol=1e-9)
+        assert (angles[f"knee_angle{end}"] > 10.0).all()
+        assert (angles[f"hip_flexion{end}"] > 10.0).all()

@@ -135,8 +135,21 @@ def _tell(
 
         write_boots(result, options.boots_out)
         print(f"Boots: {options.boots_out}", file=sys.stderr)
+        if result.scenario.skier is not None and options.boots_out.suffix.lower() != ".csv":
+            _write_joints(result, options.boots_out)
     if options.out is not None:
         _write(options, result, summary, replay_title=scenario_input.title if options.replay else None)
+
+
+def _write_joints(run: Run, boots: Path) -> None:
+    """Write the joint angles of a run's skier next to a table of its boots, as NAME_joints.mot."""
+    from ..interop.opensim import MotionTable, write_motion
+    from ..replay import joint_columns, replay_of_run
+
+    joints = boots.with_name(f"{boots.stem}_joints.mot")
+    replay = replay_of_run(run)
+    write_motion(MotionTable(replay.time, joint_columns(replay), in_degrees=True, name=joints.stem), joints)
+    print(f"Joints: {joints}", file=sys.stderr)
 
 
 def _write(options: argparse.Namespace, result: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:

@@ -6,10 +6,12 @@ from .model import moving_replay_model, replay_model, write_moving_replay_model,
 from .page import replay_page, write_replay
 from .replay import Replay, ReplayTrack, measured_track, ski_edges
 from .run_file import replay_of_file
+from .skier import joint_columns
 
 __all__ = [
     "Replay",
     "ReplayTrack",
+    "joint_columns",
     "measured_track",
     "moving_replay_model",
     "replay_bytes",

@@ -287,6 +287,48 @@ def part_poses(skier: ReplaySkier, part: Part) -> tuple[FloatArray, FloatArray]:
     return start, quaternions(np.stack([np.cross(y, z), y, z], axis=2))
 
 
+_TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""From axes ahead, left and up to those of OpenSim: ahead, up and to the right."""
+
+
+def joint_columns(replay: Replay) -> dict[str, FloatArray]:
+    """Coordinates of OpenSim's model of Rajagopal and others (2016) by name, (n,) each: pelvis (m), angles (degrees).
+
+    The pelvis has the axes of the body and is the middle of the hips. Knees flex to positive angles. The rotation of a
+    foot about its shank, which the model's joints do not have, is left out.
+    """
+    skier, boots = replay.skier, replay.skis.boots
+    assert skier is not None
+    assert boots is not None
+    body = _turn(replay.attitude).as_matrix()
+    joints = dict(zip(JOINTS, np.moveaxis(skier.joints @ _TO_OPENSIM.T, 1, 0), strict=True))
+    place = (replay.place + np.einsum("nab,nb->na", body, skier.joints[:, JOINTS.index("pelvis")])) @ _TO_OPENSIM.T
+    turns = _TO_OPENSIM @ body @ _TO_OPENSIM.T
+    columns = dict(zip(("pelvis_tilt", "pelvis_list", "pelvis_rotation"), _cardan(turns), strict=True))
+    columns |= {f"pelvis_t{axis}": place[:, i] for i, axis in enumerate("xyz")}
+    columns["lumbar_extension"] = np.full(len(place), -BENT / DEGREE)
+    for k, (side, letter, sense) in enumerate((("left", "l", -1.0), ("right", "r", 1.0))):
+        hip, knee, ankle = (joints[f"{side} {name}"] for name in ("hip", "knee", "ankle"))
+        thigh, shank = _unit(hip - knee), _unit(knee - ankle)
+        axis = _unit(np.cross(shank, thigh))
+        upper, lower = (np.stack([np.cross(up, axis), up, axis], axis=-1) for up in (thigh, shank))
+        foot = _TO_OPENSIM @ _turn(boots.attitude[:, k]).as_matrix() @ _TO_OPENSIM.T
+        flexion, adduction, rotation = _cardan(upper)
+        dorsal, inversion, _ = _cardan(np.swapaxes(turns @ lower, 1, 2) @ foot)
+        bend = np.arctan2(np.linalg.norm(np.cross(shank, thigh), axis=1), _dot(shank, thigh)[:, 0]) / DEGREE
+        columns |= {
+            f"hip_flexion_{letter}": flexion, f"hip_adduction_{letter}": sense * adduction,
+            f"hip_rotation_{letter}": sense * rotation, f"knee_angle_{letter}": bend,
+            f"ankle_angle_{letter}": dorsal, f"subtalar_angle_{letter}": sense * inversion,
+        }  # fmt: skip
+    return columns
+
+
+def _cardan(matrices: FloatArray) -> FloatArray:
+    """Angles (3, n) about z, the turned x and the turned y (degrees)."""
+    return np.asarray(Rotation.from_matrix(matrices).as_euler("ZXY", degrees=True).T)
+
+
 def skier_mesh(replay: Replay, frame: int) -> Mesh:
     """Mesh of the skier of a replay at a moment, in space."""
     skier, boots = replay.skier, replay.skis.boots
@@ -306,4 +348,4 @@ def skier_mesh(replay: Replay, frame: int) -> Mesh:
 
 
 def _turn(quaternion: FloatArray) -> Rotation:
-    return Rotation.from_quat(np.roll(quaternion, -1))
+    return Rotation.from_quat(np.roll(quaternion, -1, axis=-1))
