@@ -26,7 +26,7 @@ from ..turns.former import ROOT, build
 from .twin import SCENARIO, Case, twin
 
 COMMIT: Final = "80cd8a90"
-"""The commit that identifications are compared with."""
+"""Former commit, with central differences and two last steps."""
 DURATION: Final = 4.0
 """Simulated time (s) of a track, 10 Hz: 35 m."""
 WORSE: Final = 1e-3

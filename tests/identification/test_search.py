@@ -55,11 +55,11 @@ def test_a_jacobian_of_a_search_is_asked_at_once() -> None:
 
     def residuals(many: Places) -> list[np.ndarray | None]:
         asked.append(len(many))
-        return [np.concatenate([each - 0.3, [each[0] * each[1]]]) for each in many]
+        return [100.0 * np.concatenate([each - 0.3, [each[0] * each[1]]]) for each in many]
 
-    Search(residuals, -FAR, FAR, replace(SearchOptions(), candidates=2)).run(np.zeros(2))
+    Search(residuals, -FAR, FAR, replace(SearchOptions(), accuracy_is_stated=True)).run(np.zeros(2))
     assert asked[0] == 3  # the start with one-sided differences
-    assert set(asked[1:]) <= {2, 4}  # trial steps, central differences
+    assert set(asked[1:]) == {1, 2}  # trial steps, one-sided differences
 
 
 def test_differences_are_taken_over_a_standard_error() -> None:
@@ -70,9 +70,7 @@ def test_differences_are_taken_over_a_standard_error() -> None:
         asked.append(many)
         return [np.array([40.0 * (a - 0.3), 300.0 * (b - 0.2)]) for a, b in many]
 
-    options = replace(
-        SearchOptions(), accuracy_is_stated=True, keeps_jacobian=0.0, smallest_step=0.01, largest_step=0.05
-    )
+    options = replace(SearchOptions(), accuracy_is_stated=True, keeps_jacobian=0.0, smallest_step=0.01, central=True)
     Search(residuals, -FAR, FAR, options).run(np.zeros(2))
     central = [many for many in asked[1:] if len(many) == 4][-1]
     assert (central[0] - central[1]) / 2.0 == pytest.approx([0.025, 0.0])
@@ -107,15 +105,79 @@ def test_places_without_residuals_are_avoided() -> None:
     assert Search(lambda many: [None for _ in many], -FAR[:1], FAR[:1], CLOSED_FORM_SEARCH).run(np.zeros(1)) is None
 
 
-def test_the_last_steps_go_with_other_residuals() -> None:
-    """The quick ones miss by 0.1; the Jacobian is the same."""
-    search = Search(
-        lambda many: [each - 0.4 for each in many], -FAR, FAR, replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True)
-    )
-    found = search.run(np.zeros(2))
+def bent(many: Places, target: float = 0.4) -> list[np.ndarray | None]:
+    """Residuals of three curved curves of 20 points, 0 at a = b = c = target."""
+    t = np.linspace(0.1, 1.0, 20)
+    aim = np.exp(target * t) + target * t**2
+    return [200.0 * (np.exp(a * t) + 0.5 * (b + c) * t**2 - aim + 0.1 * (b - c) * t**3) for a, b, c in many]
+
+
+def test_broydens_update_replaces_jacobians_on_the_way() -> None:
+    """Two Jacobians of three runs each: at the start, 500 standard deviations off, and next to the minimum."""
+    asked: list[Places] = []
+
+    def residuals(many: Places) -> list[np.ndarray | None]:
+        asked.append(many)
+        return bent(many)
+
+    far, options = np.full(3, 1e3), replace(SearchOptions(), accuracy_is_stated=True)
+    found = Search(residuals, -far, far, options).run(np.zeros(3))
     assert found is not None
-    better = search.polish(found, lambda many: [each - 0.5 for each in many])
-    assert better.place == pytest.approx([0.5, 0.5], abs=1e-9)
+    assert (found.state, found.rounds) == ("converged", 2)
+    assert found.cost < 4.0  # 2 standard deviations, the tolerance
+    assert [len(many) for many in asked].count(3) == 1
+    (last,) = (many for many in asked if len(many) == 3)
+    assert found.differentiated_at is not None
+    away = np.diag(last) - found.differentiated_at
+    assert np.abs(away) == pytest.approx(np.full(3, 0.02), abs=1e-9)  # one-sided, over the smallest step
+
+
+def test_the_last_steps_use_the_jacobian_of_cheaper_residuals() -> None:
+    """The cheap ones miss by 0.01; two or three of the expensive ones suffice."""
+    calls: list[int] = []
+
+    def expensive(many: Places) -> list[np.ndarray | None]:
+        calls.append(len(many))
+        return bent(many, 0.41)
+
+    far, options = np.full(3, 1e3), replace(SearchOptions(), accuracy_is_stated=True)
+    found = Search(bent, -far, far, options).run(np.zeros(3))
+    assert found is not None
+    last = Search(expensive, -far, far, replace(options, tolerance=0.2), differences=bent)
+    better, apart = last.resume(found)
+    assert better.cost < 0.1
+    assert calls in ([1, 1], [1, 1, 1])
+    (cheap,), (dear,) = bent([better.place]), bent([better.place], 0.41)
+    assert cheap is not None
+    assert dear is not None
+    assert apart == pytest.approx(np.sqrt(np.mean((cheap - dear) ** 2)), rel=0.2)
+
+
+def test_a_side_without_residuals_is_replaced_by_the_other() -> None:
+    """Nothing above 0.01, less than a step of the differences: the slope is that of the other side."""
+    options = replace(SearchOptions(), accuracy_is_stated=True, tolerance=0.2)
+    found = Search(lambda many: [None if a > 0.01 else np.array([30.0 * a + 3.0]) for (a,) in many],
+                   -FAR[:1], FAR[:1], options).run(np.zeros(1))  # fmt: skip
+    assert found is not None
+    assert found.jacobian == pytest.approx(np.array([[30.0]]))
+    assert found.place == pytest.approx([-0.1], abs=2e-5)  # the damping is 1e-5
+
+
+def test_columns_hardly_told_apart_are_differentiated_on_one_side_of_a_bound() -> None:
+    """Two almost parallel columns next to the minimum need central differences; below b = 0 nothing is allowed."""
+    t = np.linspace(0.1, 1.0, 20)
+
+    def residuals(many: Places) -> list[np.ndarray | None]:
+        return [100.0 * (a * t + b * (t + 1e-3 * t**2) - 0.5 * t) + 1.0 for a, b in many]
+
+    search = Search(
+        residuals, np.array([-2.0, 0.0]), np.full(2, 2.0), replace(SearchOptions(), accuracy_is_stated=True)
+    )
+    begun = search._differentiate(np.zeros(2))
+    assert begun is not None
+    renewed = search._differentiate(begun.place, begun)
+    assert renewed is not None
+    assert renewed.jacobian == pytest.approx(100.0 * np.column_stack([t, t + 1e-3 * t**2]))
 
 
 def test_uncertainty_is_that_of_linear_least_squares() -> None:

@@ -1,7 +1,8 @@
-"""Bounded least squares for simulated residuals: the Levenberg-Marquardt method in batches.
+"""Bounded least squares for simulated residuals: the Levenberg-Marquardt method with few simulations.
 
-All runs of a Jacobian are simulated in one batch, and so are trial steps of several lengths. Finite differences take
-large steps, 1 to 5 % of a parameter's size: smaller ones show switching contacts instead of the trend.
+All runs of a Jacobian are simulated in one batch. Finite differences take large steps, 1 to 5 % of a parameter's size:
+smaller ones show switching contacts instead of the trend. Between Jacobians steps are predicted by Broyden's update
+(1965, doi:10.1090/S0025-5718-1965-0198670-6). SciPy's `least_squares` has none: it differentiates at every step.
 """
 
 from __future__ import annotations
@@ -21,11 +22,15 @@ State: TypeAlias = Literal["converged", "not_converged", "interrupted"]
 Progress: TypeAlias = Callable[[str], None]
 
 _SMALLEST_DAMPING, _LARGEST_DAMPING = 1e-9, 1e9
-_FIRST_DAMPING: Final = 1e-3
-_SLIGHT: Final = 3.0
+_FIRST_DAMPING: Final = 1e-4
+_TRIES, _TRIES_BEFORE_DIFFERENCES = 5, 2
+"""Trial steps with rising damping: with a new Jacobian, and with an earlier one before it is computed again."""
+_SLIGHT: Final = 6.0
 """Change of the residuals (in standard deviations of one) up to which a Jacobian stays valid after a long move."""
-_PREDICTED_FALL: Final = 0.5
+_PREDICTED_FALL: Final = 0.25
 """The Jacobian is computed again if the sum of squares fell by less than this share of the predicted fall."""
+_DOUBTFUL: Final = 0.02
+"""Smallest singular value of a scaled Jacobian for which one-sided differences suffice."""
 _AT_BOUND: Final = 1e-9
 """Distance (sizes) from a bound that counts as on it."""
 
@@ -36,39 +41,43 @@ class SearchOptions:
 
     smallest_step, largest_step: limits of the finite-difference step; between them it is the parameter's current
         standard error.
+    central: True for central differences; False for one-sided ones towards the predicted minimum, where these suffice.
     tolerance: the search converged if a full step moves the residuals by fewer standard deviations of one residual.
     worth: smallest fall of the sum of squares, in squared standard deviations, for which the search continues.
     rough: numerical roughness of the residuals in standard deviations: the search also converged if no step improves
         and the remaining gain is smaller.
     keeps_jacobian: distance from its place up to which a Jacobian is used again; 0: it is always computed again.
     longest_move: longest step of a parameter.
+    damping: smallest damping of a step, the square of a singular value of the scaled Jacobian that differences hide.
     smallest_move: the search converged if a full step is shorter (for data without noise).
     most_rounds: maximum number of Jacobians.
-    candidates: number of trial steps in one batch.
     accuracy_is_stated: True if residuals have a standard deviation of 1; otherwise it is estimated from them.
     """
 
-    smallest_step: float = 0.01
+    smallest_step: float = 0.02
     largest_step: float = 0.05
-    tolerance: float = 0.2
+    central: bool = False
+    tolerance: float = 5.0
     worth: float = 0.3
     rough: float = 1.0
     keeps_jacobian: float = 0.1
     longest_move: float = 0.25
+    damping: float = 1e-5
     smallest_move: float = 1e-5
     most_rounds: int = 30
-    candidates: int = 2
     accuracy_is_stated: bool = False
 
 
 CLOSED_FORM_SEARCH: Final = SearchOptions(
     smallest_step=1e-3,
     largest_step=1e-3,
+    central=True,
     tolerance=1e-5,
     worth=1e-10,
     rough=1e-2,
     keeps_jacobian=0.0,
     longest_move=5.0,
+    damping=_SMALLEST_DAMPING,
     smallest_move=1e-9,
     most_rounds=100,
 )
@@ -81,11 +90,10 @@ class SearchState:
 
     place: (p,) in sizes from the start.
     residuals, jacobian, second: residuals (n,), their derivatives (n, p), and second differences along each parameter
-        (n, p); None if not computed yet.
+        (n, p), 0 for one-sided differences; None if not computed yet.
     state: outcome of the search.
-    rounds: number of Jacobians computed by central differences.
-    differentiated_at, is_central, is_trusted: place of the derivatives; True if they are central differences; True if
-        they predicted the last step well.
+    rounds: number of Jacobians computed by differences.
+    differentiated_at, is_trusted: place of these; True if the derivatives predicted the last step well.
     """
 
     place: FloatArray
@@ -95,7 +103,6 @@ class SearchState:
     state: State = "interrupted"
     rounds: int = 0
     differentiated_at: FloatArray | None = None
-    is_central: bool = False
     is_trusted: bool = True
 
     @property
@@ -111,6 +118,7 @@ class Search:
     lower, upper: bounds (p,), in sizes from the start.
     progress: called with a line of text after each round.
     best: best place so far.
+    differences: cheaper residuals for derivatives (default: `residuals`).
     """
 
     residuals: Residuals
@@ -119,6 +127,7 @@ class Search:
     options: SearchOptions
     progress: Progress = field(default=lambda _: None)
     best: SearchState | None = None
+    differences: Residuals | None = None
 
     def run(self, start: FloatArray) -> SearchState | None:
         """Search from a place; return None if the residuals cannot be computed there.
@@ -127,105 +136,99 @@ class Search:
         residuals KeyboardInterrupt is raised.
         """
         try:
-            self.best = self._begin(start)
-            return None if self.best is None else self._iterate()
+            self.best = self._differentiate(start)
+            return None if self.best is None else self._iterate(self.best)
         except KeyboardInterrupt:
             if self.best is None:
                 raise
             return replace(self.best, state="interrupted")
 
-    def _iterate(self) -> SearchState:
+    def _iterate(self, here: SearchState) -> SearchState:
         damping = _FIRST_DAMPING
-        for _ in range(self.options.most_rounds):
-            here = self._with_jacobian(self._require_best())
-            left = self._in_noise(here, self._full_step(here))
-            ends = left <= self.options.tolerance or self._settled(here)
-            if ends and here.is_central:
-                return replace(here, state="converged")
-            if ends:
-                self._differentiate(here)
+        while here.rounds <= self.options.most_rounds:
+            step = self._full_step(here)
+            left = self._in_noise(here, step)
+            ends = left <= self.options.tolerance or np.max(np.abs(step), initial=0.0) <= self.options.smallest_move
+            near_minimum = ends or not self.options.keeps_jacobian or not self._is_far(here, step)
+            if not self._is_valid(here) and (near_minimum or not here.is_trusted):
+                renewed = self._differentiate(here.place, here)
+                if renewed is None:
+                    break
+                here = self.best = renewed
+                self.progress(f"round {here.rounds}: rms residual {np.sqrt(here.cost / len(here.residuals)):.4g}")
                 continue
-            better, damping = self._step_on(here, damping)
-            if better is not None:
-                self.best = better
-            if better is None or here.cost - better.cost < self.options.worth * self.noise(here) ** 2:
-                if here.is_central and here.differentiated_at is here.place:
-                    return replace(
-                        self._require_best(), state="converged" if left <= self.options.rough else "not_converged"
-                    )
-                self._differentiate(self._require_best())
-                damping = _FIRST_DAMPING
-        return replace(self._differentiate(self._require_best()), state="not_converged")
+            if ends:
+                return replace(here, state="converged")
+            is_new = here.differentiated_at is here.place
+            better, damping = self._step_on(here, damping, _TRIES if is_new else _TRIES_BEFORE_DIFFERENCES)
+            gain = 0.0 if better is None else here.cost - better.cost
+            is_worth_it = gain >= self.options.worth * self.noise(here) ** 2
+            here = self.best = here if better is None else better
+            is_settled = left <= self.options.rough if better is None else self._is_valid(here)
+            if not is_worth_it and (is_new or is_settled):
+                return replace(here, state="converged" if left <= self.options.rough else "not_converged")
+            if not is_worth_it:
+                here, damping = replace(here, is_trusted=False), _FIRST_DAMPING
+        return replace(here, state="not_converged")
 
-    def _require_best(self) -> SearchState:
-        assert self.best is not None
-        return self.best
+    def _is_valid(self, state: SearchState) -> bool:
+        """True if the Jacobian is of this place or near it, and predicted the last step well."""
+        assert state.differentiated_at is not None
+        return state.is_trusted and not self._is_far(state, state.place - state.differentiated_at)
 
-    def _with_jacobian(self, state: SearchState) -> SearchState:
-        """Return the state with a valid Jacobian; it is computed again if one-sided, too far away, or inaccurate."""
-        if state.jacobian is None or state.differentiated_at is None:
-            return self._differentiate(state)
-        away = state.place - state.differentiated_at
-        if not np.any(away):
-            return state
-        far = np.max(np.abs(away)) > self.options.keeps_jacobian and self._in_noise(state, away) > min(
-            _SLIGHT, 1e3 * self.options.keeps_jacobian
-        )
-        if far or not state.is_central or not state.is_trusted:
-            return self._differentiate(state)
-        return state
+    def _is_far(self, state: SearchState, away: FloatArray) -> bool:
+        """True if a move invalidates a Jacobian: it is long and changes the residuals."""
+        keeps = self.options.keeps_jacobian
+        return bool(np.max(np.abs(away)) > keeps and self._in_noise(state, away) > min(_SLIGHT, 1e3 * keeps))
 
-    def _differentiate(self, state: SearchState) -> SearchState:
-        jacobian, second = self._differences(state)
-        renewed = replace(
-            state,
-            jacobian=jacobian,
-            second=second,
-            differentiated_at=state.place,
-            is_central=True,
-            is_trusted=True,
-            rounds=state.rounds + 1,
-        )
-        self.best = renewed
-        self.progress(f"round {renewed.rounds}: rms residual {np.sqrt(renewed.cost / len(renewed.residuals)):.4g}")
-        return renewed
-
-    def _begin(self, start: FloatArray) -> SearchState | None:
-        """Residuals and one-sided derivatives at the start, computed in one batch."""
-        places = [start]
-        steps = np.full(len(start), np.sqrt(self.options.smallest_step * self.options.largest_step))
-        for j, step in enumerate(steps):
-            place = start.copy()
-            place[j] += step if start[j] + step <= self.upper[j] else -step
-            places.append(np.clip(place, self.lower, self.upper))
-        batch = self.residuals(places)
-        first = batch[0]
+    def _differentiate(
+        self, place: FloatArray, before: SearchState | None = None, *, central: bool = False
+    ) -> SearchState | None:
+        """State with derivatives by differences; `before` is the state at a place after the start."""
+        central = central or self.options.central
+        sides = (1.0, -1.0) if central else (1.0,)
+        steps = self._difference_steps(place, before)
+        ends = [self._beside(place, j, side * step, is_pair=central) for j, step in enumerate(steps) for side in sides]
+        simulate = self.differences or self.residuals
+        batch: list[FloatArray | None] = [] if before is None or self.differences else [before.residuals]
+        batch += simulate([place, *ends][len(batch) :])
+        first, others = batch[0], batch[1:]
         if first is None:
             return None
-        ends = [(places[j + 1][j] - start[j], batch[j + 1]) for j in range(len(start))]
-        jacobian = np.column_stack([_slope_and_bend([end], first)[0] for end in ends])
-        return SearchState(start, first, jacobian, np.zeros_like(jacobian), differentiated_at=start)
+        for j, value in enumerate(others):
+            if value is None and not central:  # the other side of a place without residuals
+                ends[j] = self._beside(place, j, -steps[j], is_pair=True)
+                others[j] = simulate([ends[j]])[0]
+        jacobian = np.zeros((len(first), len(steps)))
+        second = np.zeros_like(jacobian)
+        for j in range(len(steps)):
+            of_j = slice(j * len(sides), (j + 1) * len(sides))
+            moved = [(end[j] - place[j], value) for end, value in zip(ends[of_j], others[of_j], strict=True)]
+            jacobian[:, j], second[:, j] = _slope_and_bend(moved, first)
+        length = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+        if before and not central and np.linalg.svd(jacobian / length, compute_uv=False)[-1] < _DOUBTFUL:
+            return self._differentiate(place, before, central=True)
+        state = SearchState(place, first, jacobian, second, rounds=1, differentiated_at=place)
+        return state if before is None else replace(state, residuals=before.residuals, rounds=before.rounds + 1)
 
-    def polish(self, state: SearchState, residuals: Residuals, *, most: int = 2) -> SearchState:
-        """Take at most `most` steps with other, more expensive residuals and the current Jacobian; return the best."""
+    def _beside(self, place: FloatArray, j: int, step: float, *, is_pair: bool) -> FloatArray:
+        """Place with parameter j changed by a step, inside the bounds; a single step that leaves them is reversed."""
+        end = place.copy()
+        if not is_pair and not self.lower[j] <= place[j] + step <= self.upper[j]:
+            step = -step
+        end[j] = np.clip(place[j] + step, self.lower[j], self.upper[j])
+        return end
+
+    def resume(self, state: SearchState) -> tuple[SearchState, float]:
+        """Continue a search of other residuals; returns the state and the distance (rms) of both kinds of residuals."""
         assert state.jacobian is not None
-        first = residuals([state.place])[0]
+        step = self._step(state, _FIRST_DAMPING)
+        first = self.residuals([state.place + step])[0]
         if first is None:
-            return state
-        best = here = replace(state, residuals=first)
-        self.best = best
-        for _ in range(most):
-            step = self._full_step(here)
-            if self._in_noise(here, step) <= self.options.tolerance:
-                break
-            dearer = residuals([here.place + step])[0]
-            if dearer is None:
-                break
-            here = replace(here, place=here.place + step, residuals=dearer)
-            if here.cost >= best.cost:
-                break
-            self.best = best = here
-        return best
+            return state, 0.0
+        apart = float(np.sqrt(np.mean((first - state.residuals - state.jacobian @ step) ** 2)))
+        self.best = replace(state, place=state.place + step, residuals=first)
+        return self._iterate(self.best), apart
 
     def noise(self, state: SearchState) -> float:
         """Standard deviation of a residual: one where it is stated, else estimated."""
@@ -238,11 +241,8 @@ class Search:
         noise = self.noise(state)
         return float(np.linalg.norm(state.jacobian @ step)) / noise if noise > 0.0 else 0.0
 
-    def _settled(self, state: SearchState) -> bool:
-        return float(np.max(np.abs(self._full_step(state)), initial=0.0)) <= self.options.smallest_move
-
     def _full_step(self, state: SearchState) -> FloatArray:
-        return self._step(state, _SMALLEST_DAMPING)
+        return self._step(state, self.options.damping)
 
     def _step(self, state: SearchState, damping: float) -> FloatArray:
         """Damped step inside the bounds and no longer than `longest_move`."""
@@ -251,45 +251,44 @@ class Search:
         high = np.minimum(self.upper - state.place, self.options.longest_move)
         return step_inside(state.jacobian, state.residuals, low, high, damping=damping)
 
-    def _step_on(self, state: SearchState, damping: float) -> tuple[SearchState | None, float]:
-        """Best of several trial steps and the next damping; None if even the shortest step does not improve."""
-        for _ in range(4):
-            dampings = [damping * 10.0 ** (2 * i - 1) for i in range(self.options.candidates)]
-            steps = [self._step(state, trial_damping) for trial_damping in dampings]
-            places = [np.clip(state.place + step, self.lower, self.upper) for step in steps]
-            tried = self.residuals(places)
-            costs = [np.inf if residuals is None else float(residuals @ residuals) for residuals in tried]
-            number = int(np.argmin(costs))
-            best = tried[number]
-            if best is not None and costs[number] < state.cost:
-                return _moved(state, places[number], best), max(dampings[number] / 3.0, _SMALLEST_DAMPING)
-            damping = min(dampings[-1] * 10.0, _LARGEST_DAMPING)
+    def _step_on(self, state: SearchState, damping: float, tries: int) -> tuple[SearchState | None, float]:
+        """First of some ever shorter steps that improves, and the next damping; None if none improves."""
+        for number in range(tries):
+            place = np.clip(state.place + self._step(state, damping), self.lower, self.upper)
+            residuals = self.residuals([place])[0]
+            if residuals is not None and float(residuals @ residuals) < state.cost:
+                next_damping = damping if number else max(damping / 10.0, self.options.damping)
+                return self._moved(state, place, residuals), next_damping
+            damping = min(damping * 100.0, _LARGEST_DAMPING)
         return None, damping
 
-    def _differences(self, state: SearchState) -> tuple[FloatArray, FloatArray]:
-        """Central differences; one-sided next to a bound or next to a place without residuals."""
-        steps = self._difference_steps(state)
-        places = []
-        for j, step in enumerate(steps):
-            for sign in (1.0, -1.0):
-                place = state.place.copy()
-                place[j] = np.clip(place[j] + sign * step, self.lower[j], self.upper[j])
-                places.append(place)
-        batch = self.residuals(places)
-        jacobian = np.zeros((len(state.residuals), len(steps)))
-        second = np.zeros_like(jacobian)
-        for j in range(len(steps)):
-            ends = [(places[i][j] - state.place[j], batch[i]) for i in (2 * j, 2 * j + 1)]
-            jacobian[:, j], second[:, j] = _slope_and_bend(ends, state.residuals)
-        return jacobian, second
+    def _moved(self, state: SearchState, place: FloatArray, residuals: FloatArray) -> SearchState:
+        """State at a better place, with the derivatives of the old one; Broyden's update after a long move.
 
-    def _difference_steps(self, state: SearchState) -> FloatArray:
+        Short moves would fit the roughness of the simulation, and their direction would look well determined.
+        """
+        jacobian = state.jacobian
+        assert jacobian is not None
+        step = place - state.place
+        predicted = state.residuals + jacobian @ step
+        predicted_fall = state.cost - float(predicted @ predicted)
+        actual_fall = state.cost - float(residuals @ residuals)
+        if self._is_far(state, step):
+            jacobian = jacobian + np.outer(residuals - predicted, step) / (step @ step)
+        is_trusted = actual_fall >= _PREDICTED_FALL * predicted_fall
+        return replace(state, place=place, residuals=residuals, jacobian=jacobian, is_trusted=is_trusted)
+
+    def _difference_steps(self, place: FloatArray, before: SearchState | None) -> FloatArray:
+        """Signed steps of the differences, towards the predicted minimum."""
         low, high = self.options.smallest_step, self.options.largest_step
-        if state.jacobian is None or low == high:
-            return np.full(len(state.place), np.sqrt(low * high))
-        length = np.linalg.norm(state.jacobian, axis=0)
-        with np.errstate(divide="ignore"):
-            return np.clip(self.noise(state) / length, low, high)
+        sizes = np.full(len(place), np.sqrt(low * high))
+        if before is None or before.jacobian is None:
+            return sizes
+        if low < high:
+            length = np.linalg.norm(before.jacobian, axis=0)
+            with np.errstate(divide="ignore"):
+                sizes = np.clip(self.noise(before) / length, low, high)
+        return np.copysign(sizes, self._full_step(before))
 
 
 def step_inside(
@@ -312,19 +311,6 @@ def step_inside(
     room = np.maximum(high - low, _AT_BOUND)
     solution = lsq_linear(system, wanted, bounds=(low * scale, (low + room) * scale), method="bvls")
     return np.asarray(np.clip(solution.x / scale, low, high))
-
-
-def _moved(state: SearchState, place: FloatArray, residuals: FloatArray) -> SearchState:
-    """State at a better place, with the derivatives of the old one.
-
-    Broyden's update is not used: along a direction that hardly affects the data it would fit the roughness of the
-    simulation, and the direction would look well determined.
-    """
-    assert state.jacobian is not None
-    predicted = state.residuals + state.jacobian @ (place - state.place)
-    predicted_fall = state.cost - float(predicted @ predicted)
-    actual_fall = state.cost - float(residuals @ residuals)
-    return replace(state, place=place, residuals=residuals, is_trusted=actual_fall >= _PREDICTED_FALL * predicted_fall)
 
 
 def _slope_and_bend(

@@ -32,6 +32,10 @@ GROOVE_SEARCH: Final = replace(
 """Options for grooves, whose equilibria have a limited accuracy."""
 _NOISE_ROUNDS: Final = 3
 _SAME_NOISE: Final = 0.05
+_LAST_TOLERANCE: Final = 0.2
+"""`tolerance` of the search with the scenario's solver, which follows the quick one."""
+_COMPARABLE: Final = 1.0
+"""`tolerance` of a quick search whose sum of squares is compared with others or gives the noise."""
 _STEPS_APART: Final = 3.0
 """The search is repeated with the scenario's solver if it changes the residuals by more standard deviations (rms)."""
 
@@ -92,11 +96,12 @@ def solution_of(problem: Problem, plan: SearchRequest) -> Solution:
     return _Solver(problem, plan).solution()
 
 
-def search_options(problem: Problem) -> SearchOptions:
-    """Options of the search for the least accurate kind of data."""
+def search_options(problem: Problem, plan: SearchRequest) -> SearchOptions:
+    """Options of the search for the least accurate kind of data; bootstrap and posterior need second differences."""
     kinds = {observation.kind for observation in problem.observations}
     options = SearchOptions() if "track" in kinds else GROOVE_SEARCH if "marks" in kinds else CLOSED_FORM_SEARCH
-    return replace(options, accuracy_is_stated=problem.accuracy_is_stated)
+    central = options.central or plan.bootstrap > 0 or plan.posterior > 0
+    return replace(options, accuracy_is_stated=problem.accuracy_is_stated, central=central)
 
 
 @dataclass(slots=True)
@@ -121,10 +126,13 @@ class _Solver:
         return any(observation.kind == "track" for observation in self.problem.observations)
 
     def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
-        lower, upper = bounds_of(problem.parameters)
-        residuals = problem.final_residuals if final else problem.residuals
+        residuals, options = problem.final_residuals if final else problem.residuals, search_options(problem, self.plan)
+        if final:
+            options = replace(options, tolerance=_LAST_TOLERANCE)
+        elif self._has_tracks and (self.plan.starts > 1 or not problem.accuracy_is_stated):
+            options = replace(options, tolerance=_COMPARABLE)
         return Search(
-            residuals, lower, upper, search_options(problem), lambda text: self.plan.progress(f"{about}{text}")
+            residuals, *bounds_of(problem.parameters), options, lambda text: self.plan.progress(f"{about}{text}")
         )
 
     def _best(self) -> SearchState:
@@ -181,13 +189,11 @@ class _Solver:
     def _polish(self, state: SearchState) -> SearchState:
         """Take the last steps with the scenario's solver; search again with it if the fast one is too inaccurate."""
         self.plan.progress("last steps with the scenario's own solver")
-        search = self._search(self.problem, "")
-        quick = state.residuals
+        search = self._search(self.problem, "last steps: ", final=True)
+        search.differences = self.problem.residuals
         try:
-            polished = search.polish(state, self.problem.final_residuals)
-            first = self.problem.final_residuals([state.place])[0]
-            apart = 0.0 if first is None else float(np.sqrt(np.mean((first - quick) ** 2))) / search.noise(state)
-            if apart > _STEPS_APART:
+            polished, apart = search.resume(state)
+            if apart > _STEPS_APART * search.noise(state):
                 self.methods.append(
                     Message(
                         "fixed steps of 4 ms were too long for this snow: searched again with the scenario's solver"
@@ -218,4 +224,4 @@ class _Solver:
                 second=None if state.second is None else state.second * weight[:, None],
             )
             problem = seen
-        return Solution(problem, state, tuple(self.tried), tuple(self.methods), search_options(problem))
+        return Solution(problem, state, tuple(self.tried), tuple(self.methods), search_options(problem, self.plan))
