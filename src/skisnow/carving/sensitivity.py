@@ -17,7 +17,7 @@ from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
 from ..ski.beam import banded_product, clamped
-from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growth, varied_ski
+from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
 from .outputs import OUTPUTS, At, OutputGrowth, output_growth
 from .shape import Shape, ShapeGradient, beam_gradient, bent_by, curvature_and_turn, shape_growth
 from .solve import Solution, refined, solved
@@ -364,37 +364,35 @@ class CarveDerivatives:
 
     def derivatives(self, output: str, names: tuple[str, ...]) -> FloatArray:
         """Growth of an output with each parameter, as `derivative`: one adjoint for all."""
-        gradient, ski = self._gradient(output), self.request.model.ski
-        growth, numbers = gradient.output, gradient.numbers[_OF_SHAPE]
-        out = []
-        for name in names:
+        gradient, out = self._gradient(output), np.zeros(len(names))
+        growth, of_ski = gradient.output, tuple(name for name in names if name not in CONDITIONS)
+        for row, name in enumerate(names):
             if name in CONDITIONS:
                 along = self._direction(name)
                 by_state = growth.edge_angle * along.numbers[_ANGLE] + growth.load * along.numbers[_LOAD]
-                out.append(gradient.numbers @ along.numbers + growth.strength * along.strength + by_state)
-            else:
-                grown = table_growth(ski, name)
-                by_tables = self._by_tables(output, moving=grown.moves)
-                out.append(np.vdot(by_tables, grown.tables) + numbers @ grown.numbers)
-        return np.array(out)
+                out[row] = gradient.numbers @ along.numbers + growth.strength * along.strength + by_state
+        if of_ski:
+            tables, numbers, moving = table_growths(self.request.model.ski, of_ski)
+            by_tables = self._by_tables(gradient, moving=moving)
+            rows = [name not in CONDITIONS for name in names]
+            out[rows] = tables @ by_tables.ravel() + numbers @ gradient.numbers[_OF_SHAPE]
+        return out
 
-    def _by_tables(self, output: str, *, moving: bool) -> FloatArray:
+    def _by_tables(self, gradient: _Gradient, *, moving: bool) -> FloatArray:
         """Growth of an output with the tables of the ski; that with their stations only where they move."""
-        request, gradient = self.request, self._gradient(output)
-        model, u, growth = request.model, self.at.solution.u, gradient.output
+        model, u, elements = self.request.model, self.at.solution.u, self.request.elements
+        growth = gradient.output
         if gradient.by_tables is None or moving > gradient.with_stations:
             columns = gradient.columns.copy()
             for row, by in enumerate((growth.place, growth.weight)):
                 columns[row] += 0.0 if by is None else by
-            own, back = (_slopes_at_stations(model, unknowns) for unknowns in (u, gradient.adjoint))
-            columns[4], columns[5] = (
-                columns[4] * own,
-                -columns[5] * back,
-            )  # the shapes of slopes are as long as the element
+            if moving:  # the shapes of slopes are as long as the element
+                columns[4] *= _slopes_at_stations(model, u)
+                columns[5] *= -_slopes_at_stations(model, gradient.adjoint)
             shape = ShapeGradient(columns, gradient.stiffness, gradient.numbers[_WIDEST], growth.edge, growth.edge_by)
-            gradient.by_tables = shape.by_tables(model, request.elements)
+            gradient.by_tables = shape.by_tables(model, elements)
             if moving:
-                gradient.by_tables[0] = shape.by_stations(model, request.elements, u, gradient.adjoint)
+                gradient.by_tables[0] = shape.by_stations(model, elements, u, gradient.adjoint)
             gradient.with_stations = moving
         return gradient.by_tables
 
@@ -445,5 +443,5 @@ class CarveDerivatives:
 def _slopes_at_stations(model: ClampedSki, u: FloatArray) -> FloatArray:
     """Part of the deflection at the stations that comes from slopes of nodes (m)."""
     stations = model.stations
-    value = np.where(stations.dof >= 0, u[stations.dof], 0.0)
+    value = np.append(u, 0.0)[stations.dof]  # -1: held
     return np.asarray(np.sum((stations.deflection * value)[:, [1, 4]], axis=1))

@@ -298,7 +298,7 @@ def beam_gradient(model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoin
 
 
 def _values(model: ClampedSki, u: FloatArray) -> FloatArray:
-    return np.where(model.dof >= 0, u[model.dof], 0.0)
+    return np.append(u, 0.0)[model.dof]  # -1: held
 
 
 def _lengths(model: ClampedSki) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from itertools import repeat
+from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -17,8 +17,6 @@ from ..ski.ski_file import ski_of_keys
 from .variables import COMBINED, combined_names, designed_keys, start_value
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from ..carving.question import CarveQuestion
     from ..carving.sensitivity import CarveDerivatives
     from ..carving.solve import Solution
@@ -37,9 +35,12 @@ class Evaluator:
     task: DesignTask
     equilibria: int = 0
     snows: tuple[SnowProperties, ...] = ()
+    names: tuple[str, ...] = ()
     _points: dict[bytes, tuple[CarveDerivatives, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        combined = (combined_names(variable.name) for variable in self.task.variables)
+        self.names = tuple(dict.fromkeys(chain.from_iterable(combined)))
         self.snows = tuple(asked_snow(condition, self.task.sources) for condition in self.task.conditions)
 
     @property
@@ -117,28 +118,22 @@ class Evaluator:
 
         Shape (variables, ...).
         """
-        variables, values = self.task.variables, self.values(z).tolist()
-        combined = [combined_names(variable.name) for variable in variables]
-        names = tuple(name for names in combined for name in names)
-        growths: Iterator[Any] = (
-            iter(point.derivatives(output, names).tolist())
-            if place is None
-            else (point.force_growth_at(name, place) for name in names)
-        )
+        if place is None:
+            growths = point.derivatives(output, self.names)
+        else:
+            growths = np.array([point.force_growth_at(name, place) for name in self.names])
         # factors of a list of stiffness multiply its rows
-        factors = {
-            COMBINED[variable.name][0]: value
-            for variable, value in zip(variables, values, strict=True)
-            if variable.name in COMBINED and variable.name != "sidecut_mm"
-        }
-        out = []
-        for variable, names in zip(variables, combined, strict=True):
-            growth = variable.width * sum(next(growths) for _ in names)
-            key, _, row = variable.name.partition("[")
-            if variable.name in COMBINED:
-                growth /= factors.get(COMBINED[variable.name][0], 1.0)
-            out.append(growth * factors.get(key, 1.0) if row else growth)
-        return np.array(out)
+        values = zip(self.task.variables, self.values(z).tolist(), strict=True)
+        factors = {COMBINED[variable.name][0]: value for variable, value in values if variable.name in COMBINED}
+        by_names = np.zeros((len(self.task.variables), len(self.names)))
+        for row, variable in enumerate(self.task.variables):
+            key, _, number = variable.name.partition("[")
+            growth = variable.width * factors.get(key, 1.0) if number else variable.width
+            if variable.name in COMBINED and variable.name != "sidecut_mm":
+                growth /= factors[COMBINED[variable.name][0]]
+            for name in combined_names(variable.name):
+                by_names[row, self.names.index(name)] = growth
+        return np.asarray(by_names @ growths)
 
     def value_count(self, goal: Goal) -> int:
         """Number of a goal's values."""

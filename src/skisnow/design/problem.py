@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from .evaluation import Evaluator
 from .variables import designed_keys, start_value
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from .task import Goal
 
@@ -91,12 +92,9 @@ class Search:
         matrix, lowest = linear_constraints(self.evaluator)
         if len(lowest):
             constraints.append(
-                {"type": "ineq", "fun": lambda x: matrix @ x[: self.count] - lowest, "jac": self._padded(matrix)}
+                {"type": "ineq", "fun": lambda x: matrix @ x[: self.count] - lowest, "jac": partial(_padded, matrix)}
             )
         return constraints
-
-    def _padded(self, matrix: FloatArray) -> Callable[[FloatArray], FloatArray]:
-        return lambda x: np.pad(matrix, ((0, 0), (0, len(x) - self.count)))
 
     def run(self, z: FloatArray) -> FloatArray:
         """Smallest deviations from a start; if all targets are reached, the design with the least change."""
@@ -160,7 +158,12 @@ def _constraint(search: Search, value: Any, growth: Any, goal: Goal, *, kind: st
         except SolverError:
             return np.full(search.evaluator.value_count(goal), -_NO_SKI)
 
-    return {"type": kind, "fun": fun, "jac": lambda x: search._padded(growth(goal, x[: search.count]))(x)}
+    return {"type": kind, "fun": fun, "jac": lambda x: _padded(growth(goal, x[: search.count]), x)}
+
+
+def _padded(matrix: FloatArray, x: FloatArray) -> FloatArray:
+    """With columns for the slacks."""
+    return np.hstack([matrix, np.zeros((len(matrix), len(x) - matrix.shape[1]))])
 
 
 def _slack(search: Search, goal: Goal, number: int) -> dict[str, Any]:
@@ -175,7 +178,7 @@ def _slack(search: Search, goal: Goal, number: int) -> dict[str, Any]:
 
     def jac(x: FloatArray) -> FloatArray:
         growth = search.deviation_growth(goal, x[: search.count])
-        out = search._padded(np.concatenate([growth, -growth]))(x)
+        out = _padded(np.concatenate([growth, -growth]), x)
         out[:, search.count + number] = 1.0
         return out
 

@@ -271,6 +271,14 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
     return memo[name]
 
 
+@functools.lru_cache(maxsize=64)
+def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray, bool]:
+    """Tables (n, 5 rows) and numbers (n, 3) of the growths with parameters; whether the stations move with one."""
+    growths = [table_growth(ski, name) for name in names]
+    tables = np.array([growth.tables.ravel() for growth in growths])
+    return tables, np.array([growth.numbers for growth in growths]), any(growth.moves for growth in growths)
+
+
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
     """Growth with a key that changes several tables, or numbers."""
     parsed, memos, key = parsed_keys(ski), _memos(ski), name.removeprefix("ski.")
