@@ -22,4 +22,9 @@ inline Result array(std::vector<double> values, std::initializer_list<std::size_
   return Result(kept->data(), shape, owner);
 }
 
+inline Result array(std::vector<double> values) {
+  const std::size_t size = values.size();
+  return array(std::move(values), {size});
+}
+
 }  // namespace skisnow

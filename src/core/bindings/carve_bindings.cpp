@@ -65,7 +65,7 @@ template <class... Points>
 CarveLaws::Values asked(const nb::object& law, const Points&... points) {
   nb::gil_scoped_acquire held;
   const std::size_t wanted = std::max({points.size()...});
-  const auto found = nb::cast<Array>(law(array(points, {points.size()})...));
+  const auto found = nb::cast<Array>(law(array(points)...));
   if (found.size() != wanted) throw std::invalid_argument("a law must give one value for each point");
   return CarveLaws::Values(found.data(), found.data() + wanted);
 }
@@ -85,6 +85,8 @@ void set_laws(CarveLaws& out, const nb::object& pressure, const nb::object& resi
   out.strength = [strength](const Values& depth, const Values& angle) { return asked(strength, depth, angle); };
 }
 
+nb::tuple border_of(const CarveState& at) { return nb::make_tuple(at.border[0], at.border[1], at.border[2]); }
+
 CarveState state_of(const CarvedSki& ski, const Array& u, const Array& border) {
   const double* b = border.data();
   return {ski.spread(u.data()), {b[0], b[1], b[2]}};
@@ -93,22 +95,16 @@ CarveState state_of(const CarvedSki& ski, const Array& u, const Array& border) {
 nb::tuple find(const CarvedSki& ski, CarveConditions conditions, const std::optional<Array>& offset,
                const std::optional<nb::tuple>& near, const CarveLaws* laws) {
   conditions.laws = laws;
-  CarveSolution found, from;
-  if (near) {
-    from.state = state_of(ski, nb::cast<Array>((*near)[0]), nb::cast<Array>((*near)[1]));
-    from.depth = copied(nb::cast<Array>((*near)[2]));
-  }
+  CarveSolution found;
+  CarveState from;
+  if (near) from = state_of(ski, nb::cast<Array>((*near)[0]), nb::cast<Array>((*near)[1]));
   std::vector<double> beside = offset ? copied(*offset) : std::vector<double>();
   {
     nb::gil_scoped_release free;
     found = find_carve(ski, conditions, std::move(beside), near ? &from : nullptr, answering_signals());
   }
-  std::vector<double> u = ski.gathered(found.state.u);
-  const std::size_t size = u.size(), stations = ski.stations.size();
-  const auto& border = found.state.border;
-  return nb::make_tuple(found.converged, found.iterations, array(std::move(u), {size}),
-                        nb::make_tuple(border[0], border[1], border[2]), array(std::move(found.depth), {stations}),
-                        array(std::move(found.force), {stations}));
+  return nb::make_tuple(found.converged, found.iterations, array(ski.gathered(found.state.u)), border_of(found.state),
+                        array(std::move(found.depth)), array(std::move(found.force)));
 }
 
 // J⁻¹ r, with the Jacobian J of the equations at a state and the groove kept at these places across; for tests.
@@ -126,10 +122,7 @@ nb::tuple carve_solution(const CarvedSki& ski, const CarveConditions& conditions
   CarveFactors factors;
   factors.factor(ski, system);
   if (!factors.correct(ski, system, step)) throw std::invalid_argument("the equations are singular");
-  std::vector<double> found = ski.gathered(step.u);
-  const std::size_t size = found.size();
-  return nb::make_tuple(array(std::move(found), {size}),
-                        array({step.border.begin(), step.border.end()}, {std::size_t(CARVE_BORDER)}));
+  return nb::make_tuple(array(ski.gathered(step.u)), array({step.border.begin(), step.border.end()}));
 }
 
 void make_point(CarvePoint* at, const CarvedSki& ski, const CarveConditions& conditions, const Array& u,
@@ -139,12 +132,8 @@ void make_point(CarvePoint* at, const CarvedSki& ski, const CarveConditions& con
 
 // Last correction, unknowns, depth and force of a refined equilibrium.
 nb::tuple point_state(const CarvePoint& at) {
-  std::vector<double> u = at.ski().gathered(at.state().u), depth = at.depth(), force = at.force();
-  const std::size_t size = u.size(), n = depth.size();
-  const auto& border = at.state().border;
-  return nb::make_tuple(at.last_correction(), array(std::move(u), {size}),
-                        nb::make_tuple(border[0], border[1], border[2]), array(std::move(depth), {n}),
-                        array(std::move(force), {n}));
+  return nb::make_tuple(at.last_correction(), array(at.ski().gathered(at.state().u)), border_of(at.state()),
+                        array(at.depth()), array(at.force()));
 }
 
 // Gradient by the stations' columns (place, weight, width, base height, deflection, normal force), by the conditions,
@@ -156,14 +145,11 @@ nb::tuple point_gradient(CarvePoint& at, const Array& u, const Array& depth, con
   for (const auto* each :
        {&found.place, &found.weight, &found.width, &found.base_height, &found.deflection, &found.normal})
     columns.insert(columns.end(), each->begin(), each->end());
-  std::vector<double> adjoint = at.ski().gathered(found.adjoint.u);
-  const std::size_t size = adjoint.size();
-  return nb::make_tuple(
-      array(std::move(columns), {6, n}),
-      array({found.edge_angle, found.hardness, found.excess, found.load, found.moment, found.side_force, found.bevel,
-             found.bevel_width, found.pitch_of_force, found.pitch_of_shear, found.running_length, found.greatest_width},
-            {12}),
-      array(std::move(adjoint), {size}));
+  return nb::make_tuple(array(std::move(columns), {6, n}),
+                        array({found.edge_angle, found.hardness, found.excess, found.load, found.moment,
+                               found.side_force, found.bevel, found.bevel_width, found.pitch_of_force,
+                               found.pitch_of_shear, found.running_length, found.greatest_width}),
+                        array(at.ski().gathered(found.adjoint.u)));
 }
 
 // Growth of unknowns, border, depth and force along a direction, and the distance to the next kink in its unit.
@@ -183,11 +169,8 @@ nb::tuple point_growth(CarvePoint& at, const Array& columns, const Array& number
     *each = *from++;
   along.bent = at.ski().spread(bent.data());
   CarveGrowth found = at.growth(along);
-  std::vector<double> u = at.ski().gathered(along.state.u);
-  const std::size_t size = u.size();
-  const auto& border = along.state.border;
-  return nb::make_tuple(array(std::move(u), {size}), nb::make_tuple(border[0], border[1], border[2]),
-                        array(std::move(found.depth), {n}), array(std::move(found.force), {n}), found.kink);
+  return nb::make_tuple(array(at.ski().gathered(along.state.u)), border_of(along.state), array(std::move(found.depth)),
+                        array(std::move(found.force)), found.kink);
 }
 
 // Behind the rows of a banded matrix, or of a right side, the zeros that loops over it need.

@@ -102,8 +102,7 @@ Result moment_of(const Dynamics& self) {
     else
       out.insert(out.end(), BODY, std::numeric_limits<double>::quiet_NaN());
   }
-  const std::size_t size = out.size();
-  return array(std::move(out), {size});
+  return array(std::move(out));
 }
 
 nb::tuple counts_of(const Dynamics& self) {

@@ -78,7 +78,7 @@ struct PythonLaws {
 void set_penetration(SnowContact& self, const nb::object& law, const Array& bends, bool along_base_normal) {
   const auto asked = [law](const char* name, std::size_t rows, const auto&... points) {
     nb::gil_scoped_acquire held;
-    const auto found = nb::cast<Array>(law.attr(name)(array(points, {points.size()})...));
+    const auto found = nb::cast<Array>(law.attr(name)(array(points)...));
     const std::size_t wanted = rows * std::max({points.size()...});
     if (found.size() != wanted) throw std::invalid_argument("a penetration law must give one value for each point");
     return Values(found.data(), found.data() + wanted);
@@ -133,7 +133,7 @@ nb::dict sections_of(const SnowContact& contact, int k) {
   for (const auto& [name, field] : fields) {
     std::vector<double> values;
     for (int i : rows) values.push_back(field[i]);
-    out[name] = array(std::move(values), {rows.size()});
+    out[name] = array(std::move(values));
   }
   return out;
 }

@@ -77,6 +77,6 @@ struct CarveSolution {
 // towards the inside of the turn). `near` is tried first where it is given. `asked` is called now and then while it
 // takes long, and may throw.
 CarveSolution find_carve(const CarvedSki& ski, const CarveConditions& conditions, std::vector<double> offset,
-                         const CarveSolution* near, std::function<void()> asked);
+                         const CarveState* near, std::function<void()> asked);
 
 }  // namespace skisnow

@@ -4,8 +4,6 @@ namespace skisnow {
 
 namespace {
 
-constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
-
 // Growth of the pressure on an interval of a ground edge with the edge angle, beyond that of a straight base. `growth`:
 // moments of ∂p/∂ε over the interval; the bend of the base's own growth is straight between its ends.
 void add_ground_growth(const CarveSection& section, double start, double length, const double (&growth)[3],

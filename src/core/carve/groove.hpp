@@ -9,6 +9,8 @@
 
 namespace skisnow {
 
+constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
+
 // One section of the ski in the snow. ξ: distance from the edge in the snow surface (m).
 struct CarveSection {
   double half;                   // half its width

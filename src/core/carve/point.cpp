@@ -16,7 +16,6 @@ namespace {
 constexpr int MOST_PLACES = 11;
 constexpr int MOST_CORRECTIONS = 6;
 constexpr double ALMOST = 1e-10, ROUNDING = 1e-15;  // (m) last corrections
-constexpr double FAR_ABOVE = -1e3;                  // depth (m) that marks untouched snow
 constexpr double LEAST_EXCESS = 1e-12;              // k_u - H_V over H_V that elastic snow is differentiated at
 
 // Numbers of a section that the sum is differentiated by.

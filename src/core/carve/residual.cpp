@@ -11,8 +11,6 @@ namespace {
 using Long = long double;
 using Growing = Slopes<1>;
 
-constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
-
 Growing growing(double value, double growth) {
   Growing out(value);
   out.by[0] = growth;
@@ -154,15 +152,11 @@ void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, co
   const std::vector<Long> u(at.u.begin(), at.u.end());
   const Long border[] = {at.border[0], at.border[1], at.border[2]};
   Residual<Long> sum(given, {place.begin(), place.end()}, u, border, elastic_forces(ski, u));
-  for (const CarveStation& s : ski.stations)
-    sum.add({s.place,
-             s.weight,
-             s.half_width,
-             s.base_height,
-             {s.deflection[0], s.deflection[1], s.deflection[2], s.deflection[3]},
-             s.twist,
-             std::size_t(s.first)},
-            [](Long) {});
+  for (const CarveStation& s : ski.stations) {
+    Station<Long> station{s.place, s.weight, s.half_width, s.base_height, {}, s.twist, std::size_t(s.first)};
+    std::copy_n(s.deflection, 4, station.deflection);
+    sum.add(station, [](Long) {});
+  }
   for (std::size_t j = 0; j < sum.residual.size(); j++) system.residual[j] = double(sum.residual[j]);
   for (int a = 0; a < CARVE_BORDER; a++) system.border_residual[a] = double(sum.border[a]);
   for (std::size_t i = 0; i < sum.depth.size(); i++)

@@ -42,8 +42,8 @@ class Search {
   CarveNewton newton;
 
   // From another solution; back at the first guess if that fails.
-  bool continues(const CarveSolution& near) {
-    newton.state = near.state;
+  bool continues(const CarveState& near) {
+    newton.state = near;
     const bool found = reaches(conditions_);
     if (!found) newton.state = first_guess(ski_, conditions_);
     return found;
@@ -158,7 +158,7 @@ std::vector<double> CarvedSki::gathered(const Column& all) const {
 }
 
 CarveSolution find_carve(const CarvedSki& ski, const CarveConditions& conditions, std::vector<double> offset,
-                         const CarveSolution* near, std::function<void()> asked) {
+                         const CarveState* near, std::function<void()> asked) {
   Search search(ski, conditions, std::move(offset), std::move(asked));
   bool found = near != nullptr && search.continues(*near);
   found = found || search.loaded(conditions);

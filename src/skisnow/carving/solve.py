@@ -90,7 +90,7 @@ def solved(
     from_there = None
     if near is not None:
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
-        from_there = (near.u, border, near.edge_depth)
+        from_there = (near.u, border)
     laws = None if conditions.laws is None else conditions.laws.compiled
     result = core.find_carve(_core_ski(model), _numbers(conditions), offset, from_there, laws)
     converged, iterations, u, (depth, slope, stress), edge_depth, force = result

@@ -226,7 +226,7 @@ def find_carve(
     ski: CarvedSki,
     conditions: CarveConditions,
     offset: FloatArray | None,
-    near: tuple[FloatArray, FloatArray, FloatArray] | None,
+    near: tuple[FloatArray, FloatArray] | None,
     laws: CarveLaws | None,
 ) -> tuple[bool, int, FloatArray, tuple[float, float, float], FloatArray, FloatArray]: ...
 
