@@ -16,10 +16,10 @@ from skisnow.carving.equilibrium import carve, differentiable_carve
 from skisnow.carving.outputs import At, output_growth
 from skisnow.carving.result import Equilibrium
 from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives, CarveRequest
-from skisnow.carving.solve import Solution, refined, solved
+from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import GAUSS_POINTS, GAUSS_WEIGHTS, HALF_BANDWIDTH, ClampedSki, clamped
-from skisnow.ski.editing import changed_keys, shape_parameters, table_growth, varied_ski
+from skisnow.ski.editing import shape_parameters, table_growth, varied_ski
 from skisnow.ski.layout import SkiSections
 from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
@@ -322,20 +322,6 @@ def test_forces_at_places_grow_as_their_differences() -> None:
         above, below = (side.force_at(places) for side in sides if side is not None)
         growth = exact.force_growth_at(name, places)
         assert (above - below) / (2.0 * step) == pytest.approx(growth, abs=2e-3 * np.abs(growth).max())
-
-
-def test_a_prediction_misses_by_the_square_of_the_change() -> None:
-    known = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), edge_angle=0.8, load=800.0, unloading_ratio=10.0))
-    ski = known.request.model.ski
-    errors = []
-    for share in (1.0, 0.1):
-        wider, stiffer = {"waist_width_mm": 68.0 + share}, {"EI_N_m2[2]": 250.0 * (1.0 + 0.1 * share)}
-        new = ski_of_keys(changed_keys(ski.keys or {}, {**wider, **stiffer, "camber_mm": 7.0 + share}))
-        model = clamped(new, known.request.model.clamp_length, known.request.elements)
-        found, predicted = solved(model, known.request.conditions), known.predicted(new)
-        assert predicted is not None
-        errors.append(np.max(np.abs(predicted.edge_depth - found.edge_depth)))
-    assert errors[1] < 0.03 * errors[0]
 
 
 def test_what_has_no_derivative_is_rejected() -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -16,7 +16,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import nearest
-from ..ski.beam import banded_product, clamped
+from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
 from .outputs import OUTPUTS, At, OutputGrowth, output_growth
 from .shape import Shape, ShapeGradient, beam_gradient, bent_by, curvature_and_turn, shape_growth
@@ -24,7 +24,6 @@ from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
     from ..compiled import core
-    from ..ski import Ski
     from ..ski.beam import ClampedSki
     from ..snow.properties import SnowProperties
     from .solve import Conditions
@@ -241,32 +240,6 @@ class CarveDerivatives:
         if not solution.converged:
             return None
         return CarveDerivatives(CarveRequest(model, given, strength, solution, request.elements))
-
-    def predicted(self, ski: Ski) -> Solution | None:
-        """State of a similar ski to first order, with the Jacobian of this equilibrium; None for another mesh."""
-        known, solution, numbers = self.request.model, self.at.solution, np.zeros(12)
-        model = clamped(ski, known.clamp_length, self.request.elements)
-        if model.size != known.size:
-            return None
-        tables = ("station", "weight", "width", "base_height")
-        columns = [getattr(model.stations, table) - getattr(known.stations, table) for table in tables]
-        numbers[[10, _WIDEST, _BEVEL, _BEVEL_WIDTH]] = (
-            ski.running_length - known.ski.running_length,
-            model.stations.width.max() - known.stations.width.max(),
-            ski.base_bevel - known.ski.base_bevel,
-            ski.edge_width - known.ski.edge_width,
-        )
-        bent = banded_product(model.stiffness - known.stiffness, solution.u[:, None])[:, 0]
-        growth = self.point.growth(np.array([*columns, np.zeros(len(columns[0]))]), numbers, bent)
-        u, (depth, slope, stress), edge_depth, _, _ = growth
-        return replace(
-            solution,
-            u=solution.u + u,
-            boot_depth=solution.boot_depth + depth,
-            boot_slope=solution.boot_slope + slope,
-            shear_stress=solution.shear_stress + stress,
-            edge_depth=solution.edge_depth + edge_depth,
-        )
 
     def output(self, name: str) -> float | None:
         """Value of an output, in the unit of its name; None where it does not exist."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from itertools import chain, repeat
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from ..ski import Ski
     from ..snow import SnowProperties
     from .task import DesignTask, Goal
-
-
-_NEAR: Final = 1e-3  # distance below which a prediction costs more than the iterations that it saves
 
 
 @dataclass(slots=True, eq=False)
@@ -80,9 +77,8 @@ class Evaluator:
                 raise SolverError("this ski is impossible: {reason}").tag("no_ski", reason=error) from error
             begins: list[Solution | None] = [None] * len(self.snows)
             if self._points:
-                near = min(self._points, key=lambda known: _distance(known, z))
-                far = _distance(near, z) > _NEAR
-                begins = [each.predicted(ski) if far else each.at.solution for each in self._points[near]]
+                near = min(self._points, key=lambda known: float(np.linalg.norm(np.frombuffer(known) - z)))
+                begins = [each.at.solution for each in self._points[near]]
             self._points[place] = tuple(map(self._point, range(len(self.snows)), repeat(ski), begins))
         return self._points[place]
 
@@ -144,10 +140,6 @@ class Evaluator:
         """Equilibria at the conditions of a goal (default: all)."""
         points = self.points(z)
         return [points[int(number) - 1] for number in goal.conditions] if goal.conditions else list(points)
-
-
-def _distance(place: bytes, z: FloatArray) -> float:
-    return float(np.linalg.norm(np.frombuffer(place) - z))
 
 
 def _output(point: CarveDerivatives, name: str) -> float:
