@@ -90,13 +90,13 @@ def named_separator(head: str) -> str | None:
 
 
 def most_frequent_separator(head: str) -> str:
-    r"""The separator found most often in the header, outside quotes; the comma where none is.
+    r"""The separator found most often, outside quotes, in the first line that has any; the comma where none is.
 
-    >>> most_frequent_separator('"a,b,c";d\n1;2')
-    ';'
+    >>> most_frequent_separator('"a,b,c";d\n1;2'), most_frequent_separator("Title\na;b\n1,5;2")
+    (';', ';')
     """
     outside_quotes = re.sub(r'"[^"]*("|\Z)', "x", head)
-    lines = (line for line in re.split(r"[\r\n]+", outside_quotes) if line.strip(" ,;\t"))
+    lines = (line for line in re.split(r"[\r\n]+", outside_quotes) if re.search("[,;\t]", line.strip(" ,;\t")))
     header = next(lines, "")
     return max(SEPARATOR_NAMES, key=header.count)  # the first of equals: the comma
 

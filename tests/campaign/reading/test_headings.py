@@ -95,10 +95,13 @@ def test_headings_that_people_write(form: TableForm, headings: list[str], column
     assert list(columns_by_synonym(form, headings).values()) == columns
 
 
+@pytest.mark.parametrize("ends", [";;", ""])
 def test_a_title_above_the_headings_is_passed_over(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
+    write_campaign: WriteCampaign, small_campaign: dict[str, str], ends: str
 ) -> None:
-    small_campaign["density.csv"] = f"Hang am 23. November;;\n;;\n{small_campaign['density.csv'].replace(',', ';')}"
+    small_campaign["density.csv"] = (
+        f"Hang am 23. November{ends}\n{ends}\n{small_campaign['density.csv'].replace(',', ';')}"
+    )
     campaign = read_campaign(write_campaign(small_campaign))
     assert campaign.density is not None
     assert campaign.density.row.tolist() == [4, 5, 6]
