@@ -1,6 +1,7 @@
 """Conversions by endings, from the command line: results, and refusals with nothing written."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -130,6 +131,9 @@ def test_a_pit_becomes_snowex_tables(tmp_path: Path, capsys: pytest.CaptureFixtu
     ]  # fmt: skip
     assert tables["density"][2] == ["105", "95", "430", "-9999", "-9999"]
     assert tables["temperature"][1:] == [["125", "-7.25"], ["115", "-5.5"], ["75", "0"]]
+    shallow = write_caaml(replace(full_pit(), snow_height=0.3), tmp_path / "shallow.caaml")
+    assert main(["convert", str(shallow), str(tmp_path / "shallow.csv")]) == 1
+    assert "30 cm" in told(capsys)[1]
     assert tables["stratigraphy"][2] == ["113", "83", "0.5", "RGsr", "P+", "-9999", ""]
 
 
@@ -223,6 +227,9 @@ def test_weather_becomes_csv_and_plain_smet(tmp_path: Path, capsys: pytest.Captu
     assert plain.read_text().splitlines()[-2:] == ["2026-02-03T08:00:00 268.65 0.8", "2026-02-03T09:00:00 271.15 -999"]
     assert main(["convert", str(plain), str(again)]) == 0
     assert again.read_text() == (tmp_path / "s.csv").read_text()
+    source.write_text(SMET.replace("TA RH", "TA PSUM"))
+    assert main(["convert", str(source), str(tmp_path / "part.csv")]) == 0
+    assert "PSUM" in told(capsys)[1]
     source.write_text(SMET.replace("TA RH", "HS PSUM"))
     assert main(["convert", str(source), str(tmp_path / "none.csv")]) == 1
     assert "TA, RH" in told(capsys)[1]

@@ -265,6 +265,15 @@ def _to_netcdf(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...
     return (target,)
 
 
+def _weather_as_csv(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
+    series = read_smet(source)
+    written = write_weather_csv(series, target)
+    omitted = [name for name in series.fields if name not in {field for field, *_ in QUANTITIES.values()}]
+    if omitted and options.report is not None:
+        options.report(f"{source}: {', '.join(omitted)} are not columns of a campaign and are omitted")
+    return (written,)
+
+
 def _motion(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
     write_motion(read_motion(source), target)
     return (target,)
@@ -298,7 +307,7 @@ CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     ("SnowMicroPen", "CAAML"): _to_caaml(lambda source, _: _pit_of_recording(source)),
     ("SnowMicroPen", CSV): _recording_as_csv,
     ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
-    ("SMET", CSV): lambda source, target, _: (write_weather_csv(read_smet(source), target),),
+    ("SMET", CSV): _weather_as_csv,
     ("OpenSim table", "OpenSim table"): _motion,
     ("TRC markers", "TRC markers"): _markers(read_trc),
     ("TRC markers", "C3D markers"): _to_c3d,

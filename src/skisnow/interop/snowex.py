@@ -18,12 +18,14 @@ from .._support.staging import write_file
 from .._support.units import CM, MM
 from ..campaign.records import Campaign, DensitySamples
 from ..campaign.snow_micro_pen import SnowMicroPenProfile
-from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowPit
+from ..campaign.snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
 from ..estimation import Analysis
 from ..estimation.regressions import HARDNESS_KEY, STRESS_KEY
 from ..estimation.snow_micro_pen import EvaluatedRecording
 
 NO_DATA: Final = "-9999"
+_SLACK: Final = 0.05
+"""In m: the height of the snow is measured at another place than the profile."""
 DENSITY: Final = ("# Top (cm)", "Bottom (cm)", "Density A (kg/m3)", "Density B (kg/m3)", "Density C (kg/m3)")
 TEMPERATURE: Final = ("# Depth (cm)", "Temperature (deg C)")
 STRATIGRAPHY: Final = (
@@ -49,7 +51,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     Raises
     ------
     ParameterError
-        The height of the snow is not known, or the pit has no ram, hardness or force profile.
+        The height of the snow is not known or less than the depth of a layer, or the pit has no table.
     OutputError
         A file cannot be written.
     """
@@ -60,6 +62,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
             "SnowEx counts heights from the ground, and the snow height of {name!r} is not known: give it with "
             "--snow-height-cm"
         ).tag("unknown_name", name=pit.name)
+    _require_above_ground(pit, height)
     tables = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
     if not tables:
         raise ParameterError("{name!r} has no layers, densities or temperatures; nothing was written").tag(
@@ -70,6 +73,17 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
         written.append(path.with_name(f"{path.stem}_{name}.csv"))
         write_file(written[-1], csv_text((*_header(pit), columns, *rows)))
     return tuple(written)
+
+
+def _require_above_ground(pit: SnowPit, height: float) -> None:
+    layers: tuple[SnowLayer | LayerDensity, ...] = (*pit.layers, *pit.densities)
+    deepest = max((layer.top + (layer.thickness or 0.0) for layer in layers), default=0.0)
+    deepest = max(deepest, *(temperature.depth for temperature in pit.temperatures), 0.0)
+    if deepest > height + _SLACK:
+        raise ParameterError(
+            "{name!r}: the snow height is {height_cm:g} cm, but the profile is {deepest_cm:g} cm deep. Correct the "
+            "height or the depths."
+        ).tag("out_of_range", name=pit.name, height_cm=height / CM, deepest_cm=deepest / CM)
 
 
 def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
