@@ -70,6 +70,11 @@ def test_capitals_do_not_matter(path: Path) -> None:
     assert list(read_smet(path).fields) == ["TA", "RH", "VW"]
 
 
+def test_a_byte_order_mark_of_utf_16(path: Path) -> None:
+    path.write_text(HEAD + ROWS, encoding="utf-16")
+    assert list(read_smet(path).fields) == ["TA", "RH", "VW"]
+
+
 @pytest.mark.parametrize("gap", ["-9999", "-99999.0"])
 def test_gaps_of_another_number_than_nodata(path: Path, gap: str) -> None:
     """Single ones pass the check by the median; below 0 is possible for other columns."""
@@ -109,6 +114,8 @@ def test_interpolation_is_linear_and_leaves_gaps_open(path: Path) -> None:
         (HEAD.replace("nodata ", "nodat ") + ROWS, "nodata"),
         (HEAD.replace("timestamp", "when") + ROWS, "timestamp"),
         (HEAD.replace("0 273.15 0 0", "0 273.15 0") + ROWS, "row 10.*3 .*4"),
+        (HEAD.replace("46.829", "468.29") + ROWS, "row 5.*latitude.*'468.29'.*-90 to 90"),
+        (HEAD.replace("tz  ", "tz = 2\ntz  ") + ROWS, "row 10.*tz.*'1'.*2 as in row 9"),
         (HEAD + "2026-02-03T08:00 -4.0 80\n", "row 14.*3 cells"),
         (HEAD + "2026-02-03T08:00 -4.0 dry 3\n", "row 14.*RH.*'dry'"),
         (HEAD + "yesterday -4.0 80 3\n", "row 14.*timestamp.*'yesterday'"),

@@ -143,11 +143,11 @@ VERSION_6 = """<?xml version="1.0" encoding="UTF-8"?>
  <pointLocation><gml:Point srsName="CRS84"><gml:pos>46.8 9.8</gml:pos></gml:Point></pointLocation>
 </locRef>
 <snowProfileResultsOf><SnowProfileMeasurements dir="top down">
- <weatherCond><airTempPres{temperature}>14</airTempPres></weatherCond>
+ <weatherCond><airTempPres{temperature}>{degrees}</airTempPres></weatherCond>
  <snowPackCond><hS><Components><height{length}>150</height></Components></hS></snowPackCond>
  <stratProfile><Layer><depthTop{length}>10</depthTop><thickness{length}>4</thickness>
   <grainSize{grain}><Components><avg>2</avg></Components></grainSize></Layer></stratProfile>
- <tempProfile><Obs><depth{length}>20</depth><snowTemp{temperature}>14</snowTemp></Obs></tempProfile>
+ <tempProfile><Obs><depth{length}>20</depth><snowTemp{temperature}>{degrees}</snowTemp></Obs></tempProfile>
  <densityProfile><Layer><depthTop{length}>10</depthTop><thickness{length}>4</thickness><density{density}>30</density>
  </Layer></densityProfile>
  <hardnessProfile><Layer><depthTop{length}>10</depthTop><hardness{force}>5</hardness></Layer></hardnessProfile>
@@ -176,7 +176,7 @@ VERSION_5 = """<SnowProfile xmlns="http://caaml.org/Schemas/V5.0/Profiles/SnowPr
 PLACES = ("elevation", "angle", "temperature", "length", "grain", "density", "force")
 
 
-def in_units(folder: Path, version: str = "6.0.3", **units: str) -> Path:
+def in_units(folder: Path, version: str = "6.0.3", degrees: str = "-14", **units: str) -> Path:
     words = {place: f' uom="{units[place]}"' if place in units else "" for place in PLACES}
     words["tuple"] = "".join(
         f' {attribute}="{units[place]}"'
@@ -184,7 +184,7 @@ def in_units(folder: Path, version: str = "6.0.3", **units: str) -> Path:
         if place in units
     )
     path = folder / "pit.caaml"
-    path.write_text(VERSION_6.format(version=version, **words), encoding="utf-8")
+    path.write_text(VERSION_6.format(version=version, degrees=degrees, **words), encoding="utf-8")
     return path
 
 
@@ -210,7 +210,7 @@ def test_units_of_the_standard_are_the_default(tmp_path: Path, version: str) -> 
         pit = read_caaml(in_units(tmp_path, version, **units))
         assert (pit.elevation, pit.slope_angle_deg, pit.aspect) == (8200.0, 1.5, "1.5")
         assert (pit.latitude_deg, pit.longitude_deg) == (46.8, 9.8)
-        assert (pit.air_temperature_C, pit.temperatures[0].temperature_C) == (14.0, 14.0)
+        assert (pit.air_temperature_C, pit.temperatures[0].temperature_C) == (-14.0, -14.0)
         assert lengths(pit) == pytest.approx([1.5, 0.1, 0.04, 0.1, 0.04, 0.2, 0.1, 0.1, 0.2])
         assert (pit.layers[0].grain_size, pit.densities[0].snow_density) == (2e-3, 30.0)
         assert [each.force.tolist() for each in pit.forces] == [[5.0], [5.0, 6.0]]
@@ -223,11 +223,11 @@ def test_elevations(tmp_path: Path, unit: str, metres: float) -> None:
     assert read_caaml(in_units(tmp_path, elevation=unit)).elevation == pytest.approx(metres)
 
 
-@pytest.mark.parametrize(("unit", "celsius"), [("degF", -10.0), ("F", -10.0), ("°F", -10.0), ("K", -259.15)])
-def test_temperatures(tmp_path: Path, unit: str, celsius: float) -> None:
-    pit = read_caaml(in_units(tmp_path, temperature=unit))
-    assert pit.air_temperature_C == pytest.approx(celsius)
-    assert pit.temperatures[0].temperature_C == pytest.approx(celsius)
+@pytest.mark.parametrize(("unit", "degrees"), [("degF", "14"), ("F", "14"), ("°F", "14"), ("K", "263.15")])
+def test_temperatures(tmp_path: Path, unit: str, degrees: str) -> None:
+    pit = read_caaml(in_units(tmp_path, temperature=unit, degrees=degrees))
+    assert pit.air_temperature_C == pytest.approx(-10.0)
+    assert pit.temperatures[0].temperature_C == pytest.approx(-10.0)
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("mm", 0.1), ("m", 100.0), ("in", 2.54), ("ft", 30.48), (" cm ", 1.0)])
@@ -241,7 +241,36 @@ def test_lengths(tmp_path: Path, unit: str, factor: float) -> None:
 
 @pytest.mark.parametrize("unit", ["gcm-3", "g cm-3", "g/cm3", "g/cm³", "g cm^-3"])
 def test_densities(tmp_path: Path, unit: str) -> None:
-    assert read_caaml(in_units(tmp_path, density=unit)).densities[0].snow_density == pytest.approx(30_000.0)
+    path = in_units(tmp_path, density=unit)
+    path.write_text(path.read_text(encoding="utf-8").replace(">30</density>", ">0.3</density>"), encoding="utf-8")
+    assert read_caaml(path).densities[0].snow_density == pytest.approx(300.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("density", "30</density>", "-30</density>"),
+        ("density", "30</density>", "1200</density>"),
+        ("thickness", "4</thickness>", "-4</thickness>"),
+        ("depthTop", "10</depthTop>", "-10</depthTop>"),
+        ("depth", "20</depth>", "20000</depth>"),
+        ("depthTop", "10</depthTop>", "170</depthTop>"),
+        ("thickness", "4</thickness>", "20</thickness>"),
+    ],
+)
+def test_values_that_no_snow_has_are_rejected(tmp_path: Path, name: str, old: str, new: str) -> None:
+    """With heights from the ground a layer is between the ground and the surface."""
+    path = in_units(tmp_path)
+    text = path.read_text(encoding="utf-8").replace(f">{old}", f">{new}", 1)
+    path.write_text(text, encoding="utf-8")
+    if new[0] in "12":
+        path.write_text(text.replace("top down", "bottom up"), encoding="utf-8")
+    assert refusal(path).column == name
+
+
+@pytest.mark.parametrize("degrees", ["14", "265", "-100"])
+def test_temperatures_that_no_snow_has_are_rejected(tmp_path: Path, degrees: str) -> None:
+    assert refusal(in_units(tmp_path, degrees=degrees)).column == "snowTemp"
 
 
 def test_densities_of_another_unit_than_stated_are_rejected(tmp_path: Path) -> None:

@@ -35,6 +35,12 @@ OWN_NAMESPACE: Final = "urn:skisnow:caaml:1"
 """Namespace of H_V and S_f in ``customData``."""
 LIGHTEST: Final = 5.0
 """In kg/m³; a smaller median is another unit (assumption): the lightest new snow has about 10."""
+_SLACK: Final = 0.05
+"""In m: how far a layer may end above the surface or below the ground: heights are measured at another place."""
+_DEEPEST: Final = 100.0
+_DENSITIES: Final = (0.0, 1000.0)
+_TEMPERATURES: Final = (-90.0, 5.0)
+"""Limits in m, kg/m³ and °C with some reserve for the measurement; numbers outside are in another unit or slips."""
 NIL: Final = ("", "inapplicable", "missing", "template", "unknown", "withheld", "n/a", "none")
 """Words for a missing value, which the standard allows instead of any number."""
 _UNIT_OF_PROFILE: Final = {"snowTemp": "uomTemp"}
@@ -204,11 +210,15 @@ class _Profile:
 
     def _density(self, profile: Element, layer: Element) -> LayerDensity:
         top, thickness = self._top_and_thickness(profile, layer)
-        return LayerDensity(top, self._required(DENSITY, profile, layer, "density"), thickness)
+        density = self._required(DENSITY, profile, layer, "density")
+        self._require_within("density", density, _DENSITIES, "kg/m³")
+        return LayerDensity(top, density, thickness)
 
     def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
-        depth = self._required(LENGTH, profile, observed, "depth")
-        return DepthTemperature(self._down(depth), self._required(TEMPERATURE, profile, observed, "snowTemp"))
+        depth = self._down("depth", self._required(LENGTH, profile, observed, "depth"))
+        temperature = self._required(TEMPERATURE, profile, observed, "snowTemp")
+        self._require_within("snowTemp", temperature, _TEMPERATURES, "°C")
+        return DepthTemperature(depth, temperature)
 
     def _forces(self, profile: Element) -> ForceProfile:
         about = profile.child("hardnessMetaData") or profile.child("MetaData") or profile
@@ -242,11 +252,27 @@ class _Profile:
 
     def _top_and_thickness(self, profile: Element, layer: Element) -> tuple[float, float | None]:
         thickness = self._quantity(LENGTH, layer, "thickness", profile=profile)
-        return self._down(self._required(LENGTH, profile, layer, "depthTop")), thickness
+        self._require_within("thickness", thickness or 0.0, (0.0, _DEEPEST), "m")
+        top = self._required(LENGTH, profile, layer, "depthTop")
+        if self._from_ground:
+            self._require_within("thickness", thickness or 0.0, (0.0, top + _SLACK), "m")
+        return self._down("depthTop", top), thickness
 
-    def _down(self, value: float) -> float:
+    def _down(self, element: str, value: float) -> float:
         """Depth from the surface, also if the profile gives heights from the ground."""
-        return (self._snow_height or 0.0) - value if self._from_ground else value
+        top = (self._snow_height or 0.0) if self._from_ground else _DEEPEST
+        self._require_within(element, value, (-_SLACK, top + _SLACK), "m")
+        return top - value if self._from_ground else value
+
+    def _require_within(self, element: str, value: float, limits: tuple[float, float], unit: str) -> None:
+        low, high = limits
+        if not low <= value <= high:
+            self._refuse(
+                element,
+                f"{value:.6g} {unit}",
+                Message("a number from {low:g} to {high:g} {unit}", low=low, high=high, unit=unit),
+                Message("Correct the number or its unit."),
+            )
 
     def _required(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
         value = self._quantity(units, parent, name, profile=profile)

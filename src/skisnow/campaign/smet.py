@@ -28,6 +28,7 @@ from .problems import error
 
 MOST_BYTES: Final = 256 * 2**20
 _NEEDED: Final = ("station_id", "nodata", "fields")
+_READ: Final = (*_NEEDED, "station_name", "latitude", "longitude", "altitude", "tz", "units_offset", "units_multiplier")
 _TIME: Final = "timestamp"
 _COMMENT: Final = re.compile("[#;].*")
 _VERSIONS: Final = ("0.9", "0.95", "0.99", "1.0", "1.1", "1.2")
@@ -117,7 +118,7 @@ class _Reading:
     def __init__(self, file: str, data: bytes) -> None:
         self._file = file
         try:
-            text = data.decode("utf-8-sig")
+            text = data.decode("utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
         except UnicodeDecodeError:
             text = data.decode("latin-1")
         self._lines = text.splitlines()
@@ -150,8 +151,11 @@ class _Reading:
             if plain.upper() == "[DATA]":
                 return header, number
             key, equals, value = plain.partition("=")
+            key, value = key.strip().lower(), value.strip()
+            if equals and key in _READ and header.get(key, (number, value))[1] != value:
+                self._refuse(number, key, value, f"{header[key][1]} as in row {header[key][0]}", "Remove one of them.")
             if equals:
-                header[key.strip().lower()] = (number, value.strip())
+                header[key] = (number, value)
         allowed, action = Message("a header and then [DATA]"), Message("The file is cut off; copy it again.")
         return self._refuse(len(self._lines), "", "no [DATA]", allowed, action)
 
@@ -173,6 +177,10 @@ class _Reading:
         columns = {name: column for name, column in zip(names, values.T, strict=True) if name != _TIME}
         place = [self._number_of(key, math.nan) for key in ("latitude", "longitude", "altitude")]
         latitude, longitude, altitude = (None if math.isnan(number) or number == nodata else number for number in place)
+        for key, value, largest in (("latitude", latitude, 90.0), ("longitude", longitude, 180.0)):
+            if value is not None and abs(value) > largest:
+                allowed = f"degrees from {-largest:g} to {largest:g}"
+                self._refuse(self._header[key][0], key, f"{value:g}", allowed, "Correct the place.")
         station = self._header.get("station_name", self._header["station_id"])[1]
         return StationSeries(self._file, station, latitude, longitude, altitude, offset, times, columns)
 
