@@ -246,8 +246,8 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
 }
 
 // The lines whose ground depends on the way between two poses and not on its ends alone: ahead, where the snow was not
-// touched yet, and where the base passes its deepest place; what lies behind that was passed before. Where an edge
-// slips, only its anchor depends on the way, unless all of the edge that comes to the line slips to the same side.
+// touched yet, and where the base passes its deepest place or did so less than the way before. Where an edge slips,
+// only its anchor depends on the way, unless all of the edge that comes to the line slips to the same side.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
   const auto depth = [&](std::int64_t n) {
@@ -283,7 +283,7 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
         depth(n - over) >= depth(n - over + 1))
       deepest = n - over;
     ahead = ahead && !marked(n);
-    if (ahead || (n >= deepest - 1 && n <= deepest + over)) {
+    if (ahead || (n >= deepest - over && n <= deepest + over)) {
       if (lines.station(n, to) > reach) continue;
       needed_.push_back(n), is_needed_[std::size_t(slot)] = 1.0;
     } else if (drags(n, 0) || drags(n, 1)) {

@@ -42,10 +42,10 @@ Dynamics::Formula Dynamics::formula(double h) const {
   return {h, h / newest, before / newest, newest / h, (1.0 + w) / h, before / h, w};
 }
 
-// [predict] Rates at the end, extrapolated.
-void Dynamics::predict(const Formula& f) {
+// [predict] Rates at the end, extrapolated by a share of the last change of the beams, and by `f.ratio` of the rest.
+void Dynamics::predict(const Formula& f, double of_beams) {
   for (std::size_t i = 0; i < state.rate.size(); i++)
-    next_.rate[i] = state.rate[i] + f.ratio * (state.rate[i] - rate_before_[i]);
+    next_.rate[i] = state.rate[i] + (i < BODY ? f.ratio : of_beams) * (state.rate[i] - rate_before_[i]);
   place(f);
 }
 

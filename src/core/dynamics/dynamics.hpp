@@ -134,7 +134,7 @@ class Dynamics {
     double ratio;                // ω, 0 for Euler's step
   };
   Formula formula(double h) const;
-  void predict(const Formula& f);
+  void predict(const Formula& f, double of_beams);
   void place(const Formula& f);
   void fill_end();
   void add_snow(Numbers& out, bool with_tangent);
