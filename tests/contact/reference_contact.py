@@ -52,13 +52,14 @@ class Line:
 
 @dataclass
 class Edge:
-    """Of a section, to the left or to the right: its place on the line, depth, reach, position and direction across."""
+    """Of a section, to the left or to the right: place on the line, depth, reach, position, across and off the edge."""
 
     place: float
     depth: float
     reach: float
     at: FloatArray
     across: FloatArray
+    off: FloatArray
 
 
 @dataclass
@@ -202,16 +203,11 @@ class _Section:
         for to in (1.0, -1.0):
             at, direction = axis + to * self.half * self.t, self._direction(to)
             crossing = self._crossing(to_line, at, direction)
+            edge_depth = grip_depth + fall * (crossing - place)
             across_edge = np.cross(n, direction)
-            self.edges.append(
-                Edge(
-                    crossing,
-                    grip_depth + fall * (crossing - place),
-                    to * self.half,
-                    at,
-                    across_edge / float(np.linalg.norm(across_edge)),
-                )
-            )
+            across_edge /= float(np.linalg.norm(across_edge))
+            off = n - float(n @ direction) / float(direction @ direction) * direction
+            self.edges.append(Edge(crossing, edge_depth, to * self.half, at, across_edge, off / float(off @ n)))
         self.deepest = max(edge.depth for edge in self.edges)
         low, high = self.edges[1].place, self.edges[0].place
         if fall > 1e-12:
@@ -356,7 +352,7 @@ class _Section:
             used = min(max(used, -1.0), 1.0)
             is_inwards = used * edge.reach > 0.0  # the snow pushes it outwards
             area = self.share * (max(deep - other, 0.0) if is_inwards else deep)
-            out.append(area * (strength * used * edge.across + thrust * abs(used) * self.line.out))
+            out.append(area * (strength * used * edge.across + thrust * abs(used) * edge.off))
         return out
 
     @property

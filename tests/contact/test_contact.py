@@ -217,19 +217,31 @@ def test_every_friction_law_runs_and_is_its_own_formula(law: FrictionLaw) -> Non
     assert found.rub_aside[met] == pytest.approx((found.sliding_aside / speed)[met], rel=1e-12)
 
 
+def sheared(law: ShearLaw, *, lean: float = 0.0) -> FloatArray:
+    """Force of the shear on a straight edge of 1.6 m, 2 mm deep in the middle, at 50°, that is pushed aside (N)."""
+    angle = math.radians(50)
+    pose = np.array([[0.0, 0.0, 0.03 * math.sin(angle) - 2e-3]]), edged(angle, lean)[None]
+    force = []
+    for shear in (law, None):
+        contact = SnowContact(SnowField(H, 0.0, 10.0, shear=shear), [straight()])
+        contact.update(*pose, 0.0)
+        force.append(contact.force(pose[0] + [[0.0, 2e-3, 0.0]], pose[1], SPEED * 0.0, 5e-4).wrench[0, :3])
+    return force[0] - force[1]
+
+
 @pytest.mark.parametrize("law", [AngleShear(3e5, 0.266), MachiningShear(1e5, 0.1)], ids=lambda law: type(law).__name__)
 def test_shear_laws_give_strength_and_thrust(law: ShearLaw) -> None:
-    angle, e, length = math.radians(50), 2e-3, 1.6
-    pose = np.array([[0.0, 0.0, 0.03 * math.sin(angle) - e]]), edged(angle)[None]
-    contact = SnowContact(SnowField(H, 0.0, 10.0, shear=law), [straight()])
-    contact.update(*pose, 0.0)
-    aside = pose[0] + [[0.0, 2e-3, 0.0]]
-    found = contact.force(aside, pose[1], SPEED * 0.0, 5e-4).wrench[0]
-    bare = SnowContact(SnowField(H, 0.0, 10.0), [straight()])
-    bare.update(*pose, 0.0)
-    without = bare.force(aside, pose[1], SPEED * 0.0, 5e-4).wrench[0]
-    assert -found[1] == pytest.approx(float(law.failure_force(e, length, angle)), rel=1e-9)
-    assert found[2] - without[2] == pytest.approx(float(law.thrust_force(e, length, angle)), rel=1e-9)
+    _, across, off = sheared(law)
+    assert -across == pytest.approx(float(law.failure_force(2e-3, 1.6, math.radians(50))), rel=1e-9)
+    assert off == pytest.approx(float(law.thrust_force(2e-3, 1.6, math.radians(50))), rel=1e-9)
+
+
+@pytest.mark.parametrize("lean", [0.001, -0.001])
+def test_a_cut_does_no_work_on_an_edge_that_slides_along_itself(lean: float) -> None:
+    """Nose up or down: a thrust along the snow's normal would drive a ski that rises along its own edge."""
+    force = sheared(MachiningShear(1e5, 0.1), lean=lean)
+    assert force[2] > 100.0
+    assert force @ edged(math.radians(50), lean)[:, 0] == pytest.approx(0.0, abs=1e-9 * force[2])
 
 
 def test_machining_below_its_friction_angle_is_refused() -> None:

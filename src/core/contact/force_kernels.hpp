@@ -164,7 +164,7 @@ struct Acting {
 
 // [edges] What the snow holds at both edges. The wall outside an edge holds it against a motion outwards, with its
 // depth e_i; against a motion inwards it is the slope of the base down to it, max(0, e_i - e_other). Together both hold
-// the depth of the deeper edge, to either side.
+// the depth of the deeper edge, to either side. A cut is in the plane across the edge, or its thrust creates energy.
 template <class V>
 struct EdgeForces {
   V shear[2], upright{};        // shear of each edge; the sum's part along the base's normal
@@ -197,9 +197,9 @@ struct EdgeForces {
 
  private:
   void add(const Cut<V>& c, const Edge<V>& at, V shear, V thrust) {
-    const Vector<V>& n = c.normal;
-    const Vector<V> f{shear * at.across.x + thrust * n.x, shear * at.across.y + thrust * n.y,
-                      shear * at.across.z + thrust * n.z};
+    const Vector<V> raw = cross(c.direction(at.reach / c.half), at.across), off = scaled(raw, 1.0 / dot(raw, c.normal));
+    const Vector<V> f{shear * at.across.x + thrust * off.x, shear * at.across.y + thrust * off.y,
+                      shear * at.across.z + thrust * off.z};
     const Vector<V> m = cross({c.station, at.left, at.up}, f);
     const V square = c.sp * f.y + c.cp * f.z;
     upright += square;

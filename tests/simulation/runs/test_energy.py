@@ -134,14 +134,14 @@ def test_a_strong_dashpot_closes(changes: dict[str, object]) -> None:
 def test_a_run_is_repeated_with_closer_lines() -> None:
     """A light sledge on few lines: each that tip or tail passes counts for much of it."""
     changes = {
-        "sledge.mass_kg": 0.6, "solver.line_spacing_mm": 150.0, "run.duration_s": 0.5, "solver.method": "fast",
-        "shear.law": "machining", "shear.transverse_friction": 0.085, "shear.least_shear_plane_deg": 2.2,
+        "sledge.mass_kg": 0.46, "solver.line_spacing_mm": 200.0, "run.duration_s": 0.5, "solver.method": "fast",
+        "start.speed_m_per_s": 0.55, "sledge.edge_angle_deg": 35.0, "snow.H_V_N_per_mm3": 0.02,
     }  # fmt: skip
     given = load_scenario("carved-46m", changes=changes)
     with pytest.warns(ModelLimitWarning) as caught:
         run = simulate(given)
     assert "repeated_with_closer_lines" in {getattr(each.message, "code", None) for each in caught}
-    assert run.numbers["line_spacing_m"] == pytest.approx(0.150 / 4.0)
+    assert run.numbers["line_spacing_m"] == pytest.approx(0.200 / 4.0)
     assert run.scenario == given
     closes(run, changes)
 
