@@ -177,6 +177,15 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
+@pytest.fixture(scope="session")
+def drawing_chromium(chromium: Browser) -> Iterator[Browser]:
+    """A second Chromium, which draws in software as on a machine without a graphics card."""
+    software = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+    browser = chromium.browser_type.launch(executable_path=CHROMIUM, args=software)
+    yield browser
+    browser.close()
+
+
 @dataclass
 class Watched:
     """Faults of a page."""

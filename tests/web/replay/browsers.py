@@ -1,22 +1,8 @@
-"""A browser that draws in software, as on a machine without a graphics card."""
+"""A page of a replay with its requests and messages."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
-from ..conftest import CHROMIUM, PATIENCE_MS
-
-SOFTWARE = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
-
-
-@contextmanager
-def drawing_in_software(other: Any) -> Iterator[Any]:
-    """A second Chromium beside one that runs: of Playwright there can be only one at a time."""
-    browser = other.browser_type.launch(executable_path=CHROMIUM, args=list(SOFTWARE))
-    try:
-        yield browser
-    finally:
-        browser.close()
+from ..conftest import PATIENCE_MS
 
 
 def slowly(page: Any) -> None:

@@ -13,7 +13,7 @@ from skisnow.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_
 
 from ...replay.test_terrain_and_boots import X, Y, hills, over, run_with_boots
 from ...report.runs import circle_run
-from .browsers import Watched, drawing_in_software, slowly
+from .browsers import Watched, slowly
 
 TRACK = ReplayTrack(name="GNSS", place=np.array([[0.0, 0.0, 0.0], [10.0, 3.0, 0.0]]), time=np.array([0.0, 2.0]))
 GATES = np.array([[4.0, 3.0], [9.0, -2.0]])
@@ -26,28 +26,22 @@ def replay() -> Replay:
 
 
 @pytest.fixture(scope="module")
-def browser(chromium: Any) -> Iterator[Any]:
-    with drawing_in_software(chromium) as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
 def address(replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> str:
     ghost = replay_of_run(circle_run(radius=13.0), title="wider")
     return write_replay(replay, tmp_path_factory.mktemp("page") / "replay.html", ghost=ghost).as_uri()
 
 
 @pytest.fixture
-def fresh(browser: Any, address: str) -> Iterator[Watched]:
+def fresh(drawing_chromium: Any, address: str) -> Iterator[Watched]:
     """A page that was just opened."""
-    watched = Watched(browser, address)
+    watched = Watched(drawing_chromium, address)
     yield watched
     watched.close()
 
 
 @pytest.fixture(scope="module")
-def shared(browser: Any, address: str) -> Iterator[Watched]:
-    watched = Watched(browser, address)
+def shared(drawing_chromium: Any, address: str) -> Iterator[Watched]:
+    watched = Watched(drawing_chromium, address)
     yield watched
     watched.close()
 
@@ -166,9 +160,9 @@ def test_readings_are_the_runs_numbers_with_units(seen: Watched) -> None:
     assert "(mm)" in legend
 
 
-def test_the_replay_opens_playing_with_the_camera_behind(browser: Any, address: str) -> None:
+def test_the_replay_opens_playing_with_the_camera_behind(drawing_chromium: Any, address: str) -> None:
     """Both skis and the groove behind them are on the picture, and gravity points down in it."""
-    seen = Watched(browser, address, plays=True)
+    seen = Watched(drawing_chromium, address, plays=True)
     try:
         seen.page.wait_for_function("window.skisnowReplay.time > 0.1")
         assert seen.value("stage.follower.view") == "chase"
@@ -375,12 +369,12 @@ def test_picture_and_film_are_files(fresh: Watched, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_moving_boots_over_measured_heights(browser: Any, tmp_path: Path) -> None:
+def test_moving_boots_over_measured_heights(drawing_chromium: Any, tmp_path: Path) -> None:
     """Skis stand where the boots have them, on a mesh of the heights; brackets and shadows go with them."""
     run = run_with_boots()
     replay = replay_of_run(replace(run, scenario=over(hills(X[:, None], Y)).scenario), gates=GATES)
     assert replay.terrain is not None
-    seen = Watched(browser, write_replay(replay, tmp_path / "terrain.html").as_uri())
+    seen = Watched(drawing_chromium, write_replay(replay, tmp_path / "terrain.html").as_uri())
     try:
         for ski in (0, 1):
             found = np.array(seen.does(f"return replay.edgesAt({replay.time[3]}, {ski}, 1)"))
@@ -405,8 +399,10 @@ def test_moving_boots_over_measured_heights(browser: Any, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])
-def test_a_phone_shows_it_all_without_scrolling_sideways(browser: Any, address: str, width: int, height: int) -> None:
-    phone = Watched(browser, address, width=width, height=height)
+def test_a_phone_shows_it_all_without_scrolling_sideways(
+    drawing_chromium: Any, address: str, width: int, height: int
+) -> None:
+    phone = Watched(drawing_chromium, address, width=width, height=height)
     try:
         phone.does("replay.seek(2.0)")
         assert phone.page.locator("html").evaluate("each => each.scrollWidth") <= width

@@ -20,7 +20,7 @@ from skisnow.scenario.keys import in_sections
 
 from ...replay.test_skier import run_of_skier
 from ...report.runs import circle_run
-from .browsers import Watched, drawing_in_software, slowly
+from .browsers import Watched, slowly
 
 ODD = 'wide "turn" <b>'
 
@@ -100,15 +100,14 @@ def test_all_that_the_program_says_has_its_german_text() -> None:
     assert [text for text, german in words.items() if text == german and len(text) > 8] == ["Film (WebM)"]
 
 
-def test_a_page_in_german(chromium: Any, tmp_path: Path) -> None:
+def test_a_page_in_german(drawing_chromium: Any, tmp_path: Path) -> None:
     run = replay_of_run(circle_run(), title="Ein Schwung")
     page = write_replay(run, tmp_path / "replay.html", ghost=replay_of_run(circle_run(radius=13.0)), language="de")
-    with drawing_in_software(chromium) as browser:
-        seen = Watched(browser, page.as_uri())
-        seen.does("replay.show('forces', true); replay.seek(2.0)")
-        told = seen.does(TOLD)
-        assert seen.page.locator("html").get_attribute("lang") == "de"
-        seen.close()
+    seen = Watched(drawing_chromium, page.as_uri())
+    seen.does("replay.show('forces', true); replay.seek(2.0)")
+    told = seen.does(TOLD)
+    assert seen.page.locator("html").get_attribute("lang") == "de"
+    seen.close()
     for words in (
         "12,0 m links",
         "8,00 m/s",
@@ -139,14 +138,13 @@ def replay() -> Replay:
 
 
 @pytest.fixture(scope="module")
-def seen(chromium: Any, replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
+def seen(drawing_chromium: Any, replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
     assert replay.gate_times is not None
     ghost = replace(replay, title="its ghost", time=replay.time + 7.0, gate_times=replay.gate_times + np.array(LATER))
     page = write_replay(replay, tmp_path_factory.mktemp("page") / "replay.html", ghost=ghost)
-    with drawing_in_software(chromium) as browser:
-        watched = Watched(browser, page.as_uri())
-        yield watched
-        watched.close()
+    watched = Watched(drawing_chromium, page.as_uri())
+    yield watched
+    watched.close()
 
 
 def test_parts_stand_between_the_joints(seen: Watched, replay: Replay) -> None:

@@ -13,7 +13,6 @@ from skisnow.replay import Replay, moving_replay_model, replay_of_run
 
 from ...replay.test_moving_model import SKIS, by_hand, to_run
 from ...report.runs import circle_run
-from .browsers import drawing_in_software
 
 SITE = "http://model.test/"  # answered by the test itself: nothing leaves the machine
 SIZE = {"width": 960, "height": 540}
@@ -68,23 +67,23 @@ def replay() -> Replay:
 
 
 @pytest.fixture(scope="module")
-def page(chromium: Any, replay: Replay) -> Iterator[Any]:
+def page(drawing_chromium: Any, replay: Replay) -> Iterator[Any]:
     bundle = three()
     answers = {
         SITE: (PAGE.encode(), "text/html"),
         f"{SITE}three.js": (bundle, "text/javascript"),
         f"{SITE}model.glb": (moving_replay_model(replay), "model/gltf-binary"),
     }
-    with drawing_in_software(chromium) as browser:
-        shown = browser.new_page(viewport=SIZE)
-        said: list[str] = []
-        shown.on("pageerror", lambda error: said.append(str(error)))
-        shown.on("console", lambda word: said.append(word.text) if word.type in {"error", "warning"} else None)
-        shown.route(f"{SITE}**", lambda route: _answer(route, answers))
-        shown.goto(SITE)
-        shown.wait_for_function("window.lab")
-        yield shown
-        assert [word for word in said if "favicon" not in word and "GPU stall" not in word] == []
+    shown = drawing_chromium.new_page(viewport=SIZE)
+    said: list[str] = []
+    shown.on("pageerror", lambda error: said.append(str(error)))
+    shown.on("console", lambda word: said.append(word.text) if word.type in {"error", "warning"} else None)
+    shown.route(f"{SITE}**", lambda route: _answer(route, answers))
+    shown.goto(SITE)
+    shown.wait_for_function("window.lab")
+    yield shown
+    shown.close()
+    assert [word for word in said if "favicon" not in word and "GPU stall" not in word] == []
 
 
 def three() -> bytes:
