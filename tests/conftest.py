@@ -11,7 +11,7 @@ from typing import Any
 from unittest.mock import patch
 
 import pytest
-from _pytest.doctest import DoctestModule
+from _pytest.doctest import DoctestItem, DoctestModule
 
 # read when NumPy is loaded: small matrices in several threads wait for each other longer than they compute, and two
 # processes test at once
@@ -48,10 +48,18 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what drives a browser."""
+    """Mark what drives a browser, and begin with pages and files that wait for a server or a browser.
+
+    The first worker gets them with the server and the browser that they share, and computing of others fills the waits.
+    """
+    waiting = set()
     for item in items:
-        if "chromium" in getattr(item, "fixturenames", ()):
+        fixtures = {*getattr(item, "fixturenames", ())}
+        if "chromium" in fixtures:
             item.add_marker(pytest.mark.browser)
+        if (isinstance(item, DoctestItem) and item.path.suffix == ".md") or fixtures & {"chromium", "served"}:
+            waiting.add(item.path)
+    items.sort(key=lambda item: item.path not in waiting)
 
 
 def pytest_collection_finish() -> None:
