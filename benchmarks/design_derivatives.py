@@ -1,10 +1,11 @@
-"""python -m benchmarks.design_derivatives [search|cost|kinks]: exact derivatives of a carve, and a search with them.
+"""python -m benchmarks.design_derivatives [search|cost|kinks|places]: exact derivatives of a carve, and their search.
 
 ``search``: a robust design with exact derivatives and with finite differences: five variables, three snows, the worst
 deviation from 12 m, a limit of the grip. Solver, starts and tolerances are the same. All ways run in turn, several
 times; of the differences the best of three steps counts.
 ``cost``: results and new skis, in Newton iterations of the same equilibrium and in equilibria.
 ``kinks``: how near 1,000 everyday questions are to a change of state.
+``places``: answers with the usual places across of the groove against those with 75.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ import scipy.optimize  # noqa: F401 - its import does not count
 from skisnow._support.arrays import FloatArray
 from skisnow.carving.equilibrium import carve
 from skisnow.carving.outputs import OUTPUTS
+from skisnow.carving.result import radius_at_boot
 from skisnow.carving.sensitivity import CONDITIONS, CarveDerivatives
-from skisnow.carving.solve import _core_ski, refined, solved
+from skisnow.carving.solve import Solution, _core_ski, refined, solved
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.problem import Search
 from skisnow.design.search import begins_of
@@ -178,5 +180,31 @@ def count_kinks(count: int = 1000) -> None:
         print(f"nearer than {limit:g} to a kink: {np.sum(np.array(nearest) < limit)} of {count} questions")
 
 
+def compare_places(count: int = 60) -> None:
+    """Random carves: deviation of radius and largest force from those with 75 places, denser towards the edge."""
+    random = np.random.default_rng(60)
+    skis = [read_ski(name) for name in ("slalom", "giant-slalom", "carver")]
+    deviations: list[list[float]] = []
+    while len(deviations) < count:
+        hardness, ratio = np.exp(random.uniform(np.log([0.05e9, 1.0]), np.log([1e9, 100.0])))
+        snow = SnowProperties(hardness, 0.5e6, source="random")
+        turn = {"edge_angle": math.radians(random.uniform(15.0, 65.0)), "load": random.uniform(300.0, 2500.0)}
+        found = carve(skis[random.integers(3)], snow, unloading_ratio=ratio, **turn)
+        if found.request is None or found.turn_radius_boot is None or found.force_per_length is None:
+            continue
+        request = found.request
+        reach = 1.05 * request.model.stations.width.max() * math.cos(turn["edge_angle"])
+        many = refined(
+            request.model, request.conditions, request.solution, places=reach * np.linspace(0.0, 1.0, 75) ** 2
+        )
+        _, u, (depth, slope, stress), edge_depth, force = many.state()
+        solution = Solution(True, 0, u, depth, slope, stress, edge_depth, force)
+        radius = radius_at_boot(request.model, request.conditions, solution) or math.nan
+        deviations.append([found.turn_radius_boot / radius - 1.0, found.force_per_length.max() / force.max() - 1.0])
+    for name, column in zip(("radius", "largest force per length"), np.abs(deviations).T, strict=True):
+        print(f"{name}: median {np.median(column):.1e}, largest {column.max():.1e}")
+
+
 if __name__ == "__main__":
-    {"search": compare_searches, "cost": print_costs, "kinks": count_kinks}[(sys.argv[1:] or ["search"])[0]]()
+    commands = {"search": compare_searches, "cost": print_costs, "kinks": count_kinks, "places": compare_places}
+    commands[(sys.argv[1:] or ["search"])[0]]()
