@@ -106,10 +106,11 @@ def test_markers_with_similar_names_stay(tmp_path: Path, name: str) -> None:
     assert read_c3d(tmp_path / "a.c3d").names == (name,)
 
 
-def test_points_beyond_the_names_are_omitted_by_their_number(tmp_path: Path) -> None:
-    (tmp_path / "a.c3d").write_bytes(c3d_bytes(np.ones((2, 4, 3)), {"LABELS": ["a", "LHipMoment"], "UNITS": ["mm"]}))
+def test_points_without_a_name_are_omitted_by_their_number(tmp_path: Path) -> None:
+    labels = ["a", "LHipMoment", "", "b"]
+    (tmp_path / "a.c3d").write_bytes(c3d_bytes(np.ones((2, 5, 3)), {"LABELS": labels, "UNITS": ["mm"]}))
     found = read_c3d(tmp_path / "a.c3d")
-    assert (found.names, found.omitted) == (("a",), ("LHipMoment", "point 3", "point 4"))
+    assert (found.names, found.omitted) == (("a", "b"), ("LHipMoment", "point 3", "point 5"))
 
 
 def test_each_block_and_each_point_may_have_its_unit(tmp_path: Path) -> None:

@@ -111,9 +111,11 @@ def test_markers_are_read_as_they_were_written_and_in_metres(tmp_path: Path) -> 
         (TRC.replace("\tmm\t", "\tinch\t"), "'inch'"),
         (TRC.replace("1300", "13oo"), "line 8, toe X"),
         (TRC.replace("1300", "1300\t1\t2\t3"), "line 8: more"),
-        (TRC.replace("toe", "heel"), "twice"),
+        (TRC.replace("toe", "heel"), "heel is there twice"),
         ("".join(TRC.splitlines(keepends=True)[:4]), "PathFileType"),
-        ("".join(TRC.splitlines(keepends=True)[:5]), "markers: "),
+        ("".join(TRC.splitlines(keepends=True)[:5]), "NumFrames=2"),
+        (TRC.replace("100\t2\t2", "100\t9\t2"), "NumFrames=9, but the file has 2"),
+        (TRC.replace("100\t2\t2", "100\t2\t3"), "NumMarkers=3, but the file has 2"),
     ],
 )
 def test_wrong_markers_are_rejected(tmp_path: Path, text: str, words: str) -> None:

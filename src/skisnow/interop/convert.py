@@ -284,7 +284,7 @@ def _markers(read: Callable[[Path], Markers]) -> Conversion:
         markers = read(source)
         if markers.omitted and options.report is not None:
             names = ", ".join(markers.omitted)
-            options.report(f"{source}: {len(markers.omitted)} points are not places and are omitted: {names}")
+            options.report(f"{source}: {len(markers.omitted)} points without a name or a place are omitted: {names}")
         write_trc(markers, target)
         return (target,)
 

@@ -253,7 +253,7 @@ def _rows(path: Path, text: str) -> list[Row]:
     if not rows:
         raise ParameterError("{path}: the row with the names of columns is missing").tag("unknown_name", path=path)
     names = rows[0][1]
-    require_whole(path, said, rows=len(rows) - 1, columns=len(names))
+    require_whole(path, said, nRows=len(rows) - 1, nColumns=len(names))
     if degrees_stated(path, said) is False and any(name.endswith(ANGLES) for name in names):
         raise ParameterError(
             "{path}: the header states inDegrees=no, but angles of boots are in degrees; multiply them by 57.29578 "

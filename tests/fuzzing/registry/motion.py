@@ -25,7 +25,7 @@ from ..texts import TEXT
 
 _TRC = b"""PathFileType\t4\t(X/Y/Z)\ttwo.trc
 DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames
-100\t100\t2\t2\tmm\t100\t1\t2
+100\t100\t3\t2\tmm\t100\t1\t3
 Frame#\tTime\theel\t\t\ttoe\t\t
 \t\tX1\tY1\tZ1\tX2\tY2\tZ2
 

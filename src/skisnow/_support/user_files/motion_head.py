@@ -10,7 +10,6 @@ from ..errors import ParameterError
 
 HEAD_END: Final = "endheader"
 _LONGEST_SHOWN: Final = 40
-_COUNTS: Final = ("nRows", "nColumns")
 _WORDS: Final = {"yes": True, "y": True, "no": False, "n": False}
 
 
@@ -51,10 +50,10 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
     return stated is True
 
 
-def require_whole(path: str | Path, head: Mapping[str, str], *, rows: int, columns: int) -> None:
-    """ParameterError if the header states another number of rows or columns than the file has."""
+def require_whole(path: str | Path, head: Mapping[str, str], **counts: int) -> None:
+    """ParameterError if the header states another number of rows, columns, frames or markers than the file has."""
     said = _said(head)
-    for key, there in zip(_COUNTS, (rows, columns), strict=True):
+    for key, there in counts.items():
         word = said.get(key.lower(), "")
         if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
             raise ParameterError(

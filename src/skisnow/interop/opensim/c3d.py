@@ -64,7 +64,7 @@ def read_c3d(path: str | Path) -> Markers:
     labels, units = _labels_and_units(about)
     quantities = {name for group in _GROUPS for name in _words(about, group)}
     names = labels[: points.shape[1]]
-    columns = [i for i, name in enumerate(names) if not _is_quantity(name, quantities)]
+    columns = [i for i, name in enumerate(names) if name and not _is_quantity(name, quantities)]
     if not columns:
         raise ParameterError("{path}: it has no markers. Allowed: at least one name in POINT:LABELS with a place.").tag(
             "out_of_range", path=path
@@ -81,8 +81,8 @@ def read_c3d(path: str | Path) -> Markers:
     sizes = np.array([METRES[units[i]] for i in columns])
     place = points[:, columns] * sizes[:, None]
     time = (first + np.arange(len(place))) / rate
-    nameless = (f"point {i + 1}" for i in range(len(names), points.shape[1]))
-    omitted = (*(name for i, name in enumerate(names) if i not in columns), *nameless)
+    names += [""] * (points.shape[1] - len(names))
+    omitted = tuple(name or f"point {i + 1}" for i, name in enumerate(names) if i not in columns)
     try:
         return Markers(time, tuple(names[i] for i in columns), np.ascontiguousarray(place), rate, omitted)
     except ParameterError as error:

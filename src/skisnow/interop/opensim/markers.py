@@ -16,6 +16,7 @@ from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import require_ending, write_file
 from ..._support.units import DEGREE, Facts, Shown, amount
 from ..._support.user_files import plain_text
+from ..._support.user_files.motion_head import require_whole
 from ...geometry.vectors import angles_of
 from ...scenario.boots import ANGLES, LARGEST, OF_SLOPE, SIDES, Boots
 from .table import MOST_BYTES, number_of, require_rising
@@ -50,7 +51,10 @@ class Markers(Shown):
                 "wrong_shape", shape=str(np.shape(self.place)), needed=str((len(self.time), len(self.names), 3))
             )
         if len(set(self.names)) < len(self.names):
-            raise ParameterError("markers: a name is there twice; each marker needs a separate name").tag("repeated")
+            name = next(name for name in self.names if self.names.count(name) > 1)
+            raise ParameterError("markers: the name {name} is there twice; each marker needs a separate name").tag(
+                "repeated", name=name
+            )
         require_range("rate", self.rate, 0.0, np.inf, above=True, below=True)
 
     def _facts(self) -> Facts:
@@ -88,6 +92,7 @@ def read_trc(path: str | Path) -> Markers:
         )
     names = tuple(word.strip() for word in lines[3].split("\t")[2:] if word.strip())
     rows = [(i + 1, line) for i, line in enumerate(lines[_HEAD:], start=_HEAD) if line.strip()]
+    require_whole(path, head, NumMarkers=len(names), NumFrames=len(rows))
     numbers = [_row(path, number, line, names) for number, line in rows]
     try:
         rate = float(head.get("DataRate", "nan"))

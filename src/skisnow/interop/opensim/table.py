@@ -86,7 +86,7 @@ def read_motion(path: str | Path) -> MotionTable:
         )
     first = ends + 2
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
-    require_whole(path, head, rows=len(rows), columns=len(names))
+    require_whole(path, head, nRows=len(rows), nColumns=len(names))
     numbers = np.array([_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
     others = {key: value for key, value in head.items() if key.lower() not in _OWN_KEYS}
     in_degrees = is_in_degrees(path, head)
