@@ -301,12 +301,12 @@ def _hashed_files(
 
 
 def _check(folder: Path) -> tuple[tuple[int | None, int | None], str | None]:
-    """Numbers of errors and warnings of a campaign, and the reason why its check failed; None where unknown."""
+    """Numbers of errors and of warnings that need an action, and the reason why the check failed; None if unknown."""
     from ..reading.campaign import check_campaign
 
     try:
         problems = check_campaign(folder)
     except Exception as error:  # whatever breaks in the check, raw data are kept; the caller gets the error
         return (None, None), f"{type(error).__name__}: {error}"
-    severities = [problem.severity for problem in problems]
+    severities = [problem.severity for problem in problems if problem.needs_action]
     return (severities.count("error"), severities.count("warning")), None
