@@ -122,6 +122,8 @@ def test_change_on_a_command_line(word: str, change: tuple[str, object]) -> None
 
 
 def test_a_word_without_an_equals_sign_changes_nothing() -> None:
+    with raises(ParameterError, "changes_nothing", text="=90"):
+        parse_change("=90")
     with raises(ParameterError, "changes_nothing", text="mass_kg 90"):
         parse_change("mass_kg 90")
 

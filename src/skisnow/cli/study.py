@@ -129,7 +129,7 @@ def _tell(place: Path, table: StudyTable) -> None:
     counts = ", ".join(f"{outcome} {count}" for outcome, count in tally.counts().items())
     print(f"{place}: points {tally.rows} ({counts})")
     for number, first, what in (
-        (tally.failed, tally.first_failed, "could not be asked"),
+        (tally.failed, tally.first_failed, "have an input that is not allowed"),
         (tally.warned, tally.first_warned, "carry warnings"),
     ):
         if first is not None:

@@ -84,7 +84,7 @@ def parse_change(text: str) -> tuple[str, object]:
     (('snow.published', 'race-piste'), ('sledge.inertia_kg_m2', [6, 8, 10]))
     """
     name, equals, value_text = (part.strip() for part in text.partition("="))
-    if not equals:
+    if not equals or not name:
         raise ParameterError("{text!r} changes nothing; write section.key=value, such as sledge.edge_angle_deg=35").tag(
             "changes_nothing", text=text
         )
