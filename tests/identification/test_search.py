@@ -130,6 +130,9 @@ def test_broydens_update_replaces_jacobians_on_the_way() -> None:
     assert found.differentiated_at is not None
     away = np.diag(last) - found.differentiated_at
     assert np.abs(away) == pytest.approx(np.full(3, 0.02), abs=1e-9)  # one-sided, over the smallest step
+    quick = Search(bent, -far, far, replace(options, renews=False)).run(np.zeros(3))
+    assert quick is not None
+    assert (quick.state, quick.rounds) == ("converged", 1)  # another search continues next to the minimum
 
 
 def test_the_last_steps_use_the_jacobian_of_cheaper_residuals() -> None:

@@ -46,6 +46,7 @@ class SearchOptions:
     worth: smallest fall of the sum of squares, in squared standard deviations, for which the search continues.
     rough: numerical roughness of the residuals in standard deviations: the search also converged if no step improves
         and the remaining gain is smaller.
+    renews: True to compute the Jacobian next to the minimum, too; False if another search continues there.
     keeps_jacobian: distance from its place up to which a Jacobian is used again; 0: it is always computed again.
     longest_move: longest step of a parameter.
     damping: smallest damping of a step, the square of a singular value of the scaled Jacobian that differences hide.
@@ -60,6 +61,7 @@ class SearchOptions:
     tolerance: float = 5.0
     worth: float = 0.3
     rough: float = 1.0
+    renews: bool = True
     keeps_jacobian: float = 0.1
     longest_move: float = 0.25
     damping: float = 1e-5
@@ -149,7 +151,9 @@ class Search:
             step = self._full_step(here)
             left = self._in_noise(here, step)
             ends = left <= self.options.tolerance or np.max(np.abs(step), initial=0.0) <= self.options.smallest_move
-            near_minimum = ends or not self.options.keeps_jacobian or not self._is_far(here, step)
+            near_minimum = self.options.renews and (
+                ends or not self.options.keeps_jacobian or not self._is_far(here, step)
+            )
             if not self._is_valid(here) and (near_minimum or not here.is_trusted):
                 renewed = self._differentiate(here.place, here)
                 if renewed is None:

@@ -131,6 +131,8 @@ class _Solver:
             options = replace(options, tolerance=_LAST_TOLERANCE)
         elif self._has_tracks and (self.plan.starts > 1 or not problem.accuracy_is_stated):
             options = replace(options, tolerance=_COMPARABLE)
+        elif self._has_tracks:
+            options = replace(options, renews=False)
         return Search(
             residuals, *bounds_of(problem.parameters), options, lambda text: self.plan.progress(f"{about}{text}")
         )
