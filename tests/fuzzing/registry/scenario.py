@@ -226,7 +226,10 @@ READERS = (
     ),
     _of("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_results"),
     _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
-    _of("terrain.csv", _TERRAIN, _used_terrain, TABLE, "scenario.raster_formats:read_grid_table", "scenario.terrain:_placed"),
+    _of(
+        "terrain.csv", _TERRAIN, _used_terrain, TABLE,
+        "scenario.raster_formats:read_grid_table", "scenario.terrain:_placed",
+    ),
     _of("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.raster_formats:read_esri_ascii"),
     Reader(
         name="terrain.prj", target="terrain.prj", files=lambda: {"terrain.asc": _ESRI, "terrain.prj": _SYSTEM},
