@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory, mkdtemp
+from tempfile import TemporaryDirectory
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import OutputError, ParameterError
 from .._support.messages import Message
-from .._support.staging import cannot_write, write_file
+from .._support.staging import write_file
 from .._support.user_files import GivenError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
+from .page_requests import hidden_folder
 from .subprocesses import SKI_BOUNDS, confined
 from .uploads import Unpacking
 from .words import reworded, typed_number
@@ -118,21 +118,15 @@ class LabSkis:
 
     def _save(self, name: str, write: Writing) -> None:
         self.require_new(name)
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            made = Path(mkdtemp(prefix=".partial-", dir=self._folder))
-        except OSError as error:
-            raise cannot_write(self._folder, error) from error
-        try:
-            write(made)
-            made.chmod(0o755)
-            made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
-        except OSError as error:
-            raise OutputError("the ski {name} cannot be saved: {error}. Try another name").tag(
-                "cannot_write", name=name, error=error.strerror or error
-            ) from error
-        finally:
-            shutil.rmtree(made, ignore_errors=True)
+        with hidden_folder(self._folder) as made:
+            try:
+                write(made)
+                made.chmod(0o755)
+                made.rename(self._folder / name)  # complete or absent; fails if another request saved the name first
+            except OSError as error:
+                raise OutputError("the ski {name} cannot be saved: {error}. Try another name").tag(
+                    "cannot_write", name=name, error=error.strerror or error
+                ) from error
 
 
 def ski_of_texts(text: str, table: str) -> tuple[Ski, str]:

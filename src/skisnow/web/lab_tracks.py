@@ -7,7 +7,6 @@ import json
 import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path, PurePosixPath
-from tempfile import mkdtemp
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, ParameterError
@@ -19,7 +18,7 @@ from ..replay.replay import measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
-from .page_requests import free_place, plain_stem
+from .page_requests import free_place, hidden_folder, plain_stem
 from .subprocesses import BOUNDS, confined
 from .words import reworded, typed_number
 
@@ -93,12 +92,7 @@ class TrackFolders:
             raise ParameterError("{most} tracks are stored already; remove some on the page Replay").tag(
                 "too_many_files", most=MOST_TRACKS
             )
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            made = Path(mkdtemp(prefix=".partial-", dir=self._folder))
-        except OSError as error:
-            raise cannot_write(self._folder, error) from error
-        try:
+        with hidden_folder(self._folder) as made:
             suffix = PurePosixPath(placing.called.lower()).suffix
             place = made / (_FILE + (suffix if suffix in SUFFIXES else ""))
             _copy_limited(content, place)
@@ -106,8 +100,6 @@ class TrackFolders:
             write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
             place = free_place(self._folder, plain_stem(placing.called, "track"))
             made.rename(place)
-        finally:
-            shutil.rmtree(made, ignore_errors=True)
         return place.name
 
     def placings(self) -> dict[str, Placing]:

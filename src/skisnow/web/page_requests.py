@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import unicodedata
+from collections.abc import Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
+from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
 from weakref import WeakKeyDictionary
@@ -21,6 +25,7 @@ from starlette.responses import RedirectResponse, Response
 
 from .._support.errors import ParameterError, SkisnowError, StoreError
 from .._support.messages import Message
+from .._support.staging import cannot_write
 from .elements import Words, button
 from .layout import error_sentence, plain_page
 
@@ -196,6 +201,23 @@ def free_place(folder: Path, stem: str, suffix: str = "") -> Path:
     """Place in a folder with this name, or with the first free number after it."""
     places = (folder / f"{stem}{end}{suffix}" for end in ("", *(f"-{number}" for number in range(2, 1000))))
     return next(place for place in places if not place.exists())
+
+
+@contextmanager
+def hidden_folder(parent: Path) -> Iterator[Path]:
+    """Folder in another one, which is made if needed, to fill and then to rename; removed unless it was renamed.
+
+    Raises OutputError: it cannot be made.
+    """
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        made = Path(mkdtemp(prefix=".partial-", dir=parent))
+    except OSError as error:
+        raise cannot_write(parent, error) from error
+    try:
+        yield made
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
 
 
 def required_id(text: str) -> str:

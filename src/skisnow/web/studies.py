@@ -9,12 +9,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import re
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any, Final
 
 from .._support.errors import ParameterError, SkisnowError
@@ -23,6 +21,7 @@ from .._support.processes.batch import LOCAL, available_cores
 from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
 from ..studies import Study, StudyTable
+from .page_requests import hidden_folder
 from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
 from .study_fields import CARVE, STUDY, TABLE, StudyQuestion, require_few_points
 from .uploads import files_below
@@ -87,9 +86,7 @@ class Studies(Runs):
 
         asked_at = datetime.now(UTC)
         name = new_name(question.of, asked_at)
-        self.folder.mkdir(parents=True, exist_ok=True)
-        made = Path(mkdtemp(prefix=".partial-", dir=self.folder))
-        try:
+        with hidden_folder(self.folder) as made:
             for file, content in question.files().items():
                 write_file(made / file, content)
             try:
@@ -99,8 +96,6 @@ class Studies(Runs):
                 raise ParameterError(_without_folder(made, error.message)).tag(error.code) from error
             made.chmod(0o755)
             made.rename(self.folder / name)  # it becomes a study with its job.json
-        finally:
-            shutil.rmtree(made, ignore_errors=True)
         with in_language(language):
             given = question.varied_words()
         job = StudyJob(

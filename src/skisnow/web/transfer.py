@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import secrets
 import shutil
 from dataclasses import dataclass
@@ -37,7 +36,7 @@ from ..estimation.result_rows import first_hardness
 from .layout import error_sentence, plain_page
 from .page_requests import add_upload, required_id, uploaded_files
 from .subprocesses import BOUNDS, confined
-from .uploads import add_uploaded, files_below, write_zip
+from .uploads import add_uploaded, zip_download, zip_of_campaign
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -89,20 +88,10 @@ def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
 
 async def _zip_answer(write: Writing, id_: str, request: Request) -> Response:
     try:
-        content = await run_in_threadpool(_zip, write)
+        content = await run_in_threadpool(zip_of_campaign, write)
     except StoreError as error:
         return plain_page(Message("This cannot be exported"), error_sentence(error), 404, request)
-    headers = {"content-disposition": f'attachment; filename="campaign-{required_id(id_)}.zip"'}
-    return Response(content, media_type="application/zip", headers=headers)
-
-
-def _zip(write: Writing) -> bytes:
-    packed = io.BytesIO()
-    with TemporaryDirectory(prefix="skisnow-export-") as name:
-        folder = Path(name) / "campaign"
-        write(folder)
-        write_zip(files_below(folder, under=folder.name), packed)
-    return packed.getvalue()
+    return zip_download(content, f"campaign-{required_id(id_)}.zip")
 
 
 def entry_files(lab: Lab, id_: str) -> FilesInMemory:

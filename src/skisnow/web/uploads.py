@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import errno
+import io
 import stat
 import struct
 import zipfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 from typing import IO, Final
+
+from starlette.responses import Response
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
@@ -172,14 +176,30 @@ def campaign_folder(folder: Path) -> Path:
     return folder
 
 
-def write_zip(files: Iterable[tuple[str, bytes]], to: IO[bytes]) -> None:
-    """Write a zip of names with contents."""
-    with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
+def zip_of(files: Iterable[tuple[str, bytes]]) -> bytes:
+    """Zip of names with contents."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files:
             archive.writestr(name, content)
+    return packed.getvalue()
 
 
-def files_below(folder: Path, *, under: str = "") -> Sequence[tuple[str, bytes]]:
+def zip_of_campaign(write: Callable[[Path], None], *, report: Path | None = None) -> bytes:
+    """Zip of a campaign, which ``write`` writes into a folder, with the files of its report."""
+    with TemporaryDirectory(prefix="skisnow-export-") as name:
+        folder = Path(name) / "campaign"
+        write(folder)
+        return zip_of(files_below(folder, under="campaign") + (files_below(report, under="analysis") if report else []))
+
+
+def zip_download(content: bytes, name: str) -> Response:
+    """Answer with a zip that the browser saves under a name."""
+    headers = {"content-disposition": f'attachment; filename="{name}"'}
+    return Response(content, media_type="application/zip", headers=headers)
+
+
+def files_below(folder: Path, *, under: str = "") -> list[tuple[str, bytes]]:
     """Paths and contents of all files below a folder, for a zip."""
     paths = sorted(path for path in folder.rglob("*") if path.is_file())
     prefix = f"{under}/" if under else ""

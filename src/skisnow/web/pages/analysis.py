@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import secrets
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
 
 from nicegui import app, background_tasks, ui
@@ -15,13 +13,13 @@ from starlette.responses import FileResponse, Response
 
 from ..._support.messages import Message
 from ..analysis_view import AnalysisView, OpenAnalysis
-from ..campaign_analysis import AnalysisCache, CampaignSource, load_drawing, write_whole_report
+from ..campaign_analysis import AnalysisCache, load_drawing, write_whole_report
 from ..elements import link
 from ..layout import framed, plain_page
 from ..page_requests import entering, export, required_id
 from ..settings import Lab
 from ..subprocesses import Worker
-from ..uploads import files_below, write_zip
+from ..uploads import zip_download, zip_of_campaign
 from ..words import language_of_request
 
 HERE: Final = "/"
@@ -65,19 +63,8 @@ def add_page(lab: Lab) -> None:
         page = open_pages.get(key)
         if page is None or (folder := await _report(page, worker, request)) is None or page.subject is None:
             return _no_report(page, request)
-        headers = {"content-disposition": 'attachment; filename="analysis.zip"'}
-        content = await run_in_threadpool(_zip_of, page.subject, folder)
-        return Response(content, media_type="application/zip", headers=headers)
-
-
-def _zip_of(subject: CampaignSource, report: Path) -> bytes:
-    """Campaign and report as one zip file."""
-    packed = io.BytesIO()
-    with TemporaryDirectory(prefix="skisnow-export-") as name:
-        folder = Path(name) / "campaign"
-        subject.write_campaign(folder)
-        write_zip([*files_below(folder, under="campaign"), *files_below(report, under="analysis")], packed)
-    return packed.getvalue()
+        content = await run_in_threadpool(zip_of_campaign, page.subject.write_campaign, report=folder)
+        return zip_download(content, "analysis.zip")
 
 
 def _no_report(page: OpenAnalysis | None, request: Request) -> Response:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import Any, Final
 from urllib.parse import quote
 
@@ -22,7 +21,7 @@ from ..scenario_fields import called, written
 from ..settings import Lab
 from ..studies import FIGURE, Studies
 from ..study_fields import CARVE, STUDY, TABLE, study_keys
-from ..uploads import write_zip
+from ..uploads import zip_download, zip_of
 from ..widgets import BEHIND, ChartLine, LineChart
 from ..words import language_of, number_said, said
 
@@ -89,10 +88,7 @@ def add_page(lab: Lab) -> None:
             folder = studies.file(name, TABLE).parent
         except ParameterError as error:
             return plain_page(Message("This cannot be shown"), error_sentence(error), 404, request)
-        packed = io.BytesIO()
-        await run_in_threadpool(lambda: write_zip(studies.files_of(folder), packed))
-        headers = {"content-disposition": 'attachment; filename="study.zip"'}
-        return Response(packed.getvalue(), media_type="application/zip", headers=headers)
+        return zip_download(await run_in_threadpool(lambda: zip_of(studies.files_of(folder))), "study.zip")
 
 
 def _show_inputs(job: Job | None) -> None:
