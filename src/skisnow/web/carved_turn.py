@@ -21,7 +21,7 @@ from ..report.pair_verdicts import ski_verdict
 from ..ski.ski_file import Sources
 from .elements import Words, button, named
 from .snow_choice import ChosenSnow, SnowChoice
-from .widgets import STYLES, ChartLine, LineChart, save_buttons
+from .widgets import STYLES, ChartLine, LineChart, add_ski_table, save_buttons
 from .words import number_said, said
 
 ALONG: Final = Message("Along the ski (m), boot = 0")
@@ -272,7 +272,7 @@ class CarvedTurn:
             self._named = names
             self._facts.clear()
             with self._facts:
-                self._cells = _add_table(names, self.facts)
+                self._cells = add_ski_table(names, {key: words for key, (words, _) in self.facts.items()})
             self._headline.clear()
             with self._headline:
                 colours = [style["colour"] for style in STYLES[: len(names)]]
@@ -319,24 +319,3 @@ def _in_words(answer: dict[str, Any]) -> Message:
     if answer["remedy"]:
         words = Message("{name}: {outcome}, {remedy}.", name=name, outcome=outcome, remedy=answer["remedy"])
     return joined([words, *(Message("Warning: {warning}.", warning=text) for text in answer["warnings"])])
-
-
-def _add_table(names: list[str], facts: Mapping[str, tuple[Message, str]]) -> dict[str, list[ui.label]]:
-    """Add a table with a row for each fact and a column for each ski; returns the labels of its cells."""
-    cells: dict[str, list[ui.label]] = {}
-    with ui.element("table"):
-        with ui.element("thead"), ui.element("tr"):
-            ui.element("td")
-            for number, text in enumerate(names):
-                with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
-                    Words(text)
-        with ui.element("tbody"):
-            for key, (words, _) in facts.items():
-                with ui.element("tr"):
-                    with ui.element("th").props("scope=row"):
-                        Words(words)
-                    cells[key] = []
-                    for number in range(len(names)):
-                        with ui.element("td").classes("n").style(f"color: {STYLES[number]['colour']}"):
-                            cells[key].append(Words(""))
-    return cells

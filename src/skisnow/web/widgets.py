@@ -21,7 +21,7 @@ from .runs import STATES, progress_words
 from .words import language_of, said
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from typing import TypeAlias
 
     from .runs import Runs
@@ -213,3 +213,24 @@ class JobList:
         except ParameterError as error:
             ui.notify(said(error_sentence(error)))
         self.show()
+
+
+def add_ski_table(names: Sequence[str], facts: Mapping[str, str]) -> dict[str, list[ui.label]]:
+    """Add a table with a row for each fact and a column for each ski; returns the labels of its cells."""
+    cells: dict[str, list[ui.label]] = {}
+    with ui.element("table"):
+        with ui.element("thead"), ui.element("tr"):
+            ui.element("td")
+            for number, text in enumerate(names):
+                with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
+                    Words(text)
+        with ui.element("tbody"):
+            for key, words in facts.items():
+                with ui.element("tr"):
+                    with ui.element("th").props("scope=row"):
+                        Words(words)
+                    cells[key] = []
+                    for number in range(len(names)):
+                        with ui.element("td").classes("n").style(f"color: {STYLES[number]['colour']}"):
+                            cells[key].append(Words(""))
+    return cells

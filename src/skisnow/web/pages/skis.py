@@ -11,14 +11,14 @@ from nicegui import run, ui
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message, current_language, translations
 from ...report.charts import SkiDrawing, ski_drawing
-from ..elements import Outcome, Words, button, choice, field, folded, link, named, option_texts
+from ..elements import Outcome, button, choice, field, folded, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import carving
 from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
 from ..subprocesses import SKI_BOUNDS, confined
-from ..widgets import STYLES, ChartLine, LineChart
+from ..widgets import ChartLine, LineChart, add_ski_table
 
 PATH: Final = "/skis"
 TITLE: Final = Message("Skis")
@@ -147,7 +147,10 @@ class _Skis:
     def _show(self, drawn: list[SkiDrawing]) -> None:
         self._facts.clear()
         with self._facts:
-            _table(drawn)
+            cells = add_ski_table([ski.name for ski in drawn], {fact: fact for fact in drawn[0].facts})
+            for fact, labels in cells.items():
+                for label, ski in zip(labels, drawn, strict=True):
+                    label.set_text(ski.facts[fact])
         self._sources.clear()
         with self._sources:
             for ski in drawn:
@@ -214,20 +217,3 @@ def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
         yield ChartLine(ski.station_m, values, number, name=ski.name)
         if key == "half_width_mm":
             yield ChartLine(ski.station_m, [-value for value in values], number)
-
-
-def _table(drawn: list[SkiDrawing]) -> None:
-    with ui.element("table"):
-        with ui.element("thead"), ui.element("tr"):
-            ui.element("td")
-            for number, ski in enumerate(drawn):
-                with ui.element("th").props("scope=col").style(f"color: {STYLES[number]['colour']}"):
-                    Words(ski.name)
-        with ui.element("tbody"):
-            for key in drawn[0].facts:
-                with ui.element("tr"):
-                    with ui.element("th").props("scope=row"):
-                        Words(key)
-                    for number, ski in enumerate(drawn):
-                        with ui.element("td").style(f"color: {STYLES[number]['colour']}"):
-                            Words(ski.facts[key])
