@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, TypeAlias
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
 from .._support.units import unit_of_name
+from .._support.user_files import shown_value
 
 if TYPE_CHECKING:
     from .._support.arrays import BoolArray, FloatArray
@@ -225,7 +226,7 @@ class Quantity:
             return math.inf
         if self.kind in ("number", "whole number") and isinstance(value, int | float) and not isinstance(value, bool):
             return self._number(value)
-        raise ParameterError(_OF_ANOTHER_KIND[self.kind]).tag("wrong_kind", name=self.name, value=_shown(value))
+        raise ParameterError(_OF_ANOTHER_KIND[self.kind]).tag("wrong_kind", name=self.name, value=shown_value(value))
 
     def _number(self, value: float) -> float | int:
         try:
@@ -235,12 +236,12 @@ class Quantity:
         if number and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
             raise ParameterError(
                 "{name} is {value}, not a quantity; allowed are 0 and sizes from {smallest:g} to {largest:g}"
-            ).tag("wrong_kind", name=self.name, value=_shown(value), smallest=SMALLEST, largest=LARGEST)
+            ).tag("wrong_kind", name=self.name, value=shown_value(value), smallest=SMALLEST, largest=LARGEST)
         if self.kind == "number":
             return number
         if not number.is_integer():
             raise ParameterError("{name} is {value}; it must be a whole number").tag(
-                "wrong_kind", name=self.name, value=_shown(value)
+                "wrong_kind", name=self.name, value=shown_value(value)
             )
         return int(value)
 
@@ -257,7 +258,7 @@ class Quantity:
                 one.in_range(element)
         if not self._allows(checked):
             raise ParameterError(_NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED).tag(
-                "out_of_range", name=self.name, value=_shown(value), allowed=self.allowed, unit=self.unit
+                "out_of_range", name=self.name, value=shown_value(value), allowed=self.allowed, unit=self.unit
             )
         return checked
 
@@ -294,7 +295,7 @@ class Quantity:
             self.in_range(_plain(value, self._held))
         elif self.in_range(value) != value:  # a file's text may have blanks around it
             raise ParameterError(_NOT_ALLOWED).tag(
-                "out_of_range", name=self.name, value=_shown(value), allowed=self.allowed
+                "out_of_range", name=self.name, value=shown_value(value), allowed=self.allowed
             )
 
     def _allows(self, value: InputValue) -> bool:
@@ -355,12 +356,3 @@ def _plain(value: object, factor: float) -> object:
         return value
     number = float(value) / factor
     return float(f"{number:.14g}")
-
-
-def _shown(value: Any, limit: int = 80) -> str:
-    """A value for an error message, shortened."""
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of more digits than Python writes
-        return "a number of thousands of digits"
-    return text if len(text) <= limit else text[:limit] + " …"

@@ -15,7 +15,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, joined
 from .._support.units import DEGREE
-from .._support.user_files import read_toml
+from .._support.user_files import read_toml, shown_value
 from ..parameters import InputValue, Quantity, made, nearest
 from .file_keys import BASE, SKI_KEYS, SkiFile
 from .layout import BaseShape
@@ -80,14 +80,19 @@ class FileValues:
                 raise ParameterError(
                     "{file}: {key} = {value} is stated together with {other} for the same quantity. {action}"
                 ).tag(
-                    "contradiction", file=self.file, key=key, value=shown(self.values[key]), other=other, action=action
+                    "contradiction",
+                    file=self.file,
+                    key=key,
+                    value=shown_value(self.values[key]),
+                    other=other,
+                    action=action,
                 )
 
 
 def refuse(file: Path, place: str, value: object, allowed: str, action: Message) -> NoReturn:
     """Raise the error for a value at a place of a file."""
     raise ParameterError("{file}: {place} is {value}; allowed is {allowed}. {action}").tag(
-        "out_of_range", file=file, place=place, value=shown(value), allowed=allowed, action=action
+        "out_of_range", file=file, place=place, value=shown_value(value), allowed=allowed, action=action
     )
 
 
@@ -172,12 +177,3 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
 @functools.lru_cache(maxsize=32)
 def _base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
     return made(BaseShape, dict(values))
-
-
-def shown(value: object, limit: int = 80) -> str:
-    """A value for an error message, shortened."""
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of more digits than Python writes
-        return "a number of thousands of digits"
-    return text if len(text) <= limit else text[:limit] + " …"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -14,7 +13,7 @@ from nicegui import ui
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, template
-from .._support.user_files import natural_number
+from .._support.user_files import natural_number, toml_text
 from ..carving.question import CARVE_KEYS
 from ..parameters import Quantity
 from .elements import choice, field, named
@@ -84,10 +83,10 @@ class StudyQuestion:
         """Text of study.toml."""
         lines = [f'out = "{TABLE}"']
         if self.of != CARVE:
-            lines.append(f"scenario = {_toml(self.of)}")
+            lines.append(f"scenario = {toml_text(self.of)}")
         fixed, listed = (
             [
-                f"{_key(name)} = {_toml(value)}"
+                f"{_key(name)} = {toml_text(value)}"
                 for name, value in self.fixed.items()
                 if isinstance(value, list) == several
             ]
@@ -143,14 +142,6 @@ def require_few_points(points: int) -> None:
 
 def _key(name: str) -> str:
     return f'"{name}"' if "." in name else name
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, bool | str):
-        return json.dumps(value, ensure_ascii=False)
-    if isinstance(value, tuple | list):
-        return f"[{', '.join(map(_toml, value))}]"
-    return repr(value)
 
 
 NOTHING: Final = "nothing"

@@ -12,6 +12,7 @@ from .text_files import (
     plain_bytes,
     plain_text,
     read_toml,
+    shown_value,
     toml_text,
     toml_values,
 )
@@ -31,6 +32,7 @@ __all__ = [
     "read_json",
     "read_record",
     "read_toml",
+    "shown_value",
     "toml_text",
     "toml_values",
     "workbook_sheets",

@@ -7,7 +7,7 @@ import math
 import re
 import stat
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
@@ -199,6 +199,15 @@ def shown(text: str, limit: int = 60) -> str:
     """A text within a message: short, and nothing that does not print."""
     plain = "".join(letter if letter.isprintable() else "?" for letter in text[: limit + 1])
     return plain if len(plain) <= limit else plain[:limit] + "…"
+
+
+def shown_value(value: object, limit: int = 80, written: Callable[[object], str] = repr) -> str:
+    """A value within a message, shortened."""
+    try:
+        text = written(value)
+    except ValueError:  # an integer of more digits than Python writes
+        return "a number of thousands of digits"
+    return text if len(text) <= limit else text[:limit] + " …"
 
 
 MOST_TOML_BYTES: Final = 1 << 20

@@ -12,6 +12,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined
+from ..._support.user_files import shown_value
 from ...parameters import Quantity, made, own_quantities
 from ..problems import Problem, error, warning
 
@@ -44,14 +45,14 @@ class TomlValues:
     def refuse(self, key: str, allowed: str, action: str, *, code: str = "bad_toml", value: object = _MISSING) -> None:
         """Report an error of a key (default: with its value)."""
         shown = self.values.get(key) if value is _MISSING else value
-        text = None if shown is None else _shown(shown)
+        text = None if shown is None else shown_value(shown, 200, str)
         self.problems.append(
             error(code, self.file, column=self.path_of(key), value=text, allowed=allowed, action=action)
         )
 
     def refuse_unknown(self, key: str, value: object, words: Iterable[str], allowed: str, action: str) -> None:
         """Report an unknown word, with the known one that is most like it."""
-        near = difflib.get_close_matches(_shown(value).lower(), list(words), n=1)
+        near = difflib.get_close_matches(shown_value(value, 200, str).lower(), list(words), n=1)
         meant = [Message("Did you mean {similar}?", similar=near[0])] if near else []
         self.refuse(key, allowed, joined([*meant, action]), value=value)
 
@@ -172,11 +173,3 @@ class TomlValues:
         self.problems.append(
             warning("unknown_column", self.file, column=self.path_of(key), value=key, allowed=allowed, action=action)
         )
-
-
-def _shown(value: object, limit: int = 200) -> str:
-    try:
-        text = str(value)
-    except ValueError:  # an integer of more digits than Python writes
-        return "a number of thousands of digits"
-    return text if len(text) <= limit else text[:limit] + " ..."

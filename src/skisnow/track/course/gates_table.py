@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final, get_args
 
 from ..._support.messages import Message
-from ..._support.spreadsheet_text import CsvRow, csv_rows
+from ..._support.spreadsheet_text import CsvRow, csv_rows, csv_text
 from ..._support.user_files.json_text import json_number
 from .passages import CourseResult, GateOutcome
 
@@ -53,11 +51,7 @@ def gate_rows(result: CourseResult) -> list[dict[str, Any]]:
 
 def gates_csv(result: CourseResult) -> str:
     """gates.csv as text: numbers with all digits, empty cells for missing values."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(gate_rows(result))
-    return stream.getvalue()
+    return csv_text([COLUMNS, *(row.values() for row in gate_rows(result))])
 
 
 def gates_dict(result: CourseResult) -> dict[str, Any]:
@@ -166,11 +160,7 @@ def _gate_row(row: CsvRow) -> dict[str, Any]:
 
 def gaps_csv(gaps: Sequence[GateGap]) -> str:
     """Table with a row for each gate and `GAP_COLUMNS` as text; empty cells for missing values."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, GAP_COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(gap_rows(gaps))
-    return stream.getvalue()
+    return csv_text([GAP_COLUMNS, *(row.values() for row in gap_rows(gaps))])
 
 
 def gap_rows(gaps: Sequence[GateGap]) -> list[dict[str, Any]]:
