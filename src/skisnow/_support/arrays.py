@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import TypeAlias
@@ -31,6 +32,14 @@ def content_bytes(thing: object) -> Iterator[bytes]:
     else:
         array = getattr(thing, "tobytes", None)
         yield repr(thing).encode() if array is None else array()
+
+
+def content_hash(begin: str, *things: object) -> str:
+    """SHA-256 of a text and of the contents of objects, in hexadecimal digits."""
+    digest = hashlib.sha256(begin.encode())
+    for piece in content_bytes(things):
+        digest.update(piece)
+    return digest.hexdigest()
 
 
 def index_names(names: Sequence[str]) -> tuple[list[str], npt.NDArray[np.int64]]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import get_args
 
-from .._support.arrays import content_bytes
+from .._support.arrays import content_hash
 from .._support.errors import ParameterError, require_choice, require_range
 from .._support.messages import Message
 from .._support.processes.batch import ExecutorLike, Pool, require_executor, workers_in_force
@@ -240,7 +239,5 @@ def _require(*, evaluations: int, population: int | None, spread: float, settled
 
 def _fingerprint(racer: Racer, begun: RacingLine, settings: Sequence[object]) -> str:
     search = version("cmaes") if settings[0] != 1 else None
-    digest = hashlib.sha256(f"with gates {version('skisnow')} {search} {tuple(settings)} {begun.apexes}".encode())
-    for piece in content_bytes((racer, begun.turns)):
-        digest.update(piece)
-    return digest.hexdigest()
+    head = f"with gates {version('skisnow')} {search} {tuple(settings)} {begun.apexes}"
+    return content_hash(head, racer, begun.turns)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -12,7 +11,7 @@ from typing import Any, Final, get_args
 import numpy as np
 from scipy.stats import qmc
 
-from .._support.arrays import FloatArray, content_bytes
+from .._support.arrays import FloatArray, content_hash
 from .._support.errors import ParameterError, require_choice, require_range
 from .._support.processes.batch import ExecutorLike, run_batch
 from .._support.processes.kept_rows import KeptRows
@@ -244,7 +243,4 @@ def _about(value: float, spread: float) -> tuple[float, float]:
 
 
 def _fingerprint(points: Sequence[Scenario], line: RacingLine, model: RacerModel) -> str:
-    digest = hashlib.sha256(f"with gates {version('skisnow')} {model} {line.apexes}".encode())
-    for piece in content_bytes((tuple(points), line.turns)):
-        digest.update(piece)
-    return digest.hexdigest()
+    return content_hash(f"with gates {version('skisnow')} {model} {line.apexes}", tuple(points), line.turns)
