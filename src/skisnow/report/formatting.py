@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, date, datetime
 from typing import Any, Final, Literal, TypeAlias
 
@@ -83,6 +83,17 @@ def aligned_rows(rows: Sequence[Sequence[str]]) -> list[str]:
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows]
+
+
+def named_rows(rows: Iterable[tuple[str, str]]) -> list[str]:
+    """Lines for a terminal: names, and texts that begin below each other.
+
+    >>> named_rows([("speed", "3 m/s"), ("end point", "x 1 m")])
+    ['speed      3 m/s', 'end point  x 1 m']
+    """
+    rows = list(rows)
+    width = max((len(name) for name, _ in rows), default=0)
+    return [f"{name.ljust(width)}  {text}" for name, text in rows]
 
 
 def json_text(contents: Mapping[str, Any]) -> str:

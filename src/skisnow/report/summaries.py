@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from .._support.errors import SkisnowWarning
 from ..simulation.run import OPEN_SHARE
 from ..track.course.gates_table import gate_rows
-from .formatting import aligned_rows, plain
+from .formatting import aligned_rows, named_rows, plain
 from .pair_verdicts import ski_verdict
 
 if TYPE_CHECKING:
@@ -99,10 +100,6 @@ def _maximum(key: str, *, by: Callable[[float], float] = float) -> Callable[[Jso
     return lambda answer: max((value for value in answer[key] or () if value is not None), key=by, default=None)
 
 
-def _number(key: str) -> Callable[[Json], float | None]:
-    return lambda answer: answer[key]
-
-
 def _ski_number(key: str) -> Callable[[Json], float | None]:
     return lambda answer: answer["ski"][key]
 
@@ -112,26 +109,26 @@ _NOTHING: Final = 1e-6  # limit below which an imbalance of force or moment is r
 _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
     ("outcome", lambda answer: answer["outcome"].replace("_", " ")),
     ("grip holds", lambda answer: "-" if answer["holds"] is None else _yes_or_no(answer["holds"])),
-    ("side force (N)", _number("side_force_N")),
-    ("shear capacity of the snow (N)", _number("side_force_limit_N")),
-    ("grip utilisation (1: side-slip)", _number("grip_utilisation")),
-    ("total force of the snow (N)", _number("total_force_N")),
-    ("turn radius, boot and 0.4 m to each side (m)", _number("turn_radius_boot_m")),
-    ("the same, side force spread the other way (m)", _number("turn_radius_boot_other_spread_m")),
-    ("turn radius, boot and ends of contact (m)", _number("turn_radius_chord_m")),
-    ("turn radius, median over the contact (m)", _number("turn_radius_median_m")),
+    ("side force (N)", itemgetter("side_force_N")),
+    ("shear capacity of the snow (N)", itemgetter("side_force_limit_N")),
+    ("grip utilisation (1: side-slip)", itemgetter("grip_utilisation")),
+    ("total force of the snow (N)", itemgetter("total_force_N")),
+    ("turn radius, boot and 0.4 m to each side (m)", itemgetter("turn_radius_boot_m")),
+    ("the same, side force spread the other way (m)", itemgetter("turn_radius_boot_other_spread_m")),
+    ("turn radius, boot and ends of contact (m)", itemgetter("turn_radius_chord_m")),
+    ("turn radius, median over the contact (m)", itemgetter("turn_radius_median_m")),
     ("sidecut radius of three widths (m)", _ski_number("sidecut_radius_of_three_widths_m")),
     ("sidecut radius of the whole edge line (m)", _ski_number("sidecut_radius_of_edge_line_m")),
-    ("contact length (m)", _number("contact_length_m")),
-    ("loaded contact length (m)", _number("bearing_length_m")),
-    ("edge depth, afterbody / forebody", _number("afterbody_depth_ratio")),
+    ("contact length (m)", itemgetter("contact_length_m")),
+    ("loaded contact length (m)", itemgetter("bearing_length_m")),
+    ("edge depth, afterbody / forebody", itemgetter("afterbody_depth_ratio")),
     ("edge depth, maximum (mm)", _maximum("edge_depth_mm")),
     ("normal force per length, maximum (N/m)", _maximum("force_per_length_N_per_m")),
     ("deflection, maximum (mm)", _maximum("bending_mm", by=abs)),
     ("twist, maximum (degrees)", _maximum("twist_deg", by=abs)),
-    ("boot moment about the ski's cross axis (N m)", _number("boot_pitch_moment_Nm")),
-    ("force out of balance (N)", _number("residual_force_N")),
-    ("moment out of balance (N m)", _number("residual_moment_Nm")),
+    ("boot moment about the ski's cross axis (N m)", itemgetter("boot_pitch_moment_Nm")),
+    ("force out of balance (N)", itemgetter("residual_force_N")),
+    ("moment out of balance (N m)", itemgetter("residual_moment_Nm")),
 )
 
 
@@ -252,9 +249,7 @@ def simulate_summary(summary: Json, *, title: str) -> str:
     lines = [f"{title}: {summary['outcome'].replace('_', ' ')}"]
     if summary["remedy"]:
         lines.append(summary["remedy"])
-    rows = list(_run_rows(summary))
-    width = max(len(name) for name, _ in rows)
-    lines += ["", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    lines += ["", *named_rows(_run_rows(summary))]
     if "verification" in summary:
         lines += ["", *_verification(summary["verification"])]
     return "\n".join(lines)
@@ -301,11 +296,12 @@ def _residual(error: float | None) -> str:
 
 def _verification(verification: Mapping[str, Json]) -> Iterator[str]:
     yield "computed again, finer or with another input, one at a time:"
-    width = max((len(key) for key in verification), default=0)
+    rows = []
     for key, row in verification.items():
         outcome = "" if row["outcome"] == "finished" else f" ({row['outcome'].replace('_', ' ')})"
         change = f"{plain(row['was'])} to {plain(row['now'])}"
-        yield f"  {key.ljust(width)}  {change}: the end moves by {plain(row['end_moves_cm'])} cm{outcome}"
+        rows.append((key, f"{change}: the end moves by {plain(row['end_moves_cm'])} cm{outcome}"))
+    yield from (f"  {line}" for line in named_rows(rows))
 
 
 def gates_text(result: CourseResult) -> str:

@@ -39,10 +39,7 @@ MOST_DRAWN: Final = 10_000
 
 def track_map(summary: TrackSummary) -> Figure:
     """Draw the usable places as recorded, with equal scales."""
-    limits = map_limits(summary.track.place[summary.track.usable])
-    height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, _SMALLEST_MM, _LARGEST_MM))
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
-    axes = figure.add_subplot()
+    figure, axes = _new_map(summary, _SMALLEST_MM)
     _draw_line(axes, summary, 0, len(summary.track) - 1, color=PALE, linewidth=0.7, zorder=1)
     for lift in summary.day.lifts:
         _draw_line(axes, summary, lift.first, lift.last, color=GREY, linewidth=0.7, linestyle=(0, (4, 2)), zorder=2)
@@ -52,17 +49,13 @@ def track_map(summary: TrackSummary) -> Figure:
         for run in summary.day.runs:
             _draw_line(axes, summary, run.first, run.last, color=BLUE, linewidth=0.9, zorder=3)
     _draw_ends(axes, summary)
-    _set_axes(axes, limits, summary.track.axes)
     legend_below(figure, _handles(summary))
     return figure
 
 
 def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Figure:
     """Draw the places from above, coloured by speed, or by the signed curvature with radii as labels."""
-    limits = map_limits(summary.track.place[summary.track.usable])
-    height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, 3.0 * _SMALLEST_MM, _LARGEST_MM))
-    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
-    axes = figure.add_subplot()
+    figure, axes = _new_map(summary, 3.0 * _SMALLEST_MM)
     numbers = drawn_points(0, len(summary.track) - 1)
     numbers = numbers[summary.track.usable[numbers]]
     values = summary.motion.speed if what == "speed" else _ridden_curvature(summary)
@@ -72,7 +65,6 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
     line.set_cmap("viridis" if what == "speed" else "PuOr_r")
     axes.add_collection(line)
     _draw_ends(axes, summary)
-    _set_axes(axes, limits, summary.track.axes)
     if what == "speed":
         figure.colorbar(line, ax=axes, label=Message("speed (m/s)"), pad=0.01, aspect=22)
         return figure
@@ -81,10 +73,25 @@ def coloured_map(summary: TrackSummary, what: Literal["speed", "radius"]) -> Fig
     bar = figure.colorbar(
         line, ax=axes, label=Message("turn radius (m),\nleft above, right below"), pad=0.01, aspect=22
     )
-    radii = named_radii(reach)
-    bar.set_ticks([*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))])
-    bar.set_ticklabels([*map(str, radii), Message("straight"), *map(str, reversed(radii))])
+    ticks, labels = _radius_ticks(reach)
+    bar.set_ticks(ticks, labels=labels)
     return figure
+
+
+def _new_map(summary: TrackSummary, lowest_mm: float) -> tuple[Figure, Axes]:
+    """Figure with one map of the usable places, with equal scales and a least height."""
+    limits = map_limits(summary.track.place[summary.track.usable])
+    height = float(np.clip((limits[3] - limits[2]) / (limits[1] - limits[0]) * 150.0, lowest_mm, _LARGEST_MM))
+    figure = new_figure(width_mm=DOUBLE_MM, height_mm=height + _FRAME_MM)
+    axes = figure.add_subplot()
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlim(limits[0], limits[1])
+    axes.set_ylim(limits[2], limits[3])
+    across, up = _LABELS[summary.track.axes]
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)
+    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
+    return figure, axes
 
 
 def turns_are_distinct(summary: TrackSummary) -> bool:
@@ -141,16 +148,6 @@ def _draw_ends(axes: Axes, summary: TrackSummary) -> None:
         axes.annotate(word, (x, y), (5, 5), textcoords="offset points", fontsize=7.0, zorder=6)
 
 
-def _set_axes(axes: Axes, limits: tuple[float, float, float, float], kind: str) -> None:
-    axes.set_aspect("equal", adjustable="box")
-    axes.set_xlim(limits[0], limits[1])
-    axes.set_ylim(limits[2], limits[3])
-    across, up = _LABELS[kind]
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
-    axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
-
-
 def _handles(summary: TrackSummary) -> list[Line2D]:
     handles = []
     if turns_are_distinct(summary):
@@ -162,15 +159,8 @@ def _handles(summary: TrackSummary) -> list[Line2D]:
     elif summary.day.runs:
         handles.append(Line2D([], [], color=BLUE, label=counted(len(summary.day.runs), "{count} run", "{count} runs")))
     if summary.day.lifts:
-        handles.append(
-            Line2D(
-                [],
-                [],
-                color=GREY,
-                linestyle=(0, (4, 2)),
-                label=counted(len(summary.day.lifts), "{count} lift", "{count} lifts"),
-            )
-        )
+        lifts = counted(len(summary.day.lifts), "{count} lift", "{count} lifts")
+        handles.append(Line2D([], [], color=GREY, linestyle=(0, (4, 2)), label=lifts))
     return [*handles, Line2D([], [], color=PALE, label=Message("neither") if handles else Message("track"))]
 
 
@@ -268,9 +258,7 @@ def _draw_radius(axes: Axes, summary: TrackSummary, arc_length: FloatArray) -> N
     reach = curvature_reach(summary)
     axes.axhline(0.0, color=GREY, linewidth=0.5, zorder=1)
     axes.set_ylim(-reach, reach)
-    radii = named_radii(reach)
-    axes.set_yticks([*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))])
-    axes.set_yticklabels([*map(str, radii), Message("straight"), *map(str, reversed(radii))])
+    axes.set_yticks(*_radius_ticks(reach))
     axes.set_ylabel(Message("turn radius (m),\nleft above, right below"))
 
 
@@ -307,6 +295,13 @@ def named_radii(reach: float) -> list[int]:
         if place <= 1.0 + 1e-9 and apart >= _NEIGHBOURS and place >= _NEIGHBOURS and len(radii) < _TICKS:
             radii.append(radius)
     return radii
+
+
+def _radius_ticks(reach: float) -> tuple[list[float], list[str]]:
+    """Ticks of an axis of curvatures up to ``reach`` (1/m), and the radii that label them."""
+    radii = named_radii(reach)
+    ticks = [*(-1.0 / radius for radius in radii), 0.0, *(1.0 / radius for radius in reversed(radii))]
+    return ticks, [*map(str, radii), Message("straight"), *map(str, reversed(radii))]
 
 
 def _legend_handles(summary: TrackSummary) -> list[Line2D | Patch]:

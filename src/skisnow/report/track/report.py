@@ -105,55 +105,28 @@ def _estimates(summary: TrackSummary) -> Markup:
 def track_drawings(summary: TrackSummary, gates: CourseResult | None = None) -> Iterator[Drawing]:
     """All figures in order; each is drawn when it is requested, so that it gets the style in force."""
     name = summary.track.name
-    yield Drawing(
-        "map",
-        prose("{name} from above, the same scale along both axes.", name=name),
-        Message("{name} from above.", name=name),
-        track_map(summary),
-        wide=True,
+    caption = prose("{name} from above, the same scale along both axes.", name=name)
+    yield Drawing("map", caption, Message("{name} from above.", name=name), track_map(summary), wide=True)
+    caption = prose("{name} from above; colour: speed.", name=name)
+    alt = Message("{name} from above, coloured by speed.", name=name)
+    yield Drawing("speed", caption, alt, coloured_map(summary, "speed"), wide=True)
+    caption = prose("{name} from above; colour: turn radius, even in 1/radius, positive to the left.", name=name)
+    alt = Message("{name} from above, coloured by turn radius.", name=name)
+    yield Drawing("radius", caption, alt, coloured_map(summary, "radius"), wide=True)
+    caption = prose(
+        "Speed, height and turn radius along {name}. The axis of the radius is even in 1/radius: straight is in the "
+        "middle. The smoothing keeps half of an oscillation of the curvature with a period of {half:.2g} s.",
+        name=name,
+        half=summary.motion.smoothed.resolution.half_period,
     )
-    yield Drawing(
-        "speed",
-        prose("{name} from above; colour: speed.", name=name),
-        Message("{name} from above, coloured by speed.", name=name),
-        coloured_map(summary, "speed"),
-        wide=True,
-    )
-    yield Drawing(
-        "radius",
-        prose("{name} from above; colour: turn radius, even in 1/radius, positive to the left.", name=name),
-        Message("{name} from above, coloured by turn radius.", name=name),
-        coloured_map(summary, "radius"),
-        wide=True,
-    )
-    yield Drawing(
-        "along",
-        prose(
-            "Speed, height and turn radius along {name}. The axis of the radius is even in 1/radius: straight is in "
-            "the middle. The smoothing keeps half of an oscillation of the curvature with a period of {half:.2g} s.",
-            name=name,
-            half=summary.motion.smoothed.resolution.half_period,
-        )
-        + _estimates(summary),
-        Message("Speed, height and turn radius along {name}.", name=name),
-        track_along(summary),
-        wide=True,
-    )
+    alt = Message("Speed, height and turn radius along {name}.", name=name)
+    yield Drawing("along", caption + _estimates(summary), alt, track_along(summary), wide=True)
     if gates is not None:
-        usable = summary.track.usable
-        yield Drawing(
-            "course",
-            prose("The line of {name} over the course, from above; colour: speed.", name=name),
-            Message("Line of {name} over the gates, coloured by speed.", name=name),
-            course_line(
-                gates,
-                summary.track.place[usable],
-                summary.motion.speed[usable],
-                label=Message("speed (m/s)"),
-                diverging=False,
-            ),
-            wide=True,
-        )
+        caption = prose("The line of {name} over the course, from above; colour: speed.", name=name)
+        alt = Message("Line of {name} over the gates, coloured by speed.", name=name)
+        place, speed = summary.track.place[summary.track.usable], summary.motion.speed[summary.track.usable]
+        figure = course_line(gates, place, speed, label=Message("speed (m/s)"), diverging=False)
+        yield Drawing("course", caption, alt, figure, wide=True)
 
 
 MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.1}

@@ -15,7 +15,7 @@ from ..._support.messages import Message, local_number
 from ..._support.spreadsheet_text import csv_text, guarded
 from ..._support.units import DEGREE
 from ...track.projection import earth_centred, east_north_up_axes, geodetic
-from ..formatting import aligned_rows, date_words, plain
+from ..formatting import aligned_rows, date_words, named_rows, plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -48,9 +48,7 @@ def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] |
     values: contents of `skisnow.track.summary.summary_dict`.
     flag_sentences: sentence of each flag, by code.
     """
-    rows = list(_rows(values))
-    width = max(len(name) for name, _ in rows)
-    lines = [values["file"], "", *(f"{name.ljust(width)}  {text}" for name, text in rows)]
+    lines = [values["file"], "", *named_rows(_rows(values))]
     for code, count in values["marked"].items():
         lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(flag_sentences or {}).get(code, '')}".rstrip())
     for remark in values["remarks"]:
