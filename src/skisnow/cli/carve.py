@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .._support.messages import Message, in_language, local_number
 from .options import add_language, number, whole_number
-from .output import Progress, announced, list_fonts, print_json
+from .output import Progress, announced, prepare_figure, print_json
 
 if TYPE_CHECKING:
     from ..carving.answer import CarveAnswer
@@ -96,11 +96,7 @@ def carve_ski(options: argparse.Namespace) -> int:
     """Answer for each ski, print, draw; 1 where an equilibrium was not found, 0 with every other outcome."""
     from ..carving.answer import answers_dict
 
-    if options.figure is not None:
-        from ..report.figures.figure_files import require_drawable
-
-        require_drawable(options.figure)
-        list_fonts()
+    prepare_figure(options.figure)
     answers = _answers(options)
     _warn(answers)
     result = answers_dict(answers)
@@ -189,11 +185,7 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def design_ski(options: argparse.Namespace) -> int:
     """Search, write, print; 1 where a goal is not reached."""
-    if options.figure is not None:
-        from ..report.figures.figure_files import require_drawable
-
-        require_drawable(options.figure)
-        list_fonts()
+    prepare_figure(options.figure)
     with announced("loading"):
         from ..design import design_ski, read_design
 

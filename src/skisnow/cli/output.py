@@ -60,6 +60,18 @@ def prepare_output(folder: Path) -> None:
     list_fonts()
 
 
+def prepare_figure(place: Path | None) -> None:
+    """Require that a figure can be written at its place, and list the fonts for it; nothing without a place.
+
+    Raises ParameterError, OutputError: as `require_drawable`.
+    """
+    if place is not None:
+        from ..report.figures.figure_files import require_drawable
+
+        require_drawable(place)
+        list_fonts()
+
+
 PAUSE_S: Final = 0.5
 _COUNTED: Final = re.compile(r"(\d+) of (\d+)\b")
 PAUSE_OF_LINES_S: Final = 10.0

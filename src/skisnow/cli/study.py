@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from .._support.errors import ParameterError
 from .options import add_language, add_scheduler, add_workers, scheduler_of
-from .output import Progress, ending_is_an_interrupt, report_interrupt
+from .output import Progress, ending_is_an_interrupt, prepare_figure, report_interrupt
 
 if TYPE_CHECKING:
     from ..studies import Study, StudyTable
@@ -46,10 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if len(options.study) > 1:
         options.parser.error("one STUDY.toml is taken; several files are the parts of --merge TABLE")
     (file,) = options.study
-    if options.figure is not None:
-        from ..report.figures.figure_files import require_drawable
-
-        require_drawable(options.figure)
+    prepare_figure(options.figure)
     from ..studies import read_study
 
     study = read_study(file)
