@@ -25,7 +25,7 @@ SCENARIO = "carved-46m"
 MOMENT = 2.5
 SLALOM = "slalom-15deg"
 FRAMES_PER_SECOND = 12
-FILM_S = (2.0, 10.0)
+FILM_S = (2.0, 6.0)
 QUALITY = 88
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
@@ -90,7 +90,7 @@ def film(browser: Any, folder: Path) -> None:
         frames.append(picture(page.locator(".replay-canvas").screenshot(), width=560))
     spacing = round(1000 / FRAMES_PER_SECOND)
     frames[0].save(
-        FOLDER / "slalom.webp", save_all=True, append_images=frames[1:], duration=spacing, loop=0, quality=60, method=6
+        FOLDER / "slalom.webp", save_all=True, append_images=frames[1:], duration=spacing, loop=0, quality=45, method=6
     )
 
 
