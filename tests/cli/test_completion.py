@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -215,10 +215,21 @@ def test_a_second_of_patience_and_ten_seconds_between(clock: list[float], capsys
     assert capsys.readouterr().err == "1\n11\n21\n"
 
 
+@pytest.fixture
+def terminal(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
+    """Function that writes to a terminal with a number of columns from now on."""
+
+    def make(columns: int) -> None:
+        monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+        monkeypatch.setenv("COLUMNS", str(columns))
+
+    return make
+
+
 def test_on_a_terminal_one_line_is_written_over(
-    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]
 ) -> None:
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    terminal(80)
     said(clock, 0.9, 1.0, 1.4, 2.0, 3.0)
     assert capsys.readouterr().err == f"\r{'x' * 9}\r{'x' * 8} \r{'x' * 7} \r{' ' * 7}\r"
     said(clock, 0.5)
@@ -226,11 +237,10 @@ def test_on_a_terminal_one_line_is_written_over(
 
 
 def test_a_line_is_cut_to_the_terminal(
-    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]
 ) -> None:
     """A line of its whole width would wrap, and the next would leave it standing."""
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    monkeypatch.setenv("COLUMNS", "20")
+    terminal(20)
     with Progress() as progress:
         clock[0] += 1.0
         progress("y" * 40)
@@ -238,11 +248,10 @@ def test_a_line_is_cut_to_the_terminal(
 
 
 def test_what_is_counted_says_how_long_it_takes(
-    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]
 ) -> None:
     """Two runs in four seconds: the eight that are left take sixteen."""
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    monkeypatch.setenv("COLUMNS", "80")
+    terminal(80)
     with Progress() as progress:
         for moment, done in ((1.0, 0), (3.0, 1), (5.0, 2), (22.0, 11)):
             clock[0] = 100.0 + moment
