@@ -83,6 +83,11 @@ FIRST = "xl/worksheets/sheet1.xml"
         (FIRST, SHEET % b'<row r="99999999"><c r="A1"><v>1</v></c></row>', coded("too_large", limit=1000)),
         (FIRST, SHEET % b'<row r="1"><c r="ALM1"><v>1</v></c></row>', coded("too_large", row=1, count=1001)),
         (FIRST, SHEET % b'<row r="7"><c r="C7"><f>1+1</f></c></row>', coded("formula_without_value", cell="C7")),
+        (
+            FIRST,
+            SHEET % b'<row r="7"><c r="C7"><f>1+1</f><v> </v></c></row>',
+            coded("formula_without_value", cell="C7"),
+        ),
         (FIRST, SHEET % b'<row r="7"><c r="C7"><v>', "not_readable"),
         ("xl/workbook.xml", None, "not_readable"),
     ],

@@ -255,8 +255,10 @@ class _Part:
         self._parser.StartDoctypeDeclHandler = self._refuse_document_type
         self._parser.StartElementHandler = self._begin
         self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._text
         self._elements = self._depth = 0
         self._cell = ""
+        self._is_text = self._is_value = False
         self._in_cell: set[str] = set()
 
     def take(self, piece: bytes) -> None:
@@ -280,12 +282,19 @@ class _Part:
         local = name.rpartition(" ")[2]
         if local == "c":
             self._cell = attributes.get("r", "?")
+            self._is_text = attributes.get("t") == "str"
             self._in_cell.clear()
-        elif local in ("f", "v"):
+        elif local == "f" or (local == "v" and self._is_text):  # the result of a formula may be an empty text
             self._in_cell.add(local)
+        self._is_value = local == "v"
+
+    def _text(self, text: str) -> None:
+        if self._is_value and text.strip():
+            self._in_cell.add("v")
 
     def _end(self, name: str) -> None:
         self._depth -= 1
+        self._is_value = False
         if name.endswith(" c") and self._in_cell == {"f"}:
             raise GivenError(
                 "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
