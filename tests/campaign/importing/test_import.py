@@ -10,11 +10,13 @@ from openpyxl.cell.rich_text import CellRichText, TextBlock
 from openpyxl.cell.text import InlineFont
 from openpyxl.styles import Font
 
+from skisnow._support.errors import ParameterError
 from skisnow.campaign.importing import (
     Answers,
     Proposal,
     propose,
 )
+from skisnow.campaign.importing.sheets import read_sheets
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
 
@@ -453,3 +455,8 @@ def test_force_at_a_lever_arm_is_no_penetration_test() -> None:
     text = "Versuch;Kantwinkel (°);Tiefe (mm);Hebelarm (cm);Kraft (kg)\nS1;45;5,8;25;9,42\n"
     proposal = propose("Scherung.csv", text.encode())
     assert [question.option for question in proposal.questions] == ["table"]
+
+
+def test_the_error_of_a_damaged_workbook_names_it() -> None:
+    with pytest.raises(ParameterError, match=r"one\.xlsx: "):
+        read_sheets("one.xlsx", b"PK\3\4 and no more")

@@ -11,7 +11,7 @@ from typing import Final
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
-from ..._support.user_files import workbook_sheets
+from ..._support.user_files import GivenError, workbook_sheets
 from ..._support.user_files.workbook import Layout, Rows, sheet_layouts
 from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
@@ -75,9 +75,12 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
     if not is_workbook(name):
         rows, separator = _csv_rows(name, data, count or _headings)
         return [Sheet(PurePath(name).stem, rows, rows, separator=separator)]
-    layouts = sheet_layouts(data)
     fractions: dict[str, list[tuple[int, int]]] = {}
-    sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
+    try:
+        layouts = sheet_layouts(data)
+        sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
+    except GivenError as error:
+        raise error.of(name) from error
     return [_sheet(title, rows, layouts[title], set(fractions[title])) for title, rows in sheets.items() if rows]
 
 
