@@ -188,7 +188,10 @@ def compare_places(count: int = 60) -> None:
     while len(deviations) < count:
         hardness, ratio = np.exp(random.uniform(np.log([0.05e9, 1.0]), np.log([1e9, 100.0])))
         snow = SnowProperties(hardness, 0.5e6, source="random")
-        turn = {"edge_angle": math.radians(random.uniform(15.0, 65.0)), "load": random.uniform(300.0, 2500.0)}
+        turn: dict[str, Any] = {
+            "edge_angle": math.radians(random.uniform(15.0, 65.0)),
+            "load": random.uniform(300.0, 2500.0),
+        }
         found = carve(skis[random.integers(3)], snow, unloading_ratio=ratio, **turn)
         if found.request is None or found.turn_radius_boot is None or found.force_per_length is None:
             continue
