@@ -18,6 +18,7 @@ _METHODS: Final = frozenset({
     "loadtxt", "genfromtxt", "fromfile", "load_workbook",
 })  # fmt: skip
 """Methods, and functions of modules."""
+_NAMES: Final = tuple(f"{name}(" for name in _FUNCTIONS | _METHODS)
 _WRITING: Final = frozenset("wxa+")
 
 NO_READERS: Final[Mapping[str, str]] = {
@@ -70,8 +71,9 @@ def openers() -> set[str]:
     found: set[str] = set()
     for path in sorted(_ROOT.rglob("*.py")):
         module = ".".join(path.relative_to(_ROOT).with_suffix("").parts).removesuffix(".__init__")
-        if not module.startswith("_support.user_files."):  # the functions that all others use
-            found.update(f"{module}:{name}" for name in _opening(ast.parse(path.read_text(encoding="utf-8")), ()))
+        text = path.read_text(encoding="utf-8")
+        if not module.startswith("_support.user_files.") and any(name in text for name in _NAMES):  # all others use it
+            found.update(f"{module}:{name}" for name in _opening(ast.parse(text), ()))
     return found
 
 
