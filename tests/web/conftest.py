@@ -222,6 +222,14 @@ def page(chromium: Browser, watched: Watched) -> Iterator[Page]:
     assert watched.errors == []
 
 
+@pytest.fixture
+def file_page(chromium: Browser) -> Iterator[Page]:
+    """A page of files, not of a server."""
+    made = chromium.new_page()
+    yield made
+    made.close()
+
+
 def killed_and_started_again(page: Page, served: Served) -> None:
     """Kill the server under an open page, start it again and open the page again."""
     place = page.url

@@ -9,7 +9,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,7 +29,7 @@ from .test_kept import imported
 from .test_typing import NAMELESS
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Page
 
 if importlib.util.find_spec("axe_playwright_python") is None:
     pytest.skip("axe-core is not installed: pip install axe-playwright-python", allow_module_level=True)
@@ -60,23 +59,16 @@ def barred_in(page: Page, files: list[Path]) -> dict[tuple[str, int], list[str]]
     return {name: each for name, each in found.items() if each}
 
 
-@pytest.fixture
-def plain(chromium: Browser) -> Iterator[Page]:
-    """A page of files, not of a server."""
-    made = chromium.new_page()
-    yield made
-    made.close()
+def test_the_checker_finds_known_barriers(file_page: Page) -> None:
+    faults = '<img src="data:,"><input><p style="color: #999">grey text</p>'
+    file_page.set_content(f'<html lang="en"><title>t</title><main><h1>t</h1>{faults}</main></html>')
+    assert {each.split(":")[0] for each in barred(file_page)} == {"image-alt", "label", "color-contrast"}
 
 
-def test_the_checker_finds_a_known_barrier(plain: Page) -> None:
-    plain.set_content('<html lang="en"><title>t</title><main><h1>t</h1><img src="data:,"><input></main></html>')
-    assert {each.split(":")[0] for each in barred(plain)} == {"image-alt", "label"}
-
-
-def test_the_page_for_the_token_has_no_barriers(plain: Page) -> None:
+def test_the_page_for_the_token_has_no_barriers(file_page: Page) -> None:
     token_page = pytest.importorskip("skisnow.web.guard", reason="the web lab is not installed")
-    plain.set_content(token_page.token_page({"type": "http", "headers": []}, 403).body.decode("utf-8"))
-    assert barred(plain) == []
+    file_page.set_content(token_page.token_page({"type": "http", "headers": []}, 403).body.decode("utf-8"))
+    assert barred(file_page) == []
 
 
 def studied(lab: Path, folder: Path) -> str:
@@ -132,13 +124,13 @@ def test_pages_of_the_lab_have_no_barriers(page: Page, served: Served, tmp_path:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_the_report_of_a_run_has_no_barriers(plain: Page, tmp_path: Path) -> None:
+def test_the_report_of_a_run_has_no_barriers(file_page: Page, tmp_path: Path) -> None:
     circle_run().report(tmp_path)
-    assert barred_in(plain, [tmp_path / "report.html"]) == {}
+    assert barred_in(file_page, [tmp_path / "report.html"]) == {}
 
 
 @pytest.mark.slow
-def test_reports_of_each_kind_have_no_barriers(plain: Page, tmp_path: Path) -> None:
+def test_reports_of_each_kind_have_no_barriers(file_page: Page, tmp_path: Path) -> None:
     """One of each kind that has a page: campaign, run with its replay, turn, identification."""
     campaign, run, short = str(tmp_path / "campaign"), str(tmp_path / "run"), ["--set", "run.duration_s=0.2"]
     turn = ["--set", "slope.angle_deg=5", "--set", "start.speed_m_per_s=4.5", "--set", "sledge.edge_angle_deg=40"]
@@ -152,7 +144,7 @@ def test_reports_of_each_kind_have_no_barriers(plain: Page, tmp_path: Path) -> N
         assert main(words) == 0, words
     reports = sorted(tmp_path.glob("*/*.html"))
     assert len(reports) == 5
-    assert barred_in(plain, reports) == {}
+    assert barred_in(file_page, reports) == {}
 
 
 def built(folder: Path, html: Path) -> None:
@@ -161,11 +153,11 @@ def built(folder: Path, html: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_documentation_has_no_barriers(plain: Page, tmp_path: Path) -> None:
+def test_the_documentation_has_no_barriers(file_page: Page, tmp_path: Path) -> None:
     built(DOCS, tmp_path / "html")
     pages = [each for each in sorted((tmp_path / "html").rglob("*.html")) if "_static" not in each.parts]
     assert len(pages) >= len([path for path in DOCS.rglob("*.md") if not {"_build", "_generated"} & set(path.parts)])
-    assert barred_in(plain, pages) == {}
+    assert barred_in(file_page, pages) == {}
 
 
 LEAST = 4.5
@@ -208,27 +200,11 @@ def test_lines_are_reported_apart_by_colour_and_dashes_alone() -> None:
         assert contrast(f"rgb({red}, {green}, {blue})", "rgb(255, 255, 255)") >= 3.0
 
 
-@pytest.mark.slow
-def test_all_text_has_enough_contrast(page: Page, served: Served) -> None:
-    create(page, served)
-    enter_series(page, "1")
-    page.get_by_text("below the one before it").wait_for()
-    entry = page.url.split("?")[0]
-    for place in (page.url, served.address, f"{entry}?table=shear.csv", f"{served.address}skis"):
-        page.goto(place)
-        page.locator("h1").wait_for()
-        page.locator("h2").first.wait_for()
-        settled(page)
-        found = page.evaluate(COLOURS)
-        assert len(found) > 5
-        assert [row for row in found if contrast(row[1], row[2]) < LEAST] == [], place
-
-
 READY = {"skis": "td", "carve": "td", "design": "td", "simulate": "summary", "study": ".range", "replay": ".card"}
 
 
 def test_every_page_of_the_navigation_is_looked_at() -> None:
-    """The list of campaigns is, with what is entered there (`test_contrast`, `test_day`)."""
+    """The list of campaigns is, with what is entered there, by `test_pages_of_the_lab_have_no_barriers`."""
     assert {*READY, "campaigns"} == set(PAGES)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -23,7 +22,7 @@ from .conftest import Served
 from .shown_texts import shown_texts
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Page
 
 DATA: Final = {
     "read once more after waiting", "measured, entered in the lab", "the edited ski", "as in the scenario",
@@ -87,35 +86,27 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return write_report(analysis, folder / "campaign"), write_run(circle_run(), folder / "run")
 
 
-@pytest.fixture
-def report_page(chromium: Browser) -> Iterator[Page]:
-    """A page of a file, not of a server."""
-    made = chromium.new_page()
-    yield made
-    made.close()
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
-def test_a_telephone_shows_figures_and_tables_whole(report_page: Page, reports: tuple[Path, Path], which: int) -> None:
-    report_page.set_viewport_size({"width": 390, "height": 844})
-    report_page.goto(reports[which].as_uri())
-    assert report_page.evaluate("document.documentElement.scrollWidth") == 390
-    assert report_page.evaluate(WIDER_THAN_THEIR_BOX) == []
-    assert report_page.evaluate(NAMES_THAT_RUN_OVER_THEIR_NUMBERS) == []
-    wide = report_page.locator("figure.wide img").first
+def test_a_telephone_shows_figures_and_tables_whole(file_page: Page, reports: tuple[Path, Path], which: int) -> None:
+    file_page.set_viewport_size({"width": 390, "height": 844})
+    file_page.goto(reports[which].as_uri())
+    assert file_page.evaluate("document.documentElement.scrollWidth") == 390
+    assert file_page.evaluate(WIDER_THAN_THEIR_BOX) == []
+    assert file_page.evaluate(NAMES_THAT_RUN_OVER_THEIR_NUMBERS) == []
+    wide = file_page.locator("figure.wide img").first
     drawn = wide.evaluate("(each) => [each.naturalWidth, each.clientWidth]")
     assert drawn[1] > 0.9 * drawn[0]  # the words of the figure have their own size, within a tenth
-    box = report_page.locator(".scroll").first
+    box = file_page.locator(".scroll").first
     assert box.evaluate("(each) => { each.scrollTo(1000, 0); return each.scrollLeft + each.clientWidth }") == drawn[1]
 
 
 @pytest.mark.slow
-def test_a_shadow_says_that_rows_of_a_long_table_follow(report_page: Page, reports: tuple[Path, Path]) -> None:
+def test_a_shadow_says_that_rows_of_a_long_table_follow(file_page: Page, reports: tuple[Path, Path]) -> None:
     """At the lower edge of its box, until the last row is in sight."""
-    report_page.set_viewport_size({"width": 390, "height": 844})
-    report_page.goto(reports[0].as_uri())
-    table = report_page.locator(".table").filter(has_text="The nine candidate models").first
+    file_page.set_viewport_size({"width": 390, "height": 844})
+    file_page.goto(reports[0].as_uri())
+    table = file_page.locator(".table").filter(has_text="The nine candidate models").first
     table.scroll_into_view_if_needed()
 
     def lower_edge() -> int:
@@ -133,17 +124,17 @@ def test_a_shadow_says_that_rows_of_a_long_table_follow(report_page: Page, repor
 
 @pytest.mark.slow
 @pytest.mark.parametrize("which", [0, 1], ids=["campaign", "run"])
-def test_a_report_prints_as_one_pdf(report_page: Page, reports: tuple[Path, Path], which: int, tmp_path: Path) -> None:
+def test_a_report_prints_as_one_pdf(file_page: Page, reports: tuple[Path, Path], which: int, tmp_path: Path) -> None:
     """A PDF by Print, Save as PDF: pages of A4, no table wider than the paper."""
-    report_page.set_viewport_size({"width": A4_PX, "height": 1000})
-    report_page.emulate_media(media="print")
-    report_page.goto(reports[which].as_uri())
-    assert report_page.evaluate("document.documentElement.scrollWidth") <= A4_PX
-    wide = report_page.evaluate(
+    file_page.set_viewport_size({"width": A4_PX, "height": 1000})
+    file_page.emulate_media(media="print")
+    file_page.goto(reports[which].as_uri())
+    assert file_page.evaluate("document.documentElement.scrollWidth") <= A4_PX
+    wide = file_page.evaluate(
         """() => [...document.querySelectorAll("table")].filter((each) => each.getBoundingClientRect().right > 682)
             .map((each) => each.textContent.slice(0, 60))"""
     )
     assert wide == []
-    content = report_page.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
+    content = file_page.pdf(path=tmp_path / "report.pdf", prefer_css_page_size=True)
     assert content.startswith(b"%PDF")
     assert 2 <= content.count(b"/Type /Page\n") + content.count(b"/Type /Page ") + content.count(b"/Type /Page/") < 60
