@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from skisnow._support.errors import ParameterError
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
 from skisnow.replay.binary import ARRAY_TYPES
@@ -225,3 +226,9 @@ def test_quaternions_go_on_over_more_than_a_turn() -> None:
 
 def test_no_matrices_are_no_quaternions() -> None:
     assert quaternions(np.zeros((0, 3, 3))).shape == (0, 4)
+
+
+@pytest.mark.parametrize("time", [-0.5, 99.0, math.nan])
+def test_a_moment_outside_of_the_run_is_rejected(replay: Replay, time: float) -> None:
+    with pytest.raises(ParameterError, match="outside"):
+        replay_model(replay, time)

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
+from .._support.errors import ParameterError
 from .._support.staging import write_file
 from .binary import select_moments, thin_replay
 from .meshes import (
@@ -36,7 +37,10 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     -----
     Metres; y is up as in glTF 2.0, and the node ``run`` below has the run's axes. Colours of vertices: normal force per
     length along the skis, residual depth along the groove, on the same scales as on the page.
+
+    Raises ParameterError: the time is outside of the run.
     """
+    require_moment(replay, time)
     frame = nearest_frame(replay, time)
     named = {"snow": snow_mesh(replay)}
     for ski, name in enumerate(SKI_NAMES):
@@ -52,9 +56,19 @@ def replay_model(replay: Replay, time: float, *, exaggeration: float = 1.0) -> b
     return model.to_bytes(replay.title, [run])
 
 
+def require_moment(replay: Replay, time: float) -> None:
+    """Reject a time (s) that is more than 0.01 s outside of the run."""
+    first, last = replay.time[[0, -1]].tolist()
+    if not first - 0.01 <= time <= last + 0.01:
+        raise ParameterError("the run is from {first:g} to {last:g} s; {time:g} s is outside of it").tag(
+            "out_of_range", first=first, last=last, time=time
+        )
+
+
 def write_replay_model(replay: Replay, path: str | Path, time: float, *, exaggeration: float = 1.0) -> None:
     """Write the model of a moment; see `replay_model`.
 
+    Raises ParameterError: as `replay_model`.
     Raises OutputError: the file cannot be written.
     """
     write_file(path, replay_model(replay, time, exaggeration=exaggeration))

@@ -185,7 +185,9 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
 
 def _not_a_run(path: Path, error: Exception) -> ParameterError:
     message = Message(
-        "{path} is not a run.nc of skisnow ({error}). Simulate it again with --out", path=path, error=error
+        "{path} is damaged, or it is not a run.nc of skisnow ({error}). Simulate it again with --out",
+        path=path,
+        error=error,
     )
     return ParameterError(message).tag("not_a_run")
 
