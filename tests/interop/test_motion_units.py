@@ -15,6 +15,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.cli import main
 from skisnow.interop.mujoco import rigid_ski_geoms, ski_mjcf
 from skisnow.interop.opensim import Markers, read_c3d, read_motion, read_trc
+from skisnow.scenario.boots import read_boots
 from tests.coded import Coded, coded, raises
 
 from .c3d_files import BLOCK, DEC, INTEL, MIPS, c3d_bytes
@@ -63,6 +64,17 @@ def capture(path: Path, texts: dict[str, list[str]], *, rate: float = 50.0) -> N
     points = np.ones((2, total, 3))
     points[:, :, 0], points[:, :, 1] = np.arange(total), [[0.0], [10.0]]
     path.write_bytes(c3d_bytes(points, texts, rate=rate))
+
+
+@pytest.mark.parametrize("kind", ["Quaternion", "Vec3", "SpatialVec"])
+def test_cells_of_several_numbers_are_rejected(tmp_path: Path, kind: str) -> None:
+    """Orientations of OpenSense, and vectors, as OpenSim writes them."""
+    head = f"DataRate=100.0\nDataType={kind}\nversion=3\nOpenSimVersion=4.4\nendheader\n"
+    text = head + "time\tpelvis_imu\n0.0\t0.99,0.01,-0.02,0.1\n"
+    for read in (read_motion, read_boots):
+        (tmp_path / "a.sto").write_text(text, encoding="utf-8")
+        with pytest.raises(ParameterError, match=rf"a\.sto.*DataType={kind}.*DataType=double"):
+            read(tmp_path / "a.sto")
 
 
 def test_names_go_on_in_further_blocks(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from ..errors import ParameterError
 
 HEAD_END: Final = "endheader"
 _LONGEST_SHOWN: Final = 40
+_ONE_NUMBER: Final = "double"
 _WORDS: Final = {"yes": True, "y": True, "no": False, "n": False}
 
 
@@ -51,8 +52,14 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
 
 
 def require_whole(path: str | Path, head: Mapping[str, str], **counts: int) -> None:
-    """ParameterError if the header states another number of rows, columns, frames or markers than the file has."""
+    """ParameterError if the header states cells of several numbers, or other counts of its keys than the file has."""
     said = _said(head)
+    kind = said.get("datatype", _ONE_NUMBER)
+    if kind.lower() != _ONE_NUMBER:
+        raise ParameterError(
+            "{path}: the header states DataType={kind}. Allowed: DataType=double, one number in each cell. Export "
+            "coordinates, such as the angles that OpenSense's inverse kinematics writes."
+        ).tag("head_says_data_type", path=path, kind=kind[:_LONGEST_SHOWN])
     for key, there in counts.items():
         word = said.get(key.lower(), "")
         if word.isdecimal() and word.lstrip("0") != str(there).lstrip("0"):  # int refuses 4300 digits
