@@ -166,7 +166,11 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
         ("", ["empty_file"]),
         (" \n\n", ["empty_file"]),
         ("time_s,x_m,y_m\n", ["empty_file", "header only"]),
-        ("My run;;\ntime_s;x_m;y_m\n0;1;2\n", ["missing_column", "row 1:", "'My run'", "semicolon"]),
+        ("My run;;\ntime_s;x_m;why\n0;1;2\n", ["missing_column", "row 1:", "'My run'", "semicolon"]),
+        (
+            "Source;Mini\nZeit [ms];x;y\n0;1;2\nspät;1;2\n",
+            ["not_a_number", "row 4, column Zeit [ms]", "in ms in every"],
+        ),
         ("time_s|x_m|y_m\n0|1|2\n", ["missing_column", "row 1:", "'time_s|x_m|y_m'", "semicolon"]),
         ("time_s,x_m\n0,1\n", ["missing_column", "column y_m", "time_s, x_m"]),
         ("time_s,x_m,why\n0,1,2\n", ["missing_column", "column y_m"]),
@@ -214,6 +218,11 @@ def test_refused(tmp_path: Path, content: str | bytes, told: list[str]) -> None:
         ("timestamp,latitude,longitude,elevation,speed_mps", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
         ("Time (s),Latitude (°),Longitude (°),Height (m),Velocity (m/s)", "0,46,7,100,10", "0.5,46.5,7.5,101,20"),
         ("t (ms),lat,lng,Altitude_m,Speed [km/h]", "0,46,7,100,36", "500,46.5,7.5,101,72"),
+        (
+            "time_s,GPS Latitude,GPS_Longitude,GPS Altitude (m),Ground Speed (km/h)",
+            "0,46,7,100,36",
+            "0.5,46.5,7.5,101,72",
+        ),
         ("Zeit [s];Breite;Länge;Höhe;Geschwindigkeit [km/h]", "0;46;7;100;36", "0,5;46,5;7,5;101;72"),
         ("ZEIT_ms\tBreitengrad\tLängengrad\tHöhe/m\tv (m/s)", "0\t46\t7\t100\t10", "500\t46,5\t7,5\t101\t20"),
         (
@@ -245,12 +254,24 @@ def test_local_metres_under_other_headings(tmp_path: Path) -> None:
     assert (track.first_time, track.time[1]) == pytest.approx((0.5, 0.1))
 
 
-@pytest.mark.parametrize("further", ["T", "t [°C]", "x [g]", "Easting", "time_zone", "speed_accuracy", "v_dop"])
+@pytest.mark.parametrize(
+    "further",
+    ["T", "t [°C]", "x [g]", "Easting", "time_zone", "speed_accuracy", "v_dop", "Ground Speed", "GPS Speed (kn)"],
+)
 def test_further_columns_beside_those_that_are_read(tmp_path: Path, further: str) -> None:
     """A letter that may mean another quantity, another form's place, and a remark about a column that is there."""
     track = read(tmp_path, f"time,lat,lon,speed_mps,{further}\n0,46,7,3,9\n1,46,7,3,9\n")
     assert track.further_columns == (further,)
     np.testing.assert_array_equal(track.speed, [3.0, 3.0])
+
+
+@pytest.mark.parametrize("above", ["Format,CSV\nSource,Mini,3221\n\n", "My run\n"])
+def test_rows_above_the_headings_are_passed(tmp_path: Path, above: str) -> None:
+    text = "Record,Time,Latitude,Longitude,Speed (km/h)\n1,0,46,7,36\n2,1,46.5,7,72\n"
+    track = read(tmp_path, above + text)
+    np.testing.assert_array_equal(track.place, read(tmp_path, text, "b.csv").place)
+    np.testing.assert_allclose(track.speed, [10.0, 20.0])
+    assert track.further_columns == ("Record",)
 
 
 def test_dates_that_run_backwards_are_reported_as_dates(tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ def read_table(text: str, name: str) -> Recording:
     Raises FieldDataError: a column is missing or repeated, a cell is not a number or a time, or a row has more cells
         than the header.
     """
-    table = _Table.of(split_cells(text, name), name)
+    table = _Table.of(_below_preamble(split_cells(text, name)), name)
     table.require_columns()
     table.require_rows()
     is_geodetic = table.is_geodetic
@@ -225,7 +225,7 @@ class _Table:
 
     def _no_time(self, place: int, column: str, cell: str, also: str = _IN_EVERY_ROW) -> Exception:
         what = (
-            Message("seconds")
+            Message("a number in {unit}", unit=_unit(column, self.columns[column].factor))
             if column == "time_s"
             else Message("seconds, or a date and time such as 2022-12-27T15:51:14.2Z,")
         )
@@ -273,23 +273,48 @@ _SECONDS: Final = (
     | {"us": 1e-6, "\u03bcs": 1e-6, "ns": 1e-9}
 )
 _TIME_WORDS: Final = ("time", "timestamp", "zeit", "zeitstempel", "t")
-_HEIGHT_WORDS: Final = ("alt", "altitude", "ele", "elevation", "height", "höhe")
+_HEIGHT_WORDS: Final = ("alt", "altitude", "ele", "elevation", "height", "höhe", "gps altitude")
 _WORDS: Final[dict[str, tuple[tuple[str, ...], dict[str, float]]]] = {
     "time": (_TIME_WORDS, {"": 1.0}),
     "time_s": (_TIME_WORDS, _SECONDS),
     "x_m": (("x", "rechtswert", "east", "easting", "ost"), _METRES),
     "y_m": (("y", "hochwert", "north", "northing", "nord"), _METRES),
     "z_m": (("z", *_HEIGHT_WORDS), _METRES),
-    "lat": (("lat", "latitude", "breite", "breitengrad"), _DEGREES),
-    "lon": (("lon", "lng", "long", "longitude", "länge", "längengrad"), _DEGREES),
+    "lat": (("lat", "latitude", "breite", "breitengrad", "gps latitude"), _DEGREES),
+    "lon": (("lon", "lng", "long", "longitude", "länge", "längengrad", "gps longitude"), _DEGREES),
     "alt_m": (_HEIGHT_WORDS, _METRES),
-    SPEED: (("speed", "velocity", "geschwindigkeit", "v"), _SPEEDS),
+    SPEED: (("speed", "velocity", "geschwindigkeit", "v", "ground speed", "speed over ground", "gps speed"), _SPEEDS),
 }
 """Synonyms of each column in headings of other programs, and its units with their sizes."""
 _HEADING: Final = re.compile(
-    r"(?P<word>[^\W\d_]+)"
+    r"(?P<word>(?:gps|ground)[\s_]+[^\W\d_]+|speed[\s_]+over[\s_]+ground|[^\W\d_]+)"
     r"(?:[\s_]*[\[(/]\s*(?P<bracketed>[^\])]*?)\s*[\])]?|[\s_]+(?P<unit>\S+))?"
 )
+
+
+_MOST_ABOVE: Final = 50
+"""Rows in which the headings are searched for (choice)."""
+
+
+def _unit(column: str, factor: float) -> str:
+    """Unit of a size.
+
+    >>> _unit("time_s", 1e-3)
+    'ms'
+    """
+    return next(unit for unit, size in _WORDS[column][1].items() if size == factor and unit)
+
+
+def _below_preamble(cells: Cells) -> Cells:
+    """Cells from the first row on that names a place and a time; all cells if no row does."""
+    for place, row in enumerate((cells.header, *cells.rows[:_MOST_ABOVE])):
+        named = {name for cell in row for name in (_column_name(cell), (_meaning(cell, COLUMNS) or ("",))[0])}
+        if named & {*TIMES} and (named >= {*LOCAL[:2]} or named >= {*GEODETIC[:2]}):
+            lines = (cells.header_line, *cells.lines)
+            return dataclasses.replace(
+                cells, header=row, header_line=lines[place], lines=lines[place + 1 :], rows=cells.rows[place:]
+            )
+    return cells
 
 
 def _is_geodetic(headings: Sequence[str], name: str, place: str) -> bool:
@@ -312,7 +337,7 @@ def _is_geodetic(headings: Sequence[str], name: str, place: str) -> bool:
 def _columns(headings: Sequence[str], is_geodetic: bool, name: str, place: str) -> dict[str, _Column]:
     """Columns by their names.
 
-    A word of one letter is a synonym only if no other heading has the meaning.
+    A word of one letter and two words are synonyms only if no other heading has the meaning.
 
     Raises FieldDataError: two headings have the same meaning, or the only one with a meaning has an unknown unit.
     """
@@ -370,17 +395,18 @@ def _column_name(heading: str) -> str:
 
 
 def _meaning(heading: str, columns: Sequence[str]) -> tuple[str, float, bool] | None:
-    """Column of which a heading is a synonym, the size of its unit (0: unknown), and True for a word of one letter.
+    """Column of which a heading is a synonym, the size of its unit (0: unknown), and True for one letter or two words.
 
-    >>> [_meaning(heading, COLUMNS) for heading in ("t (ms)", "Breite", "Elevation [fathoms]", "Heart rate")]
-    [('time_s', 0.001, True), ('lat', 1.0, False), ('alt_m', 0.0, False), None]
+    >>> [_meaning(heading, COLUMNS) for heading in ("t (ms)", "GPS Latitude", "Elevation [fathoms]", "Heart rate")]
+    [('time_s', 0.001, True), ('lat', 1.0, True), ('alt_m', 0.0, False), None]
     """
     match = _HEADING.fullmatch(" ".join(unicodedata.normalize("NFC", heading).split()).casefold())
     if match is None:
         return None
     unit = match["bracketed"] or match["unit"] or ""
-    names = [name for name, (words, _) in _WORDS.items() if name in columns and match["word"] in words]
-    is_vague = len(match["word"]) == 1
+    word = re.sub(r"[\s_]+", " ", match["word"])
+    names = [name for name, (words, _) in _WORDS.items() if name in columns and word in words]
+    is_vague = len(word) == 1 or " " in word
     for name in names:
         if unit in _WORDS[name][1]:
             return name, _WORDS[name][1][unit], is_vague
