@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING, Final
 
 from .._support.errors import FieldDataError, ParameterError
-from .._support.messages import joined
+from .._support.messages import joined, template
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
 from .._support.user_files import GivenError, read_record
@@ -39,7 +39,6 @@ LARGEST_TRACK_BYTES: Final = 20_000_000
 MOST_POINTS: Final = 20_000
 MOST_TRACKS: Final = 200
 LONGEST_WAIT_S: Final = 36_000.0
-_CHUNK: Final = 1 << 18
 _FILE: Final = "track"
 
 
@@ -95,7 +94,8 @@ class TrackFolders:
         with hidden_folder(self._folder) as made:
             suffix = PurePosixPath(placing.called.lower()).suffix
             place = made / (_FILE + (suffix if suffix in SUFFIXES else ""))
-            _copy_limited(content, place)
+            words = template("a track of more than {most} MB is not accepted")
+            write_file(place, _limited(content, LARGEST_TRACK_BYTES, words))
             placing = (check or check_track)(place, placing)
             write_file(made / ABOUT, json.dumps(asdict(placing), ensure_ascii=False, indent=1))
             place = free_place(self._folder, plain_stem(placing.called, "track"))
@@ -189,16 +189,12 @@ def _require_few_points(track: Track) -> None:
         ).tag("too_many_points", track=track.name, points=len(track.time), most=MOST_POINTS)
 
 
-def _copy_limited(content: IO[bytes], place: Path) -> None:
-    taken = 0
-    with place.open("xb") as file:
-        while piece := content.read(_CHUNK):
-            taken += len(piece)
-            if taken > LARGEST_TRACK_BYTES:
-                raise ParameterError("a track of more than {most} MB is not accepted").tag(
-                    "too_large", most=LARGEST_TRACK_BYTES // 1_000_000
-                )
-            file.write(piece)
+def _limited(content: IO[bytes], most: int, sentence: str) -> bytes:
+    """Content of a file of at most so many bytes; otherwise an error with a sentence."""
+    data = content.read(most + 1)
+    if len(data) > most:
+        raise ParameterError(sentence).tag("too_large", most=most // 1_000_000)
+    return data
 
 
 def _read_named(place: Path, placing: Placing) -> Track:
@@ -288,11 +284,7 @@ class LabCourses:
             raise ParameterError(
                 "{most} courses are stored already; remove some from the folder {folder} of the lab"
             ).tag("too_many_files", most=MOST_COURSES, folder=COURSES_FOLDER)
-        data = content.read(LARGEST_COURSE_BYTES + 1)
-        if len(data) > LARGEST_COURSE_BYTES:
-            raise ParameterError("a course of more than {most} MB is not accepted").tag(
-                "too_large", most=LARGEST_COURSE_BYTES // 1_000_000
-            )
+        data = _limited(content, LARGEST_COURSE_BYTES, template("a course of more than {most} MB is not accepted"))
         place = free_place(self._folder, plain_stem(called, "course"), suffix)
         made = place.with_name(f".partial-{place.name}")
         write_file(made, data)

@@ -202,7 +202,6 @@ def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeyp
     with raises(ParameterError, "too_many_points", points=4):
         track_on_slope(tmp_path / "long.csv", Placing("x.csv"), 0.0)
     monkeypatch.setattr(lab_tracks, "LARGEST_TRACK_BYTES", 2_000_000)
-    monkeypatch.setattr(lab_tracks, "_CHUNK", 1_500_000)
     kept = folders.keep(io.BytesIO(bytes(2_000_000)), Placing("x.csv"), check=lambda _, placing: placing)
     assert folders.file(kept)[0].stat().st_size == 2_000_000
     with raises(ParameterError, "too_large", most=2):
