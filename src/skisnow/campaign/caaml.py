@@ -20,6 +20,7 @@ import numpy as np
 
 from .._support.errors import FieldDataError
 from .._support.messages import Message
+from .._support.spreadsheet_text import number
 from .._support.units import CM, DEGREE, MM, ZERO_CELSIUS
 from .._support.user_files import Element, GivenError, plain_bytes, xml_tree
 from ..parameters.quantity import LARGEST
@@ -320,11 +321,8 @@ class _Profile:
         return converted
 
     def _finite(self, element: str, text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
+        value = number(text)
+        if math.isnan(value):
             self._refuse(element, text.strip()[:80], Message("a finite number"), Message("Correct the number."))
         return value
 

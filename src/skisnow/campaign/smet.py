@@ -20,6 +20,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import FieldDataError
 from .._support.messages import Message
+from .._support.spreadsheet_text import number
 from .._support.units import Facts, Shown
 from .._support.user_files import GivenError, plain_bytes
 from ..parameters import Allowed, Quantity, require_declared
@@ -146,16 +147,16 @@ class _Reading:
     def _split(self) -> tuple[dict[str, tuple[int, str]], int]:
         """Keys of the header with their lines, and the line before the first row."""
         header: dict[str, tuple[int, str]] = {}
-        for number, line in enumerate(self._lines, start=1):
+        for row, line in enumerate(self._lines, start=1):
             plain = _COMMENT.sub("", line).strip()
             if plain.upper() == "[DATA]":
-                return header, number
+                return header, row
             key, equals, value = plain.partition("=")
             key, value = key.strip().lower(), value.strip()
-            if equals and key in _READ and header.get(key, (number, value))[1] != value:
-                self._refuse(number, key, value, f"{header[key][1]} as in row {header[key][0]}", "Remove one of them.")
+            if equals and key in _READ and header.get(key, (row, value))[1] != value:
+                self._refuse(row, key, value, f"{header[key][1]} as in row {header[key][0]}", "Remove one of them.")
             if equals:
-                header[key] = (number, value)
+                header[key] = (row, value)
         allowed, action = Message("a header and then [DATA]"), Message("The file is cut off; copy it again.")
         return self._refuse(len(self._lines), "", "no [DATA]", allowed, action)
 
@@ -237,11 +238,8 @@ class _Reading:
         return self._number(line, key, text)
 
     def _number(self, line: int, column: str, text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
+        value = number(text)
+        if math.isnan(value):
             self._refuse(line, column, text[:80], "a finite number", "Correct the number.")
         return value
 
@@ -260,18 +258,18 @@ class _Reading:
         zone, place = timezone(timedelta(hours=offset)), names.index(_TIME)
         times: list[float] = []
         table: list[list[float]] = []
-        for number, line in enumerate(self._lines[self._data :], start=self._data + 1):
+        for row, line in enumerate(self._lines[self._data :], start=self._data + 1):
             cells = _COMMENT.sub("", line).split()
             if not cells:
                 continue
             if len(cells) != len(names):
-                self._refuse(number, "", f"{len(cells)} cells", f"{len(names)}, one for each field", "Correct the row.")
-            moment = self._moment(number, cells[place], zone)
+                self._refuse(row, "", f"{len(cells)} cells", f"{len(names)}, one for each field", "Correct the row.")
+            moment = self._moment(row, cells[place], zone)
             if times and moment <= times[-1]:
-                self._refuse(number, _TIME, cells[place], "a later time than the row before", "Sort the rows.")
+                self._refuse(row, _TIME, cells[place], "a later time than the row before", "Sort the rows.")
             times.append(moment)
             cells[place] = "0"
-            table.append([self._number(number, name, cell) for name, cell in zip(names, cells, strict=True)])
+            table.append([self._number(row, name, cell) for name, cell in zip(names, cells, strict=True)])
         if not times:
             self._refuse(self._data, "", "no row", "at least one row below [DATA]", "Export the station's data again.")
         return np.array(times), np.array(table)
