@@ -94,13 +94,11 @@ def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]
     labels: list[str] = []
     units: list[str] = []
     blocks = (str(number) if number > 1 else "" for number in count(1))
-    for block in takewhile(lambda block_number: f"LABELS{block_number}" in about, blocks):
+    for block in takewhile(lambda block: f"LABELS{block}" in about, blocks):
         names, of_block = _words(about, f"LABELS{block}"), _words(about, f"UNITS{block}")
         labels += names
         one = next(iter(of_block or units), "")
-        units += [
-            block_number.lower() for block_number in (of_block if len(of_block) == len(names) else [one] * len(names))
-        ]
+        units += [unit.lower() for unit in (of_block if len(of_block) == len(names) else [one] * len(names))]
     return labels, units
 
 
