@@ -138,16 +138,17 @@ class NumberCollector:
         if self._unit is not None:
             with np.errstate(over="ignore"):
                 values = self._unit.convert(values)
-        outside, beyond = self._column.outside(values), beyond_reason(values)
-        allowed = Message(
-            "{allowed}; if it is not 0, with a size from {smallest:g} to {largest:g}",
-            allowed=allowed_words(self._column), smallest=SMALLEST, largest=LARGEST,
-        )  # fmt: skip
+        outside = self._column.outside(values)
         for index in np.flatnonzero(outside).tolist():
             action = Message("Correct the cell; its unit is in the column's name.")
             cell = cells[index].strip() + (f" {self._unit.name}" if self._unit is not None else "")
-            among = allowed if beyond[index] else allowed_words(self._column)
-            problems.append(self._refusal("out_of_range", index, cell, rows, action, among))
+            allowed = allowed_words(self._column)
+            if beyond_reason(values[index]):
+                allowed = Message(
+                    "{allowed}; if it is not 0, with a size from {smallest:g} to {largest:g}",
+                    allowed=allowed, smallest=SMALLEST, largest=LARGEST,
+                )  # fmt: skip
+            problems.append(self._refusal("out_of_range", index, cell, rows, action, allowed))
         values[outside] = np.nan
         self._parts.append(values)
 
