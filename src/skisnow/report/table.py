@@ -56,10 +56,12 @@ class Column:
         """True if the cells are right-aligned."""
         return self.kind in ("count", "angle", "hundredths", "number", "p", "interval", "range", "estimate")
 
-    def cell(self, record: Mapping[str, Any]) -> Any:
-        """Content of this column in the row of a record; an estimate gets its interval."""
-        value = record.get(self.key)
-        return (value, record.get(self.interval)) if self.kind == "estimate" else value
+    def cells(self, records: Sequence[Mapping[str, Any]]) -> list[Any]:
+        """Content of this column for each record; an estimate gets its interval."""
+        values = [record.get(self.key) for record in records]
+        if self.kind == "estimate":
+            return [(value, record.get(self.interval)) for value, record in zip(values, records, strict=True)]
+        return values
 
 
 @dataclass(frozen=True)
@@ -93,9 +95,8 @@ def record_table(
     name: str, caption: str, columns: tuple[Column, ...], records: Iterable[Mapping[str, Any]], **options: Any
 ) -> Table:
     """Table with one row for each record; the keys of the columns are those of the records."""
-    return Table(
-        name, caption, columns, [tuple(column.cell(record) for column in columns) for record in records], **options
-    )
+    kept = list(records)
+    return Table(name, caption, columns, list(zip(*(column.cells(kept) for column in columns), strict=True)), **options)
 
 
 def table_csv(table: Table) -> str:
