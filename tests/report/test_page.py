@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -449,7 +450,7 @@ def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
     small = {"penetration": first_series(campaign, 2), "shear": first_shear(campaign, 2), "drop_cone": None}
     once = reported(replace(campaign, **small), tmp_path / "once")  # type: ignore[arg-type]
 
-    def noting(path: Path, content: str | bytes) -> None:
+    def noting(path: Path, content: str | bytes | Iterable[bytes]) -> None:
         written.append(path.name)
         write_file(path, content)
 

@@ -14,7 +14,7 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
@@ -184,11 +184,11 @@ def require_ending(path: str | Path, *endings: str) -> None:
         )
 
 
-def write_file(path: str | Path, content: str | bytes) -> None:
-    """Write a file in one piece; text as UTF-8 with plain line ends. An existing file is replaced."""
-    data = content.encode("utf-8") if isinstance(content, str) else content
-    with place_to_write(path) as place:
-        place.write_bytes(data)
+def write_file(path: str | Path, content: str | bytes | Iterable[bytes]) -> None:
+    """Write or replace a file; text as UTF-8 with plain line ends. Bytes can come in pieces."""
+    whole = content.encode("utf-8") if isinstance(content, str) else content
+    with place_to_write(path) as place, place.open("wb") as file:
+        file.writelines([whole] if isinstance(whole, bytes) else whole)
 
 
 @contextmanager

@@ -323,7 +323,13 @@ def _provenance(analysis: Analysis) -> Json:
 
 def results_json(results: dict[str, Any]) -> bytes:
     """The UTF-8 text of results.json: one entry of a list to a line, so that people can search it."""
-    return b"".join(_pieces(results, 0)) + b"\n"
+    return b"".join(results_pieces(results))
+
+
+def results_pieces(results: dict[str, Any]) -> Iterator[bytes]:
+    """Pieces of results.json, for a file that is written without the whole text in memory."""
+    yield from _pieces(results, 0)
+    yield b"\n"
 
 
 def _pieces(value: Any, depth: int) -> Iterator[bytes]:
@@ -337,7 +343,9 @@ def _pieces(value: Any, depth: int) -> Iterator[bytes]:
         text = orjson.dumps(value)
         # at once is five times faster than row by row; split it only where no name contains what parts the rows
         if text.count(b"},{") == len(value) - 1:
-            text = b"[" + pad + text[1:-1].replace(b"},{", b"}," + pad + b"{") + b"\n" + b" " * depth + b"]"
+            yield b"[" + pad
+            yield text[1:-1].replace(b"},{", b"}," + pad + b"{")
+            text = b"\n" + b" " * depth + b"]"
         yield text
     else:
         yield orjson.dumps(value)

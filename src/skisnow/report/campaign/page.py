@@ -17,7 +17,7 @@ from ..._support.messages import ENGLISH, Message, in_language
 from ..._support.staging import prepare_folder, staged, write_file
 from ...campaign import Campaign
 from ...estimation import Analysis
-from ...estimation.results import results_json
+from ...estimation.results import results_pieces
 from ..figures.drawing import Drawing, LeftOut, Picture
 from ..figures.figure_files import picture_files, render_pictures, silent, write_picture
 from ..figures.style import SiteStyle, site_styles
@@ -137,7 +137,7 @@ def _write(data: ReportData, stage: Path, language: str, report: Callable[[str],
     report("report.html")
     write_file(stage / "report.html", page(data, tables, pictures, missing, language=language))
     report("results.json")
-    write_file(stage / RESULTS, results_json(data.results))
+    write_file(stage / RESULTS, results_pieces(data.results))
     stale = [f"tables/{stem}{ending}" for stem in _stale_stems(all_tables.values()) for ending in (".csv", ".tex")]
     return stale + picture_files(left_out.name for left_out in missing)
 
