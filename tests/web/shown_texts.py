@@ -33,9 +33,7 @@ NO_WORDS: Final = frozenset(
         "Given",
         "name = {}",  # a line of a file
         "\n[screening]\nexclude = {}\n",
-        'attachment; filename="analysis.zip"',
-        'attachment; filename="campaign-{}.zip"',
-        'attachment; filename="study.zip"',
+        'attachment; filename="{}"',
         "default-src 'none'; style-src 'unsafe-inline'; sandbox",
         'out = "{}"',
         "scenario = {}",
