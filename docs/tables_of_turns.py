@@ -223,9 +223,8 @@ def friction_directions() -> Iterator[str]:
                 turn("carved-46m", *changes, ("friction.mu_0", friction), ("friction.direction", direction))
                 for direction in ("along-ski", "vector")
             )
-            cells.append(
-                f"{apart(along, vector):.2f} m, {vector.speed[-1] - along.speed[-1]:+.2f} m/s".replace("-", "−")
-            )
+            faster = round(vector.speed[-1] - along.speed[-1], 2) + 0.0  # no -0.00
+            cells.append(f"{apart(along, vector):.2f} m, {faster:.2f} m/s".replace("-", "−"))
         yield f"| {name} | {' | '.join(cells)} |"
 
 
