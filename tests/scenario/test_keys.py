@@ -75,6 +75,7 @@ def test_units_come_from_the_names() -> None:
         "stiffness_factor",
         "turns",
         "leg_gain",
+        "leg_load",
         "edge_gain",
         "outer_share",
     }

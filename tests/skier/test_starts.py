@@ -55,7 +55,7 @@ def test_the_outer_ski_bears_its_share_without_chatter(share: float) -> None:
 
 
 def require_landing(scenario: Scenario) -> None:
-    """0.4 s and more in the air, at most 2 m up; within 4 s the legs have given way and stretched again."""
+    """0.4 s and more in the air, at most 2 m up; the legs give way nearly to their shortest and stretch again."""
     skier = BalancedSkier(scenario)
     run = simulate(scenario, boots=skier)
     assert run.outcome == "finished"
@@ -63,7 +63,8 @@ def require_landing(scenario: Scenario) -> None:
     in_air = np.array([record.seen.flies for record in skier.records])
     assert in_air.sum() * skier.period > 0.4
     assert max(record.seen.clearance for record in skier.records) < 2.0
-    assert -0.31 < rise.min() < -0.25
+    lowest = skier.skier.shortest_leg - scenario.sledge.centre_of_mass[1]
+    assert lowest - 0.05 < rise.min() < lowest + 0.05
     assert abs(rise[-1]) < 0.1
     legs = np.hypot([record.posture[1] for record in skier.records], 0.6 + rise)
     assert legs.max() < skier.skier.longest_leg

@@ -31,9 +31,9 @@ class Skier:
         Target speed of the braking in skidded turns (m/s); 0: turns are carved as far as the snow holds.
     assumed_hardness, assumed_strength
         H_V (N/m³) and S_f (N/m²) that the control assumes; 0: those of the scenario.
-    longest_leg, greatest_edge, greatest_hip, hip_torque, greatest_shift, greatest_shift_speed
-        Limits of the body: leg (m), edge angle, yaw of the body against the skis (rad), torque of the hips (N m), shift
-        of the centre of mass along the skis (m) and its rate (m/s).
+    longest_leg, shortest_leg, leg_load, greatest_edge, greatest_hip, hip_torque, greatest_shift, greatest_shift_speed
+        Limits of the body: leg (m), load of both legs (body weights), edge angle, yaw of the body against the skis
+        (rad), torque of the hips (N m), shift of the centre of mass along the skis (m) and its rate (m/s).
     greatest_lean, greatest_slip, least_slip, braking, outer_share, edge_rate, leg_gain, leg_yielding, edge_gain
         Of the control: lean and slip that it plans (rad), deceleration over the speed that is too much (1/s), share of
         the load on the outer ski, corner frequency of the edge angle (1/s), gain of legs and edges on the error of the
@@ -139,6 +139,20 @@ class Skier:
         Label(Message("longest leg")),
         Allowed(0.1, 2.0, origin="centre of mass of a man of 1.76 m who stands, and 7 cm of sole, binding and ski"),
     ] = 1.05
+    shortest_leg: Annotated[
+        float,
+        Quantity(
+            "skier.shortest_leg_m", "height of the centre of mass over the feet in the deepest crouch of a landing"
+        ),
+        Label(Message("shortest leg")),
+        Allowed(0.05, 1.0, origin="choice: knees drawn up between 0.6 m, the usual height, and the snow"),
+    ] = 0.32
+    leg_load: Annotated[
+        float,
+        Quantity("skier.leg_load", "load of both legs, in body weights, that landings aim at at most"),
+        Label(Message("greatest load of the legs")),
+        Allowed(1.1, 20.0, origin="choice: within the peaks measured in slalom, 2.5 to 4"),
+    ] = 3.0
     greatest_edge: Annotated[
         float,
         Quantity("skier.greatest_edge_deg", "greatest edge angle that it sets"),

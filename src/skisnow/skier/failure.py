@@ -17,8 +17,8 @@ from .balance import BalanceRecord
 
 LOOKS_BACK: Final = 1.5
 """Time (s) before a fall or a missed gate in which its cause is looked for (modelling assumption)."""
-MOST_LOAD, LEAST_LOAD = 3.0, 0.2
-"""Body weights on both legs above and below which a load throws the skier off balance (modelling assumption)."""
+LEAST_LOAD = 0.2
+"""Body weights on both legs below which a load throws the skier off balance (modelling assumption)."""
 GRIPS, EDGED = math.radians(1.0), math.radians(1.0)
 """Slip below which a ski that is to skid follows its edge, and edge from which it does (rad)."""
 HELD: Final = 0.6
@@ -122,7 +122,7 @@ def _crossed(records: Sequence[BalanceRecord], skier: Skier, weight: float) -> d
         "hips": np.abs(hips) > skier.greatest_hip,
         "edge_lost": (slip < GRIPS) & (edge > EDGED) & (skier.brakes_to > 0.0) & turning,
         "grip": turning & (across * asked < HELD * asked**2) & (load > 0.5),
-        "leg_force": (load > MOST_LOAD) | (load < LEAST_LOAD),
+        "leg_force": (load > skier.leg_load) | (load < LEAST_LOAD),
     }
 
 

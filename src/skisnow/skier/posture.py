@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray
+from .._support.units import STANDARD_GRAVITY
 from ..dynamics import BootPose
 from ..geometry.vectors import axes_of, combined, cross, minus, plus, times
 from ..scenario.skier import Skier
@@ -38,13 +39,11 @@ DAMPED_FROM: Final = math.radians(5.0)
 times the control's period over the damping is to stay below 1)."""
 SETTLING, FASTEST_RISE = 3.0, 0.5
 """Rate (1/s) at which the height goes back to its own, and its greatest speed (m/s) (modelling assumptions)."""
-APPROACH, TOUCHDOWN = 60.0, 0.4
-"""Speed of the skis towards the snow over their clearance (1/s), and at the touch (m/s) (found by trial)."""
-CROUCH, STRETCHED, BRAKED = 0.28, 0.25, 20.0
-"""How far legs give in a landing, and stretch before it (m), for a deceleration (m/s²) (modelling assumptions)."""
-EXTENDS, LANDED = 10.0, 0.05
-"""Greatest acceleration of legs that stretch in the air or after a landing (m/s²), and how much shorter than usual they
-are when it is over (m) (modelling assumptions)."""
+APPROACH: Final = 0.25
+"""Share of their clearance by which the skis near the snow in a period (derived: below 6 - √32 = 0.34, from which on
+they overshoot, since half of a period's rate acts in the next)."""
+LANDED: Final = 0.05
+"""How much shorter than usual legs are when a landing is over (m) (modelling assumption)."""
 ANKLES, LEVELS = math.radians(25.0), 25.0
 """Greatest pitch of skis against the body (rad), and its corner frequency in the air (1/s) (modelling assumptions)."""
 FASTEST_SHIFT: Final = 25.0
@@ -210,19 +209,24 @@ class Posture:
     def _step_up(self, command: Command, seen: Seen, dt: float) -> None:
         """Step of the legs upwards, by the deviation of the load.
 
-        In the air they stretch for the landing, then take the skis to the snow's speed, and brake evenly after it.
+        In the air they stretch for the landing, then take the skis to the snow's speed, and brake evenly after it. The
+        stretch, the touch and the rise after it are those that the greatest load of the legs allows.
         """
         rise, rate = float(self.numbers[RISE]), float(self.rates[RISE])
+        hardest = (self.skier.leg_load - 1.0) * STANDARD_GRAVITY
+        touchdown = hardest * dt
         more = 0.0 if command.load is None else self._edged() * (command.load - seen.load) / (2.0 * DAMPING)
         later = max(-FASTEST_RISE, min(FASTEST_RISE, more - SETTLING * rise))
-        left, sinks = rise + CROUCH, rate < -TOUCHDOWN
+        left, sinks = self.height - self.skier.shortest_leg, rate < -touchdown
         self._lands = seen.flies or (self._lands and (sinks or rise < -LANDED))
         if seen.flies:
-            stretched = min(STRETCHED, seen.falls_with**2 / (2.0 * BRAKED))
-            touching = max(TOUCHDOWN, APPROACH * seen.clearance) - seen.nearing
+            longest = math.sqrt(self.skier.longest_leg**2 - float(self.numbers[ASIDE]) ** 2)
+            stretched = min(longest - self.centre[1], seen.falls_with**2 / (2.0 * hardest))
+            touching = max(touchdown, APPROACH / dt * seen.clearance) - seen.nearing
             later = min(FASTEST_RISE, SETTLING * (stretched - rise), max(touching, -TOUCH * left))
         if self._lands:
-            braked = rate + dt * (rate**2 / (2.0 * max(left, 0.02)) if sinks else EXTENDS)
+            ends = not sinks or left < 0.02
+            braked = rate + dt * max(rate**2 / (2.0 * max(left, 0.02)) if sinks else 0.0, hardest if ends else 0.0)
             later = braked if sinks and not seen.flies else min(later, braked)
         self.numbers[RISE] = rise + 0.5 * (rate + later) * dt
         self.rates[RISE] = later
