@@ -11,7 +11,7 @@ import pytest
 from skisnow import read_ski
 from skisnow._support.errors import ParameterError
 from skisnow.contact import ContactState, Laws, Runner, SnowContact, SnowField
-from skisnow.contact.laws import AskedFriction, AskedPressure, AskedStrength
+from skisnow.contact.laws import FrictionCallback, PressureCallback, StrengthCallback
 from skisnow.forces.friction import ConstantFriction, FrictionLaw, LinearFriction, QuadraticFriction, WaterFilmFriction
 from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.forces.shear import AngleShear, ConstantShear, MachiningShear
@@ -249,14 +249,14 @@ class Law:
 
 
 def test_friction_is_asked_for_each_speed() -> None:
-    found = AskedFriction(cast("Any", Law()))(np.array([1.0, 2.0]))
+    found = FrictionCallback(cast("Any", Law()))(np.array([1.0, 2.0]))
     assert found.tolist() == [0.05, 0.05]
     assert found.flags.c_contiguous
 
 
 @pytest.mark.filterwarnings("ignore:divide by zero")
 def test_strength_is_asked_where_there_is_snow() -> None:
-    asked = AskedStrength(cast("Any", Law()))
+    asked = StrengthCallback(cast("Any", Law()))
     depth, angle = np.array([0.01, 0.0, -0.02, 0.03]), np.array([0.1, 0.2, 0.3, 0.4])
     assert asked(depth, angle) == pytest.approx(np.array([[10.0, 0.0, 0.0, 30.0], [0.1, 0.0, 0.0, 0.4]]))
     assert not asked.refused
@@ -268,11 +268,11 @@ def test_strength_is_asked_where_there_is_snow() -> None:
 
 
 def test_pressure_is_asked_with_what_stays() -> None:
-    asked, deep = AskedPressure(cast("Any", Law())), np.array([0.01, 0.04])
+    asked, deep = PressureCallback(cast("Any", Law())), np.array([0.01, 0.04])
     assert asked.residual(deep).tolist() == [0.005, 0.02]
     assert asked.bear(deep, 2.0 * deep, np.array([0.1, 0.2])) == pytest.approx(np.array([[0.03, 0.12], [0.1, 0.2]]))
     assert asked.lost(deep).tolist() == [3.0, 3.0]
-    broken = AskedPressure(cast("Any", Law(broken=True)))
+    broken = PressureCallback(cast("Any", Law(broken=True)))
     for ask in (broken.residual, broken.lost, lambda depth: broken.bear(depth, depth, depth)):
         with raises(ParameterError, "invalid_law", law="Law()", depth=10.0):
             ask(deep)

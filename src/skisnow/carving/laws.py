@@ -12,7 +12,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..compiled import core
-from ..contact.laws import AskedPressure, AskedStrength
+from ..contact.laws import PressureCallback, StrengthCallback
 from ..forces.penetration import PenetrationLaw, PointLaw
 from ..forces.shear import ShearLaw
 from ..ski.ski import Ski
@@ -25,7 +25,7 @@ _DEPTHS: Final = np.geomspace(1e-6, 1.0, 600)  # m, of a straight edge
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
 
 
-class PressureLaw(AskedPressure):
+class PressureLaw(PressureCallback):
     """Stress of a law; values that are not finite are recorded in ``refused``: a trial step may be too deep."""
 
     def __init__(self, law: PointLaw) -> None:
@@ -45,14 +45,14 @@ class StrengthLaw:
     """Failure stress of a law over that at one depth and the boot's edge angle, for arrays; `refused` as above."""
 
     def __init__(self, law: ShearLaw, edge_angle: float) -> None:
-        self._asked = AskedStrength(law)
-        self._unit = float(self._asked(np.array([_SOME_DEPTH]), np.array([edge_angle]))[0, 0])
+        self._callback = StrengthCallback(law)
+        self._unit = float(self._callback(np.array([_SOME_DEPTH]), np.array([edge_angle]))[0, 0])
         self.refused: Message | None = None
 
     def share(self, depth: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Stress at depths (m), 0 at depths that are not positive, and at edge angles (rad)."""
-        share = self._asked(depth, edge_angle)[0] / self._unit
-        self.refused = self.refused or self._asked.refused
+        share = self._callback(depth, edge_angle)[0] / self._unit
+        self.refused = self.refused or self._callback.refused
         return share
 
 

@@ -111,7 +111,8 @@ SKI_FACTORS: Final = {
 """Inputs that change the ski, with the factors of `SkiEdit`."""
 
 
-def _factor(name: str, what: Message) -> Quantity:
+def _ski_factor(name: str, what: Message) -> Quantity:
+    """Input that multiplies a quantity of the ski."""
     meaning = Message("factor of the ski's {what}", what=what)
     return Quantity(name, meaning, label=meaning, lowest=0.01, highest=100.0, origin="the ski's own")
 
@@ -230,10 +231,10 @@ class CarveQuestion:
         ),
     ] = False
 
-    sidecut_factor: Annotated[float, _factor("sidecut_factor", Message("width beyond that of the waist"))] = 1.0
-    width_factor: Annotated[float, _factor("width_factor", Message("width"))] = 1.0
-    EI_factor: Annotated[float, _factor("EI_factor", Message("bending stiffness EI"))] = 1.0
-    GJ_factor: Annotated[float, _factor("GJ_factor", Message("torsional stiffness GJ"))] = 1.0
+    sidecut_factor: Annotated[float, _ski_factor("sidecut_factor", Message("width beyond that of the waist"))] = 1.0
+    width_factor: Annotated[float, _ski_factor("width_factor", Message("width"))] = 1.0
+    EI_factor: Annotated[float, _ski_factor("EI_factor", Message("bending stiffness EI"))] = 1.0
+    GJ_factor: Annotated[float, _ski_factor("GJ_factor", Message("torsional stiffness GJ"))] = 1.0
 
     def __post_init__(self) -> None:
         require_declared(self)

@@ -62,7 +62,7 @@ def add_completion(commands: argparse._SubParsersAction[argparse.ArgumentParser]
 
 
 def print_completion(options: argparse.Namespace) -> int:
-    """Print the script, or the words."""
+    """Print the completion script of a shell, or the words that can come next on a command line."""
     if options.shell != WORDS:
         print(_SCRIPTS[options.shell], end="")
         return 0

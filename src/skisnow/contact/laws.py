@@ -47,8 +47,8 @@ class Laws(Shown):
         return Facts(", ".join(f"{name} {law}" for name, law in self.described.items() if law) or "none")
 
 
-class AskedFriction:
-    """μ of a law, for arrays of speeds (m/s)."""
+class FrictionCallback:
+    """Coefficient μ of a law that the compiled core calls with arrays of speeds (m/s)."""
 
     def __init__(self, law: FrictionLaw) -> None:
         self.law = law
@@ -58,7 +58,7 @@ class AskedFriction:
         return np.ascontiguousarray(np.broadcast_to(self.law.coefficient(speed), speed.shape), float)
 
 
-class AskedStrength:
+class StrengthCallback:
     """Strength and thrust (N/m²) of a law, (2, n), for depths (m) and edge angles (rad); 0 where no snow is met.
 
     Values that are not finite are recorded in ``refused``: a trial step may reach a pose that no ski reaches.
@@ -85,22 +85,22 @@ class AskedStrength:
         return found
 
 
-class AskedPressure:
-    """Stress and largest stress of a penetration law, for arrays over places; answers must be finite."""
+class PressureCallback:
+    """Functions of a penetration law that the compiled core calls with arrays over places; values must be finite."""
 
     def __init__(self, law: PointLaw) -> None:
         self.law = law
 
     def residual(self, deepest: FloatArray, /) -> FloatArray:
-        """Depth (m) at which places that were at deepest depths (m) bear nothing any more."""
+        """Depth (m) that remains after unloading at places with these maximum depths (m)."""
         return self._sound(self.law.residual_depth(deepest), deepest.shape, deepest)
 
     def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
-        """Stress (N/m²) and energy (J/m²), (2, n), at depths (m), of places once at deepest depths, at edge angles."""
+        """Stress (N/m²) and energy (J/m²), (2, n), at depths (m), maximum depths so far and edge angles (rad)."""
         return self._sound(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
 
     def lost(self, deepest: FloatArray, /) -> FloatArray:
-        """Energy (J/m²) that stays in places that were at deepest depths (m)."""
+        """Energy (J/m²) lost in the snow at places with these maximum depths (m)."""
         return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
 
     def refuse(self, reason: Message) -> None:

@@ -14,7 +14,7 @@ from .._support.errors import ParameterError
 from .._support.units import Facts, Shown, field_facts
 from ..compiled import core
 from .contact_state import ContactState
-from .laws import AskedFriction, AskedPressure, AskedStrength
+from .laws import FrictionCallback, PressureCallback, StrengthCallback
 
 if TYPE_CHECKING:
     from .runner import Runner
@@ -157,13 +157,13 @@ class SnowContact(Shown):
         self.snow, self.runners = snow, tuple(runners)
         self.compiled = core.Contact(snow.compiled, [each.compiled() for each in runners], spacing, instruction_set)
         friction, shear = snow.friction_in_python, snow.shear_in_python
-        self._shear = None if shear is None else AskedStrength(shear)
+        self._shear = None if shear is None else StrengthCallback(shear)
         if friction is not None or shear is not None:
-            called = None if friction is None else AskedFriction(friction)
+            called = None if friction is None else FrictionCallback(friction)
             self.compiled.set_laws(called, self._shear)
         if snow.penetration is not None:
             law = snow.penetration
-            self.compiled.set_penetration(AskedPressure(law), np.array(law.bends, float), law.along_base_normal)
+            self.compiled.set_penetration(PressureCallback(law), np.array(law.bends, float), law.along_base_normal)
 
     def _facts(self) -> Facts:
         return Facts(f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._facts().title}")

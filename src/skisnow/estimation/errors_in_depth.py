@@ -133,7 +133,7 @@ def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: Floa
 
 
 def _depth_slopes(readings: Readings, hardness: FloatArray) -> FloatArray:
-    """d/de of the four regressors: dA/de and dV/de = A in the place of A and V."""
+    """Derivatives with depth of the four regressors (n, 4): dA/de replaces A, and A, which is dV/de, replaces V."""
     # a line contact (cylinder at e = 0) has an infinite dA/de: no depth, no information
     growth = np.where(np.isfinite(readings.area_growth), readings.area_growth, 0.0)
     return end_columns(readings, hardness, growth, readings.contact_area)

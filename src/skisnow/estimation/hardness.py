@@ -125,7 +125,7 @@ def _log_ratios(
 
 def _weighted_mean(readings: Readings, logs: FloatArray, variance: FloatArray, touching: BoolArray) -> FloatArray:
     """Mean of each series weighted by 1/variance; without any variance all readings have the same weight."""
-    weight = np.where(touching, _reciprocal(variance), 0.0)
+    weight = np.where(touching, _reciprocal_or_zero(variance), 0.0)
     exact = readings.sums(weight) == 0.0
     weight = np.where(touching & exact[readings.series], 1.0, weight)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -151,7 +151,7 @@ def scatter_variance(readings: Readings, logs: FloatArray, instrument2: FloatArr
     use = touching.astype(float)
 
     def excess(s2: FloatArray) -> tuple[FloatArray, FloatArray]:
-        weight = use * _reciprocal(s2[readings.series] + instrument2)
+        weight = use * _reciprocal_or_zero(s2[readings.series] + instrument2)
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = readings.sums(weight * logs) / readings.sums(weight)
         deviation2 = (logs - mean[readings.series]) ** 2
@@ -172,7 +172,7 @@ def scatter_variance(readings: Readings, logs: FloatArray, instrument2: FloatArr
     return np.where(n > 1, s2, np.nan)
 
 
-def _reciprocal(variance: FloatArray) -> FloatArray:
+def _reciprocal_or_zero(variance: FloatArray) -> FloatArray:
     return np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0)
 
 

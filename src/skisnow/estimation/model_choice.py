@@ -98,7 +98,10 @@ def bootstrap_intervals(
 
 @dataclass(frozen=True)
 class _HardnessRows:
-    """Rows of one hardness, with each experiment's cross products of their four regressors and the loads (m, 14)."""
+    """Rows of the model table with one hardness.
+
+    products: for each of m experiments, 10 products of pairs of the four regressors and 4 with the load (m, 14).
+    """
 
     basis: EndBasis
     models: tuple[Model, ...]
@@ -115,7 +118,7 @@ class _HardnessRows:
         return cls(basis, models, np.stack(sums, axis=1))
 
     def coefficients(self, model: Model, totals: FloatArray) -> FloatArray:
-        """(B, 4) a0, a1, b0, b1 of B resamples from their summed products (B, 14)."""
+        """Coefficients a0, a1, b0, b1 (B, 4) of B resamples, from their sums (B, 14) of the columns of `products`."""
         rows, columns = _PAIRS
         gram = np.empty((len(totals), 4, 4))
         gram[:, rows, columns] = gram[:, columns, rows] = totals[:, :-4]

@@ -110,8 +110,11 @@ class Readings(ShownFields):
         return result
 
     @cached_property
-    def _alike(self) -> tuple[tuple[Tool, FloatArray, IntArray], ...]:
-        """A tool, its edge angle, the readings that have both; with many angles, a tool and the angle of each."""
+    def _tool_groups(self) -> tuple[tuple[Tool, FloatArray, IntArray], ...]:
+        """Groups of readings with the same tool and edge angle: tool, angle (rad) and indices of the readings.
+
+        A tool with more than `_FEW_ANGLES` angles is one group, with the angle of each reading.
+        """
         groups: list[tuple[Tool, FloatArray, IntArray]] = []
         for index, tool in enumerate(self.tools):
             mine = self.tool == index
@@ -126,7 +129,7 @@ class Readings(ShownFields):
 
     def _by_tool(self, form: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray) -> FloatArray:
         result = np.empty(self.n)
-        for tool, angle, mine in self._alike:
+        for tool, angle, mine in self._tool_groups:
             result[mine] = form(tool, values[mine], angle)
         return result
 

@@ -295,12 +295,12 @@ def _row(recording: EvaluatedRecording, chosen: WindowMeans) -> Json:
         "rupture_force_N": chosen.rupture_force,
         "deflection_mm": chosen.deflection / MM,
         "element_size_mm": chosen.element_size / MM,
-        **_of_relation(chosen),
-        "by_relation": {name: _of_relation(windows) for name, windows in recording.windows.items()},
+        **_density_and_surface_area(chosen),
+        "by_relation": {name: _density_and_surface_area(windows) for name, windows in recording.windows.items()},
     }
 
 
-def _of_relation(windows: WindowMeans) -> Json:
+def _density_and_surface_area(windows: WindowMeans) -> Json:
     return {
         "snow_density_kg_per_m3": windows.snow_density,
         "specific_surface_area_m2_per_kg": windows.specific_surface_area,

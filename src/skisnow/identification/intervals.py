@@ -241,11 +241,11 @@ class _Resample:
     ended: bool = False
 
 
-def require_bootstrap(resamples: int, by: str) -> None:
-    """Validate the options of the bootstrap."""
-    if by not in ("refit", "linear"):
+def require_bootstrap(resamples: int, method: str) -> None:
+    """Reject too few resamples, and a method other than refit and linear."""
+    if method not in ("refit", "linear"):
         raise ParameterError("Unknown bootstrap method {value!r}. Allowed: refit, linear").tag(
-            "unknown_bootstrap", value=by
+            "unknown_bootstrap", value=method
         )
     if resamples != 0 and resamples < FEWEST:
         raise ParameterError(

@@ -109,7 +109,7 @@ class PhotoCellTimes:
         return tuple(len(self._informative(run)[0]) for run in self.cells.runs)
 
     def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
-        """(Computed - measured)/sd of every passage, run after run."""
+        """(Computed - measured)/sd of every passage, run after run, for each set of values; never None."""
         residuals: list[list[FloatArray]] = [[] for _ in many]
         for run in self.cells.runs:
             station, time, sd = self._informative(run)

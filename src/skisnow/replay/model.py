@@ -97,16 +97,18 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     """
     shown = _with_rising_times(thin_replay(replay))
     model = Glb()
-    clock = model.array(shown.time, bounds=True)
-    course = model.array(shown.place)
-    boots, body = _skier(model, shown, clock)
-    skis = [node for ski in range(2) for node in _ski(model, shown, ski, exaggeration, clock, boots[ski : ski + 1])]
-    sledge = model.node("sledge", translation=shown.place[0], rotation=_xyzw(shown)[0], children=[*skis, *body])
-    model.move(sledge, "translation", clock, course)
-    model.move(sledge, "rotation", clock, model.array(_xyzw(shown)))
+    times = model.array(shown.time, bounds=True)
+    places = model.array(shown.place)
+    boots, body = _skier(model, shown, times)
+    skis = [node for ski in range(2) for node in _ski(model, shown, ski, exaggeration, times, boots[ski : ski + 1])]
+    sledge = model.node(
+        "sledge", translation=shown.place[0], rotation=_sledge_quaternions(shown)[0], children=[*skis, *body]
+    )
+    model.move(sledge, "translation", times, places)
+    model.move(sledge, "rotation", times, model.array(_sledge_quaternions(shown)))
     ground = {"snow": snow_mesh(shown), "grid": grid_mesh(shown)}
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in ground.items()]
-    parts += [*_groove(model, shown), sledge, _camera(model, shown, clock, course)]
+    parts += [*_groove(model, shown), sledge, _camera(model, shown, times, places)]
     run = model.node("run", rotation=rotation_to_gltf(shown.tilt), children=parts, extras=_extras(shown, exaggeration))
     return model.to_bytes(shown.title, [run], cameras=_CAMERAS)
 
@@ -127,7 +129,7 @@ def _with_rising_times(replay: Replay) -> Replay:
     return select_moments(replace(replay, time=time, groove=groove), moments)
 
 
-def _xyzw(replay: Replay) -> FloatArray:
+def _sledge_quaternions(replay: Replay) -> FloatArray:
     return replay.attitude[:, [1, 2, 3, 0]]
 
 
@@ -139,7 +141,7 @@ def _about(axis: int, angle: FloatArray | float) -> FloatArray:
     return quaternions
 
 
-def _skier(model: Glb, replay: Replay, clock: int) -> tuple[list[int], list[int]]:
+def _skier(model: Glb, replay: Replay, times: int) -> tuple[list[int], list[int]]:
     """Nodes of a skier: the boots, for the skis, and the parts of the body, for the sledge."""
     boots: list[int] = []
     body: list[int] = []
@@ -151,12 +153,12 @@ def _skier(model: Glb, replay: Replay, clock: int) -> tuple[list[int], list[int]
         place, turn = part_poses(replay.skier, part)
         turn = np.roll(turn, -1, axis=1)
         body.append(model.node(part.name, mesh=mesh, translation=place[0], rotation=turn[0]))
-        model.move(body[-1], "translation", clock, model.array(place))
-        model.move(body[-1], "rotation", clock, model.array(turn))
+        model.move(body[-1], "translation", times, model.array(place))
+        model.move(body[-1], "rotation", times, model.array(turn))
     return boots, body
 
 
-def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, on_ski: list[int]) -> tuple[int, int]:
+def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, times: int, on_ski: list[int]) -> tuple[int, int]:
     """Nodes of a ski on the sledge: the carrier of its joints and boot, and the node of its mesh.
 
     Only the joints place a mesh with a skin (section 3.7.3.2). Its node is on the sledge because some viewers determine
@@ -169,16 +171,16 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, 
     joints = []
     for j in range(len(skis.station)):
         joints.append(model.node(f"{name}, station {j + 1}", translation=place[0, j], rotation=turn[0, j]))
-        model.move(joints[j], "translation", clock, model.array(place[:, j]))
-        model.move(joints[j], "rotation", clock, model.array(turn[:, j]))
+        model.move(joints[j], "translation", times, model.array(place[:, j]))
+        model.move(joints[j], "rotation", times, model.array(turn[:, j]))
     boot = {"translation": skis.middle[ski], "rotation": _about(0, -skis.edge_angle)}
     moved = None if skis.boots is None else _on_the_sledge(replay, skis.boots, ski)
     if moved is not None:
         boot = {"translation": moved[0][0], "rotation": moved[1][0]}
     carrier = model.node(f"{name}, boot", children=[*joints, *on_ski], **boot)
     if moved is not None:
-        model.move(carrier, "translation", clock, model.array(moved[0]))
-        model.move(carrier, "rotation", clock, model.array(moved[1]))
+        model.move(carrier, "translation", times, model.array(moved[0]))
+        model.move(carrier, "rotation", times, model.array(moved[1]))
     into_joints = np.tile(np.eye(4), (len(joints), 1, 1))
     into_joints[:, 0, 3], into_joints[:, 2, 3] = -skis.station, -skis.base_height
     skin = model.skin(name, joints, carrier, into_joints)
@@ -189,7 +191,7 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, clock: int, 
 
 def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatArray, FloatArray]:
     """Places (n, 3) of a moving boot in the sledge's frame (m), and its quaternions x, y, z, w."""
-    back = Rotation.from_quat(_xyzw(replay)).inv()
+    back = Rotation.from_quat(_sledge_quaternions(replay)).inv()
     turn = (back * Rotation.from_quat(np.roll(boots.attitude[:, ski], -1, axis=1))).as_quat()
     return back.apply(boots.place[:, ski] - replay.place), continuous(turn)
 
@@ -213,8 +215,11 @@ def _groove(model: Glb, replay: Replay) -> list[int]:
 _CAMERAS: Final = [{"name": "along", "type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.5, "zfar": 300.0}}]
 
 
-def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
-    """Node of a camera uphill of the sledge, which moves with it without rotation."""
+def _camera(model: Glb, replay: Replay, times: int, places: int) -> int:
+    """Node of a camera uphill of the sledge, which moves along; on a profile or terrain it pitches with the steepness.
+
+    times, places: accessors of the moments and of the sledge's places.
+    """
     back = np.subtract(_EYE, _LOOKED_AT)
     back /= math.hypot(*back)
     right = np.cross([0.0, 0.0, 1.0], back)
@@ -223,9 +228,9 @@ def _camera(model: Glb, replay: Replay, clock: int, course: int) -> int:
     eye = model.node("camera", camera=0, translation=list(_EYE), rotation=Rotation.from_matrix(axes).as_quat())
     leans = _about(1, _steepness_behind(replay))
     along = model.node("camera's place", translation=replay.place[0], rotation=leans[0], children=[eye])
-    model.move(along, "translation", clock, course)
+    model.move(along, "translation", times, places)
     if replay.profile is not None or replay.terrain is not None:
-        model.move(along, "rotation", clock, model.array(leans))
+        model.move(along, "rotation", times, model.array(leans))
     return along
 
 

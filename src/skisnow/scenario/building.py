@@ -126,7 +126,7 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
 
 
 def _contact(resolution: Resolution) -> Contact:
-    """Snow, unloading, friction and layers of a scenario, from the values that count."""
+    """Snow, unloading, friction and layers of a scenario, from its resolved values."""
     values = resolution.values
     ratio = ELASTIC if values.get("snow.penetration") == "elastic" else values.get(UNLOADING)
     snow = _snow(resolution).without_measured(unloading=ratio is not None, displacement=DISPLACEMENT in values)

@@ -103,7 +103,7 @@ class ScenarioInput(ShownFields):
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """The values that count.
+    """Values that a scenario is built from, after files, changes and snows have replaced each other.
 
     values: by full name, in the units of the keys.
     files: paths of the files that the values name, by key.

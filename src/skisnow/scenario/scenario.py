@@ -36,7 +36,7 @@ def course_on_slope(course: Course, slope: Slope) -> Course:
     return on_slope(course, slope_angle=slope.angle if isinstance(slope, Plane) else None)
 
 
-def _ski_name(ski: Ski) -> str | None:
+def _catalogue_ski_name(ski: Ski) -> str | None:
     return ski.name if ski.name in ski_names() else None
 
 
@@ -98,7 +98,7 @@ class Scenario(Shown):
     sledge: RigidSledge
     ski: Annotated[
         Ski,
-        Word("ski.name", "a ski of the catalogue", label=Message("ski"), word_of=_ski_name),
+        Word("ski.name", "a ski of the catalogue", label=Message("ski"), word_of=_catalogue_ski_name),
         Word(
             "ski.file",
             "the path of a ski file, instead of a name",

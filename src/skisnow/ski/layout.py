@@ -228,7 +228,7 @@ class BaseShape:
         """
         return _height(self, np.asarray(station, float).tobytes(), layout).copy()
 
-    def _over_contact(self, station: FloatArray, layout: Layout) -> FloatArray:
+    def _height_over_contact_points(self, station: FloatArray, layout: Layout) -> FloatArray:
         front, rear = layout.contact_points
         foremost, hindmost = front - self.tip_rocker_length, rear + self.tail_rocker_length
         if foremost - hindmost < LEAST_CONTACT:
@@ -255,7 +255,7 @@ class BaseShape:
 @functools.lru_cache(maxsize=32)
 def _height(base: BaseShape, station: bytes, layout: Layout) -> FloatArray:
     """Height of a base at stations: a design changes other tables and keeps this one."""
-    heights = base._over_contact(np.append(np.frombuffer(station), 0.0), layout)
+    heights = base._height_over_contact_points(np.append(np.frombuffer(station), 0.0), layout)
     return heights[:-1] - heights[-1]
 
 

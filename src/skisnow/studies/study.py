@@ -109,7 +109,7 @@ class Study(Shown):
         return self.out.with_name(f"{self.out.name}.partial")
 
     def place_for_previous(self) -> Path:
-        """Free path for another study's table that is in this one's place."""
+        """Free path to which another study's table is moved, if it is at the path of this one's table."""
         return place_for_previous(self.out)
 
     def fingerprint(self) -> str:
@@ -127,7 +127,7 @@ class Study(Shown):
 
 
 def place_for_previous(out: Path) -> Path:
-    """Path for a table of another study: a free name next to its own."""
+    """Free path in the same folder to which another study's table at `out` is moved."""
     place, count = out.with_name(f"{out.stem}.previous{out.suffix}"), 1
     while place.exists():
         count += 1

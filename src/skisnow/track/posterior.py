@@ -52,7 +52,13 @@ class WeightedParameters(NamedTuple):
 
 @dataclass(slots=True)
 class _Optimum:
-    """Optimal logarithms for one acceleration, log density, path, and a root of the covariance."""
+    """Maximum of the posterior density for one acceleration.
+
+    logs: logarithms of place noise, turn rate and drift.
+    value: logarithm of the density.
+    state: fitted path.
+    root: matrix R with the covariance R Rᵀ of `logs`.
+    """
 
     logs: FloatArray
     value: float

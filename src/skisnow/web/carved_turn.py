@@ -207,8 +207,8 @@ class CarvedTurn:
             for key in self.panels
         }
 
-    def add_files(self, name: str) -> None:
-        """Add buttons for the curves as files."""
+    def add_download_buttons(self, name: str) -> None:
+        """Add buttons that download the curves as CSV, PNG or SVG under this name."""
         with ui.element("div").classes("acts"):
             button(Message("Curves as CSV"), partial(self._download, f"{name}.csv"))
             save_buttons(name)

@@ -160,7 +160,9 @@ class Studies(Runs):
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)
         job = replace(job, took_s=job.took_s + took_s)
         if (folder / TABLE).is_file():
-            return replace(job, state="done", said=await asyncio.to_thread(self._counted, job.name, job.language))
+            return replace(
+                job, state="done", said=await asyncio.to_thread(self._outcome_counts, job.name, job.language)
+            )
         if _IN_USE in said and not cancelled:
             await asyncio.sleep(_AGAIN_S)
             return replace(job, state="waiting", said="")
@@ -175,8 +177,8 @@ class Studies(Runs):
     def _progress_of(self, line: str) -> str:
         return line if _POINTS.search(line) else self.progress
 
-    def _counted(self, name: str, language: str) -> str:
-        """Counts of the outcomes of a table in words."""
+    def _outcome_counts(self, name: str, language: str) -> str:
+        """Text such as "15 points: finished 12; fell 3."; the error if the table cannot be read."""
         try:
             counts = self.table(name)[1].counts()
         except SkisnowError as error:

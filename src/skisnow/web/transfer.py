@@ -204,8 +204,8 @@ class FileImports:
     def _templates(self) -> Path:
         return self._lab.runs.parent / TEMPLATES
 
-    def template(self, id_: str) -> Answers:
-        """Answers of a saved template or of an imported campaign."""
+    def template_answers(self, id_: str) -> Answers:
+        """Answers to the questions of an import, from a saved template or an earlier imported campaign."""
         if id_.startswith(_SAVED):
             return read_template(id_.removeprefix(_SAVED), named=self._templates)
         stored, files = self._lab.store.contents(required_id(id_), {CAMPAIGN_FILE})

@@ -122,7 +122,7 @@ class LineChart(Element, component="line_chart.js"):
 
 
 def save_buttons(name: str) -> None:
-    """Add buttons with which the browser saves all charts of the page in one file of this name."""
+    """Add buttons that download all charts of the page as one PNG or SVG of this name."""
     for kind, words in (("png", Message("Curves as PNG")), ("svg", Message("Curves as SVG"))):
         button(words, None).on("click", js_handler=f"() => saveCharts('{name}.{kind}')")
 

@@ -60,7 +60,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     stated = [
         _stated(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
     ]
-    dialogue.open.extend(_bad_answers(section, form, dialogue))
+    dialogue.open.extend(_invalid_column_answers(section, form, dialogue))
     dialogue.open.extend(_column_questions(section, form, stated))
     choices = []
     for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
@@ -78,7 +78,7 @@ def _stated(form: TableForm, answer: str, heading: str) -> str:
     return answer if answer in form.known or answer == NONE else stated_column(form, heading)
 
 
-def _bad_answers(section: Section, form: TableForm, dialogue: Dialogue) -> Iterator[Problem]:
+def _invalid_column_answers(section: Section, form: TableForm, dialogue: Dialogue) -> Iterator[Problem]:
     table = form.file.removesuffix(".csv")
     for heading in section.headings:
         answer = dialogue.answers.of_heading("column", table, heading)

@@ -192,14 +192,14 @@ def described_tools(
             if len(tools) == 1 and (tool := tools.pop()) is not None:
                 described[sheet, name] = tool
             elif name in answers and parse(name, answers[name]) is None:
-                dialogue.open.append(_bad_answer(kind, table.section.key, answers[name], form))
+                dialogue.open.append(_invalid_tool_answer(kind, table.section.key, answers[name], form))
             elif not dialogue.has_asked(kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
                 dialogue.ask(kind, name, table.section.key, value=value, proposed=form)
     return described
 
 
-def _bad_answer(kind: str, place: str, value: str, form: str) -> Problem:
-    allowed = Message("lengths with a unit, such as {form}", form=form)
-    action = Message("Correct --{option}.", option=kind)
-    return error("bad_answer", place, column=kind, value=value, allowed=allowed, action=action)
+def _invalid_tool_answer(option: str, section: str, value: str, example: str) -> Problem:
+    allowed = Message("lengths with a unit, such as {form}", form=example)
+    action = Message("Correct --{option}.", option=option)
+    return error("bad_answer", section, column=option, value=value, allowed=allowed, action=action)

@@ -232,7 +232,7 @@ def density_samples(table: Table) -> DensitySamples:
         snow_density=table.numbers["snow_density_kg_per_m3"],
         sample_depth=table.numbers["sample_depth_mm"] * MM,
         sample_thickness=table.numbers["sample_thickness_mm"] * MM,
-        cancelled=_cancelled_together(table),
+        cancelled=_cancellation_reasons(table),
         row=table.row,
         further=table.further,
     )
@@ -245,7 +245,7 @@ def drop_cone_tests(table: Table) -> DropConeTests:
         site=table.names["site"].cells(),
         repeat=table.names["repeat"].cells(),
         drop_cone_depth=table.numbers["drop_cone_depth_mm"] * MM,
-        cancelled=_cancelled_together(table),
+        cancelled=_cancellation_reasons(table),
         row=table.row,
         further=table.further,
     )
@@ -255,8 +255,8 @@ def _at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...
     return tuple(map(column.names.__getitem__, column.code[rows].tolist()))
 
 
-def _cancelled_together(table: Table) -> tuple[str, ...]:
-    """Status of each row: a status in any row of a sample or test cancels all its rows at that site."""
+def _cancellation_reasons(table: Table) -> tuple[str, ...]:
+    """Reasons by row, "" if it counts: a status in any row of a sample or test cancels all its rows at that site."""
     status = table.names["status"].cells()
     together = list(zip(table.names["site"].cells(), table.names[table.form.key].cells(), strict=True))
     reasons: dict[tuple[str, str], dict[str, None]] = {}

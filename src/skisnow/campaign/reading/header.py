@@ -151,7 +151,7 @@ def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Pr
     likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}
     meant = as_written[near[0]] if near else likely.get(name)
     if meant and _needs_conversion(meant, name):
-        action = _mapping(meant, name)
+        action = _advise_mapping(meant, name)
     elif meant:
         action = Message(
             "Did you mean {similar!r}? Rename the column, or map it under [columns] in campaign.toml; the unit is "
@@ -170,7 +170,7 @@ def _needs_conversion(heading: str, column: str) -> bool:
     return size is not None and size.changes
 
 
-def _mapping(heading: str, column: str) -> Message:
+def _advise_mapping(heading: str, column: str) -> Message:
     return Message(
         "Map {heading!r} to {column!r} under [columns] in campaign.toml. This converts its numbers; a new name would "
         "not.",
@@ -183,7 +183,7 @@ def _unknown(form: TableForm, name: str, header: Header) -> Problem:
     free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
     if near and _needs_conversion(name, near[0]):
-        action = _mapping(name, near[0])
+        action = _advise_mapping(name, near[0])
     elif near:
         action = Message(
             "The column is kept as text and not interpreted. Rename it if you meant {similar!r}.", similar=near[0]

@@ -192,7 +192,7 @@ def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Prob
 
 
 def _largest_loads(table: Table, rows: Sequence[int]) -> list[int]:
-    """Row of the largest load of each experiment, among the given rows without unloading."""
+    """Row of each experiment's largest load, from the given rows that do not unload; the first row if all unload."""
     load, unloading, key = table.numbers["load_N"], is_unloading(table.names[BRANCH]), table.names[table.form.key].code
     largest: dict[int, int] = {}
     for row in rows:

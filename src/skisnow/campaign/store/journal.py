@@ -105,7 +105,7 @@ class Journals:
 
         Raises StoreError: the journal is unknown.
         """
-        return self._read(id, after, _require)
+        return self._read(id, after, _require_in_entry)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
@@ -141,7 +141,7 @@ class Journals:
             The journal is unknown, or the entry to correct or undo is.
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
-            _require(connection, id)
+            _require_in_entry(connection, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
             _require_current(connection, id, entry, seen)
@@ -190,7 +190,7 @@ def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, l
         raise damage_error(Message("The campaign in entry {id}", id=id_)) from error
 
 
-def _require(connection: Connection, id_: str) -> None:
+def _require_in_entry(connection: Connection, id_: str) -> None:
     if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
         raise StoreError("The store has no campaign in entry with the id {id!r}; the list of campaigns names all.").tag(
             "unknown_id", id=id_
@@ -230,6 +230,7 @@ def _earlier_entry(connection: Connection, id_: str, entry: NewEntry) -> Journal
 
 
 def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: int) -> None:
+    """Raise OvertakenError if the test has a newer entry than sequence `seen`, the last that the writer has seen."""
     query = select(journal_entry).where(_is_about_test(id_, entry), journal_entry.c.sequence > seen)
     row = connection.execute(query.order_by(journal_entry.c.sequence.desc())).mappings().first()
     if row is not None:

@@ -38,7 +38,7 @@ class Reading:
 
 @dataclass(slots=True)
 class ReplayedTest:
-    """A test, sample or experiment: rows in order, cancellation, all entries about it, undone sequences."""
+    """A test, sample or experiment, rebuilt from its journal entries: rows, cancellation, entries, undone sequences."""
 
     file: str
     name: str

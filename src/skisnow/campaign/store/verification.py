@@ -64,7 +64,7 @@ def _content_damage(connection: Connection, progress: Progress) -> Iterator[Find
             users = select(campaign_file.c.campaign_id, campaign_file.c.path).where(campaign_file.c.sha256 == sha256)
             message = f"the bytes no longer have the SHA-256 {sha256}; add the original folder again to repair it"
             named = connection.execute(users).all() if isinstance(sha256, str) else []
-            places = [(_words(campaign_id), _words(path)) for campaign_id, path in named]
+            places = [(_text_or_repr(campaign_id), _text_or_repr(path)) for campaign_id, path in named]
             yield from (Finding(*place, message) for place in places or [(None, None)])
         done += size if isinstance(size, int) else 0
         progress(done, total)
@@ -78,7 +78,7 @@ def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
         return False
 
 
-def _words(value: object) -> str | None:
+def _text_or_repr(value: object) -> str | None:
     return value if value is None or isinstance(value, str) else repr(value)
 
 
@@ -87,7 +87,7 @@ def _campaigns_damage(connection: Connection) -> Iterator[Finding]:
         try:
             yield from _campaign_damage(stored_campaign(connection, row))
         except StoreError as error:
-            yield Finding(_words(row.id), None, str(error))
+            yield Finding(_text_or_repr(row.id), None, str(error))
 
 
 def _campaign_damage(stored: StoredCampaign) -> Iterator[Finding]:

@@ -109,7 +109,7 @@ class AreaLaw(PenetrationLaw):
 
     @property
     def exceptions(self) -> Mapping[str, str]:
-        """See `PenetrationLaw.exceptions`."""
+        """Shared checks of physics that this law fails, each with the reason."""
         return {"zero at zero depth": "a flat base feels H_A L W the moment it touches the snow"}
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
@@ -175,7 +175,7 @@ class MeanPressureLaw(PenetrationLaw):
 
     @property
     def exceptions(self) -> Mapping[str, str]:
-        """See `PenetrationLaw.exceptions`."""
+        """Shared checks of physics that this law fails, each with the reason."""
         if self.pressure_offset == 0:
             return {}
         return {"zero at zero depth": "a flat base feels B L W the moment it touches the snow"}

@@ -72,7 +72,7 @@ class HypoplasticPoint(PointLaw):
 
     @property
     def exceptions(self) -> Mapping[str, str]:
-        """See `PointLaw.exceptions`."""
+        """Shared checks of physics that this law fails, each with the reason."""
         if np.isfinite(self.unloading_ratio):
             return {}
         return {"continuous in depth": "rigid-plastic snow lets go at once when the depth shrinks"}

@@ -159,7 +159,7 @@ class BilinearLaw(PenetrationLaw):
 
     @property
     def exceptions(self) -> Mapping[str, str]:
-        """See `PenetrationLaw.exceptions`: with a > 0 the law has the threshold of the area law."""
+        """Shared checks of physics that this law fails, each with the reason: for a > 0 the area law's."""
         if self.a0 <= 0:
             return {}
         return {"zero at zero depth": "with a > 0 a flat base feels H a L W the moment it touches the snow"}

@@ -80,7 +80,7 @@ class MachiningShear(ShearLaw):
 
     @property
     def exceptions(self) -> Mapping[str, str]:
-        """See `ShearLaw.exceptions`."""
+        """Shared checks of physics that this law fails, each with the reason."""
         return {
             "finite at every edge angle": "the force grows without bound as ϑ falls to β; below β there is no force"
         }

@@ -136,21 +136,21 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
             "{path}: the markers' frames are {first} to {last}; .c3d counts frames from 0 to {most_frames}: shift "
             "the times, or write a shorter stretch"
         ).tag("out_of_range", path=path, first=first, last=first + n - 1, most_frames=MOST_FRAMES - 1)
-    made: Any = ezc3d.c3d()
-    point = made["parameters"]["POINT"]
+    c3d_file: Any = ezc3d.c3d()
+    point = c3d_file["parameters"]["POINT"]
     point["RATE"]["value"], point["UNITS"]["value"] = [rate], [WRITTEN]
     point["LABELS"]["value"] = list(markers.names)
-    made["header"]["points"]["first_frame"] = first
+    c3d_file["header"]["points"]["first_frame"] = first
     places = np.moveaxis(markers.place, (0, 1, 2), (2, 1, 0)) / METRES[WRITTEN]
-    made["data"]["points"] = np.concatenate([places, np.ones((1, *places.shape[1:]))])
+    c3d_file["data"]["points"] = np.concatenate([places, np.ones((1, *places.shape[1:]))])
     unseen = ~np.isfinite(places).all(axis=0, keepdims=True)
-    made["data"]["meta_points"]["residuals"] = np.where(unseen, -1.0, 0.0)
+    c3d_file["data"]["meta_points"]["residuals"] = np.where(unseen, -1.0, 0.0)
     if forces is not None:
-        _put_forces(made, path, markers, forces, first / rate)
+        _add_force_channels(c3d_file, path, markers, forces, first / rate)
     try:
         with tempfile.TemporaryDirectory() as folder:
             place = Path(folder, f"written{ENDING}")  # ezc3d adds this ending to all other names
-            made.write(str(place))
+            c3d_file.write(str(place))
             content = place.read_bytes()
     except (OSError, RuntimeError, ValueError) as error:
         raise OutputError("{path} cannot be written as .c3d: {error}").tag(
@@ -159,8 +159,8 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     write_file(path, content)
 
 
-def _put_forces(made: Any, path: Path, markers: Markers, forces: MotionTable, start: float) -> None:
-    """Analogue channels of an opened file."""
+def _add_force_channels(c3d_file: Any, path: Path, markers: Markers, forces: MotionTable, start: float) -> None:
+    """Add forces to an ezc3d file as analogue channels, at the markers' rate or a whole multiple of it."""
     n = len(markers.time)
     often, rest = divmod(len(forces.time), n)
     if rest or not often:
@@ -170,12 +170,12 @@ def _put_forces(made: Any, path: Path, markers: Markers, forces: MotionTable, st
     rate = often * markers.rate
     _require_frames(path, "forces", forces.time, start, rate)
     _require_names(path, "forces", tuple(forces.columns))
-    analog = made["parameters"]["ANALOG"]
+    analog = c3d_file["parameters"]["ANALOG"]
     analog["RATE"]["value"], analog["LABELS"]["value"] = [rate], list(forces.columns)
     analog["UNITS"]["value"] = [
         next((unit for part, unit in _UNITS.items() if part in name), "") for name in forces.columns
     ]
-    made["data"]["analogs"] = np.stack([*forces.columns.values()])[None]
+    c3d_file["data"]["analogs"] = np.stack([*forces.columns.values()])[None]
 
 
 def _require_frames(path: Path, what: str, time: FloatArray, start: float, rate: float) -> None:

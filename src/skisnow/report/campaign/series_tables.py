@@ -83,7 +83,7 @@ def count_resolved_offsets(rows: list[Json]) -> int:
 
 
 def seating_quantiles_table(data: ReportData) -> Table:
-    """Quantiles of the offsets and of their effect on H_V over the used series."""
+    """Quantiles over the used series of the depth zero's offset, and of the change of H_V if it is subtracted."""
     offsets, changes = numbers(data.seating, "depth_offset_mm"), numbers(data.seating, "H_V_change_percent")
     names = {0.0: Message("minimum"), 50.0: Message("median"), 100.0: Message("maximum")}
     rows = [

@@ -43,7 +43,7 @@ _CLASSES: Final = ("F", "4F", "1F", "P", "K", "I")
 
 
 def index_from_resistance(resistance: float) -> float:
-    """Hand hardness index from the penetration resistance (Pa); NaN outside of the range of the pairs.
+    """Hand hardness index from the penetration resistance (Pa), by a power law; NaN outside of the fitted `PAIRS`.
 
     >>> round(index_from_resistance(100e3), 2)
     3.5

@@ -58,11 +58,11 @@ def read_table(text: str, name: str) -> Recording:
         time_scale="local" if start is None or start.tzinfo is None else "UTC",
         start=start,
         first_time=first_time,
-        speed=table.optional(SPEED),
+        speed=table.numbers_if_present(SPEED),
         speed_kind="as the device gives it" if is_geodetic else "along the path",
         place_sd=table.vectors(sd) if any(column in table.columns for column in sd) else None,
-        speed_sd=table.optional(SPEED_SD),
-        odometer=table.optional(ODOMETER),
+        speed_sd=table.numbers_if_present(SPEED_SD),
+        odometer=table.numbers_if_present(ODOMETER),
         further_columns=table.further_columns,
         columns={
             axis: table.heading(column) for axis, column in zip("xyz", GEODETIC if is_geodetic else LOCAL, strict=True)
@@ -163,6 +163,7 @@ class _Table:
             )
 
     def column(self, name: str) -> list[str]:
+        """Cells of a column that the file has, which then counts as used."""
         self.used.add(name)
         place = self.columns[name].place
         return [row[place] for row in self.cells.rows]
@@ -192,7 +193,7 @@ class _Table:
                 return np.where(cells == letters[1], -np.abs(values), values)
         return values
 
-    def optional(self, name: str) -> FloatArray | None:
+    def numbers_if_present(self, name: str) -> FloatArray | None:
         return self.numbers(name) if name in self.columns else None
 
     def vectors(self, names: tuple[str, ...]) -> FloatArray:
@@ -318,7 +319,10 @@ def _below_preamble(cells: Cells) -> Cells:
 
 
 def _is_geodetic(headings: Sequence[str], name: str, place: str) -> bool:
-    """True if places are latitude and longitude, False if they are local metres; names have priority over synonyms."""
+    """True for latitude and longitude, False for local metres; exact column names have priority over synonyms.
+
+    name, place: file and row in the error about a table that has both.
+    """
     names = {_column_name(heading) for heading in headings}
     local, geodetic = bool(names & {*LOCAL[:2]}), bool(names & {*GEODETIC[:2]})
     if not local and not geodetic:

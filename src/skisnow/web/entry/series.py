@@ -17,7 +17,7 @@ from ..page_requests import answering, asking_button, current_request, entering,
 from ..words import label, number_said
 from .changes import changes, focus_button
 from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
-from .series_corrections import AfterWaiting, SeriesCorrections
+from .series_corrections import DepthsAfterWaiting, SeriesCorrections
 from .table_view import EntryList, LiveResults, Places, TableView
 
 ON_ENTER: Final = "(event) => lab.reading(event, emit)"
@@ -36,7 +36,7 @@ class SeriesForm:
         self._shown: str = ""
         self._corrections = SeriesCorrections(view, self._readings, lambda: self.show(self._shown, self._head))
         self._refused: dict[Step, str] = {}
-        self._waiting: AfterWaiting | None = None
+        self._waiting: DepthsAfterWaiting | None = None
         self._list = entry_list
 
     # The head of a series
@@ -138,7 +138,7 @@ class SeriesForm:
             self._then = asking_button(Message("Next series"), self._next, "main then")
             button(Message("Loads in N or kg"), None, "small switch-kg")
             self._unloading_fields(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
-            self._waiting = AfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
+            self._waiting = DepthsAfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
             self._waiting.draw(loads, waiting, self._ask)
         with self._places.below:
             self._changes = ui.element("div")

@@ -135,7 +135,7 @@ BECOMES: Final = template("After waiting under {load} N: {old} mm becomes {new} 
 IS_EMPTIED: Final = template("After waiting under {load} N: {old} mm becomes nothing.")
 
 
-class AfterWaiting:
+class DepthsAfterWaiting:
     """Fields of the depths after waiting, one for each load of a series."""
 
     def __init__(self, view: TableView, name: str, shown: Callable[[], object]) -> None:
@@ -195,7 +195,7 @@ class AfterWaiting:
 
     def _store(self, ask: ui.element) -> bool:
         """Store new depths, and ask for the reason of changed ones; False if nothing is stored or asked."""
-        depths = self._checked()
+        depths = self._valid_changes()
         if depths is None:
             return False
         new = {load: text for load, text in depths.items() if not _stored(self._test, load)}
@@ -216,8 +216,8 @@ class AfterWaiting:
             self._view.say(Message("Nothing is different."))
         return True
 
-    def _checked(self) -> dict[str, str] | None:
-        """Changed depths by load; None if one is rejected."""
+    def _valid_changes(self) -> dict[str, str] | None:
+        """Changed depths by load; None, after a message, if one of them is not valid."""
         depths: dict[str, str] = {}
         typed = {load: self._fields[load] for load in self.unstored}
         for load, depth in typed.items():

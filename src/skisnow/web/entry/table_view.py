@@ -72,7 +72,7 @@ class TableView:
         self._status = status
 
     def test(self, name: str) -> ReplayedTest:
-        """A test as of the last refresh."""
+        """Rows and entries of a test, as the journal had them when this page last read it."""
         return self.session.test(self.file, name)
 
     def label(self, column: str) -> str:

@@ -54,7 +54,7 @@ class _Carve(CarvedTurn):
             with ui.element("section"):
                 self.add_status()
                 self.add_facts()
-                self.add_files("carve")
+                self.add_download_buttons("carve")
             with ui.element("section").classes("curves"):
                 self.add_charts()
         for menu in (self._ski, self._other, self._ratio):

@@ -132,7 +132,7 @@ class _Design(CarvedTurn):
                 self.add_status()
                 self.add_facts()
                 self.add_charts()
-                self.add_files("design")
+                self.add_download_buttons("design")
         self._ski.on_value_change(self._begin)
         self._other.on_value_change(self.ask)
 

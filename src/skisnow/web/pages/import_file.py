@@ -224,7 +224,7 @@ class _Import:
 
     async def _use_template(self, event: object) -> None:
         chosen = str(getattr(event, "value", ""))
-        self.answers = self.imports.template(chosen) if chosen else Answers()
+        self.answers = self.imports.template_answers(chosen) if chosen else Answers()
         await self.draw()
 
     def _save_template(self) -> None:
