@@ -241,5 +241,5 @@ def test_forces_and_moments_of_each_runner() -> None:
 def test_units_of_sections() -> None:
     """In the order of the fields, as their docstring has them; a sine, μ and a share have none."""
     units = (*"mmm", "", *"mmmm", *"NNNNNNN", "m/s", "m/s", "", "", "", "N", "N/m²", "", "")
-    found = Sections(**{each.name: np.array([0.5, 2.0]) for each in fields(Sections)})._facts()
+    found = Sections(**{each.name: np.array([0.5, 2.0]) for each in fields(Sections)})._repr_facts()
     assert [words for _, words in found.rows] == [f"2: 0.5 to 2 {unit}".rstrip() for unit in units]

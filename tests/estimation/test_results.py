@@ -253,4 +253,4 @@ def test_an_analysis_shows_the_ends_of_its_interval_and_tells_its_steps(referenc
     steps: list[str] = []
     analysis = skisnow.analyse(reference, n_resamples=100, progress=steps.append)
     assert any("236" in step for step in steps)
-    assert f"{analysis.own_hardness.low:.4g}" in dict(analysis._facts().rows)["H_V"]
+    assert f"{analysis.own_hardness.low:.4g}" in dict(analysis._repr_facts().rows)["H_V"]

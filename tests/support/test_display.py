@@ -10,7 +10,7 @@ import pytest
 
 import skisnow
 from skisnow import SnowProperties, Track
-from skisnow._support.units import Facts, Shown, SmallFigure, field_facts
+from skisnow._support.units import Facts, NotebookFigure, Shown, field_facts
 from skisnow.campaign.reference import reference_campaign
 from skisnow.geometry.surfaces import Grid
 from skisnow.geometry.vectors import applied, combined, cross, unit
@@ -138,7 +138,7 @@ class Rows(Shown):
     def __init__(self, count: int, text: str = "x") -> None:
         self.count, self.text = count, text
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts("", tuple((f"r{number}", self.text) for number in range(self.count)))
 
 
@@ -196,7 +196,7 @@ def test_a_notebook_shows_values_and_a_small_figure_of_snow_ski_run_and_answer(o
 
 def test_the_small_figure_has_its_points_in_proportion() -> None:
     nan = float("nan")
-    svg = SmallFigure("x", "y", [((0.0, 5.0, nan, 10.0), (0.0, 4.0, 1.0, 2.0))]).svg()
+    svg = NotebookFigure("x", "y", [((0.0, 5.0, nan, 10.0), (0.0, 4.0, 1.0, 2.0))]).svg()
     assert 'fill="currentColor"' in svg  # texts are seen on a dark page, too
     (points,) = re.findall(r'points="([^"]*)"', svg)
     places = [tuple(map(float, pair.split(","))) for pair in points.split()]
@@ -204,4 +204,4 @@ def test_the_small_figure_has_its_points_in_proportion() -> None:
     (x0, y0), (x1, y1), (x2, y2) = places
     assert (x1 - x0) / (x2 - x0) == pytest.approx(0.5)
     assert (y0 - y1) / (y0 - y2) == pytest.approx(2.0)
-    assert SmallFigure("x", "y", [((nan,), (1.0,))]).svg() == ""
+    assert NotebookFigure("x", "y", [((nan,), (1.0,))]).svg() == ""

@@ -141,34 +141,34 @@ _ROUNDING: Final = 1e-12
 
 
 class Facts(NamedTuple):
-    """Content of an object: a title, and rows of a name and a text; with one row or none all is on one line."""
+    """Text of an object's repr: a title, and rows of a name and a text; with one row or none all is on one line."""
 
     title: str
     rows: tuple[tuple[str, str], ...] = ()
 
 
 class Shown:
-    """Something that shows itself by its `_facts`: title and rows of its repr and of a notebook's table.
+    """Base of objects with a readable repr and a notebook's table, both from the title and rows of `_repr_facts`.
 
     A dataclass of this kind has no generated repr (``repr=False``).
     """
 
     __slots__ = ()
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         raise NotImplementedError
 
-    def _values(self) -> Facts:
+    def _notebook_facts(self) -> Facts:
         """Title and rows of a notebook's table, where a row may have a value that the text has in its title."""
-        return self._facts()
+        return self._repr_facts()
 
-    def _small_figure(self) -> SmallFigure | None:
+    def _notebook_figure(self) -> NotebookFigure | None:
         """Figure below a notebook's table; None without one."""
         return None
 
     def __repr__(self) -> str:
         """Title and rows, below ten lines."""
-        title, rows = self._facts()
+        title, rows = self._repr_facts()
         kind = type(self).__name__
         head = f"<{kind} {title}" if title else f"<{kind}"
         if not rows:
@@ -181,14 +181,14 @@ class Shown:
         """The same as a table with a small figure, which a notebook shows."""
         from html import escape
 
-        title, rows = self._values()
+        title, rows = self._notebook_facts()
         caption = escape(f"{type(self).__name__} {title}".strip())
         cells = "".join(
             f'<tr><th scope="row" style="text-align:left">{escape(name)}</th>'
             f'<td style="text-align:left">{escape(text)}</td></tr>'
             for name, text in _few(rows)
         )
-        figure = self._small_figure()
+        figure = self._notebook_figure()
         drawn = "" if figure is None else figure.svg()
         return f'<table><caption style="text-align:left">{caption}</caption>{cells}</table>{drawn}'
 
@@ -198,7 +198,7 @@ class ShownFields(Shown):
 
     __slots__ = ()
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return field_facts(self, {})
 
 
@@ -291,7 +291,7 @@ _COLOURS: Final = ("#0072B2", "#D55E00", "#009E73")
 MOST_POINTS: Final = 300
 
 
-class SmallFigure(NamedTuple):
+class NotebookFigure(NamedTuple):
     """Lines (x, y) with the labels of both axes; `equal`: one scale along both axes; `points`: marks, not lines."""
 
     x_label: str

@@ -45,7 +45,7 @@ class PenetrationSeries(Shown):
     load: FloatArray
     penetration_depth: FloatArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         tool = f"{self.tool} at {amount(self.edge_angle / DEGREE, '°')}"
         readings = (
             f"{len(self.load)} loads {ends(self.load, 'N')}, {ends(self.penetration_depth, 'mm', factor=MM)} deep"
@@ -72,7 +72,7 @@ class UnloadingReadings(Shown):
     penetration_depth: FloatArray
     row: IntArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         series = int(np.count_nonzero(np.diff(self.first)))
         return Facts(f"of {series} experiments, {len(self.load)} readings, loads {ends(self.load, 'N')}")
 
@@ -135,7 +135,7 @@ class PenetrationTests(Shown):
         """Count the experiments."""
         return len(self.experiment)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = (
             ("sites", _listed(self.site)),
             ("tools", _listed(self.tool)),
@@ -179,7 +179,7 @@ class TurningReadings(Shown):
     turning_angle: FloatArray
     moment: FloatArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         tests = int(np.count_nonzero(np.diff(self.first)))
         return Facts(f"of {tests} experiments, {len(self.moment)} readings, {ends(self.moment, 'N m')}")
 
@@ -226,7 +226,7 @@ class ShearTests(Shown):
         """Count the experiments."""
         return len(self.experiment)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = (
             ("sites", _listed(self.site)),
             ("plates", _listed(self.plate)),
@@ -254,7 +254,7 @@ class DensitySamples(Shown):
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"of {len(self.sample)} samples: {ends(self.snow_density, 'kg/m³')}; {_listed(self.site)}")
 
     def site_means(self) -> dict[str, float]:
@@ -279,7 +279,7 @@ class DropConeTests(Shown):
     row: IntArray
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(
             f"of {len(self.test)} repeats: {ends(self.drop_cone_depth, 'mm', factor=MM)}; {_listed(self.site)}"
         )
@@ -375,9 +375,9 @@ class Campaign(Shown):
     snow_micro_pen: SnowMicroPenRecordings | None = None
     weather: CampaignWeather | None = None
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         tables = {"penetration": self.penetration, "shear": self.shear, "density": self.density, "cone": self.drop_cone}
-        counts = [(name, "none" if table is None else table._facts().title) for name, table in tables.items()]
+        counts = [(name, "none" if table is None else table._repr_facts().title) for name, table in tables.items()]
         gauge = "not stated" if self.gauge_resolution is None else amount(self.gauge_resolution / MM, "mm")
         rows = (
             ("place", self.place or "not stated"),

@@ -67,7 +67,7 @@ class StationSeries(Shown):
     time: FloatArray = field(repr=False)
     fields: Mapping[str, FloatArray] = field(repr=False)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         ends = [
             datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M") for seconds in self.time[[0, -1]].tolist()
         ]
@@ -318,8 +318,8 @@ class CampaignWeather(Shown):
     series: StationSeries
     settings: WeatherSettings
 
-    def _facts(self) -> Facts:
-        return self.series._facts()
+    def _repr_facts(self) -> Facts:
+        return self.series._repr_facts()
 
     @property
     def utc_offset(self) -> float:

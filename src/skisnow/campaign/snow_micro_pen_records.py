@@ -83,7 +83,7 @@ class SnowMicroPenRecordings(Shown):
         """Force against depth of one recording, by its index."""
         return parse_snow_micro_pen(self.file[index], self.contents[index])
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         depths = f"{amount(self.settings.from_depth / MM)} to {amount(self.settings.to_depth / MM, 'mm')}"
         return Facts(f"of {len(self)} recordings, forces from {depths}; {', '.join(dict.fromkeys(self.site))}")
 

@@ -13,7 +13,7 @@ import numpy as np
 from .._support.arrays import BoolArray, FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM, Facts, Shown, SmallFigure, amount
+from .._support.units import MM, Facts, NotebookFigure, Shown, amount
 from ..ski.beam import ClampedSki
 from ..snow.properties import SnowProperties
 from .edge_line import EdgeLine
@@ -217,7 +217,7 @@ class Equilibrium(Shown):
             self.side_force / self.side_force_limit if self.side_force is not None and self.side_force_limit else None
         )
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         deepest = None if self.edge_depth is None else float(np.max(self.edge_depth)) / MM
         holds = {True: "holds", False: "does not hold", None: "unknown"}[self.holds]
         limit = f"of {amount(self.side_force_limit, 'N')}: {holds}"
@@ -232,10 +232,10 @@ class Equilibrium(Shown):
         )
         return Facts(self.outcome.replace("_", " "), rows)
 
-    def _small_figure(self) -> SmallFigure | None:
+    def _notebook_figure(self) -> NotebookFigure | None:
         depth = self.edge_depth
         lines = () if depth is None else [(self.station[depth > 0.0], depth[depth > 0.0] / MM)]
-        return SmallFigure("station (m), tip at the right", "edge depth (mm)", lines)
+        return NotebookFigure("station (m), tip at the right", "edge depth (mm)", lines)
 
 
 def _too_soft(model: ClampedSki, conditions: Conditions) -> bool:

@@ -47,7 +47,7 @@ class Distances(Shown):
     numbers: DistanceStatistics | None
     reason: str | None = None
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(self.in_words)
 
     @property
@@ -101,7 +101,7 @@ class FittedOffsets(Shown):
     slope_angle: float | None = None
     azimuth: float | None = None
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         turned = f"{amount(self.turned / DEGREE, '°')} turned, {amount(self.later, 's')} later"
         return Facts(
             f"{', '.join(self.what)}: moved by {', '.join(amount(value, 'm') for value in self.moved)}, {turned}"
@@ -155,7 +155,7 @@ class Comparison(Shown):
     in_one_frame: bool = True
     known_to: float = 0.0
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         length = amount(self.measured.length, "m")
         rows = (
             ("seen", self.seen),
@@ -163,7 +163,7 @@ class Comparison(Shown):
             ("nearest", self.nearest.in_words),
             ("arc length", self.arc_length.in_words),
             ("time", self.time.in_words),
-            ("fitted", "nothing" if self.fitted is None else self.fitted._facts().title),
+            ("fitted", "nothing" if self.fitted is None else self.fitted._repr_facts().title),
             ("warnings", str(len(self.warnings))),
         )
         return Facts(f"of {self.names[0]!r} with {self.names[1]!r}", rows)

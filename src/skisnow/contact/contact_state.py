@@ -77,5 +77,5 @@ class ContactState(Shown):
         """Pickled as its bytes."""
         return ContactState.from_bytes, (self.to_bytes(),)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts("of this process" if self._kept is None else f"of {len(self._kept)} bytes")

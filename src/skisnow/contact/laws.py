@@ -43,7 +43,7 @@ class Laws(Shown):
         laws = {name: getattr(self, name) for name in ("friction", "shear", "penetration")}
         return {name: None if law is None else name_with_values(law) for name, law in laws.items()}
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(", ".join(f"{name} {law}" for name, law in self.described.items() if law) or "none")
 
 

@@ -51,7 +51,7 @@ class Runner(Shown):
     nodes: FloatArray | None = None
     edge_shape: tuple[float, float, float, float] = (0.0, 0.0, math.pi / 2.0, 0.0)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         length = amount(float(self.position[0] - self.position[-1]), "m")
         nodes = "rigid" if self.nodes is None else f"{len(self.nodes)} nodes"
         return Facts(f"{length} long, half width {ends(self.half_width, 'mm', factor=MM)}, {nodes}")

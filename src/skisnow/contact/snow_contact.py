@@ -47,7 +47,7 @@ class ContactForces(Shown):
     wrench: FloatArray
     beam_loads: tuple[FloatArray, ...]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = tuple((f"runner {k}", _wrench_in_words(each)) for k, each in enumerate(self.wrench))
         return Facts(f"on {len(self.wrench)} runners", rows)
 
@@ -99,7 +99,7 @@ class Sections(Shown):
     left_used: FloatArray
     right_used: FloatArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         lengths = ("position_along_ski", "length", "depth", "left_depth", "right_depth", "left_place", "right_place")
         forces = ("normal_force", "shear", "left_shear", "right_shear", "push", "push_across", "push_off")
         units = dict.fromkeys(lengths, "m") | dict.fromkeys((*forces, "friction_load"), "N")
@@ -165,8 +165,10 @@ class SnowContact(Shown):
             law = snow.penetration
             self.compiled.set_penetration(PressureCallback(law), np.array(law.bends, float), law.along_base_normal)
 
-    def _facts(self) -> Facts:
-        return Facts(f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._facts().title}")
+    def _repr_facts(self) -> Facts:
+        return Facts(
+            f"of {len(self.runners)} runners, {self.compiled.instruction_set}: {self.snow._repr_facts().title}"
+        )
 
     @property
     def instruction_set(self) -> str:

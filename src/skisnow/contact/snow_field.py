@@ -114,7 +114,7 @@ class SnowField(Shown):
     delayed_spacing: float = DELAYED_SPACING
     compiled: core.Snow = field(init=False, repr=False)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         def in_words(value: float | Grid, size: float, unit: str) -> str:
             return "over the place" if isinstance(value, Grid) else amount(value / size, unit)
 

@@ -113,7 +113,7 @@ class Design(Shown):
     optima: tuple[Optimum, ...]
     equilibria: int
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         values = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
         return Facts("all goals reached" if self.reached else "not all goals reached", (("design", values),))
 

@@ -174,7 +174,7 @@ class BootPose(Shown):
                 "not_a_rotation", off=off
             )
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         edge, pitch, heading = (amount(angle / DEGREE, "°") for angle in angles_of(self.axes))
         place = ", ".join(f"{each:.4g}" for each in self.place)
         speed, turning = (float(np.linalg.norm(each)) for each in (self.velocity, self.turning))

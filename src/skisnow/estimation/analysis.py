@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 
 from .._support.errors import require_range
-from .._support.units import MM, Facts, Shown, SmallFigure, amount, span
+from .._support.units import MM, Facts, NotebookFigure, Shown, amount, span
 from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..geometry import GeometryForm
@@ -196,7 +196,7 @@ class Analysis(Shown):
 
         return analysis_dataset(self)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         selected = self.penetration.selected if self.penetration is not None else None
         rows = [
             ("penetration", "none" if self.penetration is None else used_of(self.penetration.screened)),
@@ -209,11 +209,11 @@ class Analysis(Shown):
         ]
         return Facts(f"of {self.campaign.name!r}", tuple(rows))
 
-    def _small_figure(self) -> SmallFigure | None:
+    def _notebook_figure(self) -> NotebookFigure | None:
         tests = self.campaign.penetration
         if tests is None:
-            return self.snow_micro_pen._small_figure() if self.snow_micro_pen else None
-        return SmallFigure("depth (mm)", "load (N)", [(tests.penetration_depth / MM, tests.load)], points=True)
+            return self.snow_micro_pen._notebook_figure() if self.snow_micro_pen else None
+        return NotebookFigure("depth (mm)", "load (N)", [(tests.penetration_depth / MM, tests.load)], points=True)
 
 
 def _by_relation(row: dict[str, Any]) -> tuple[str, str]:

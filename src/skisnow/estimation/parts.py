@@ -46,7 +46,7 @@ class ModelTable(Shown):
     fits: tuple[ModelFit, ...]
     intervals: dict[Model, FloatArray]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = tuple((fit.model.id, f"rmse {amount(fit.rmse, 'N')}") for fit in self.fits)
         return Facts(f"of {len(rows)} rows", rows)
 
@@ -79,7 +79,7 @@ class PenetrationAnalysis(Shown):
     volume_factor: VolumeFactor | None = None
     warnings: tuple[str, ...] = ()
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return field_facts(self, {}, title=used_of(self.screened))
 
 
@@ -92,7 +92,7 @@ class ShearAnalysis(Shown):
     displacement: ShearDisplacement
     site_displacement: tuple[SiteValue, ...]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(used_of(self.screened))
 
 

@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from .._support.arrays import BoolArray, FloatArray
-from .._support.units import MM, Facts, Shown, SmallFigure
+from .._support.units import MM, Facts, NotebookFigure, Shown
 from ..campaign.snow_micro_pen import SnowMicroPenProfile
 from ..campaign.snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings, SnowSurface, snow_surface
 from ..parameters import values_of
@@ -86,18 +86,18 @@ class SnowMicroPenAnalysis(Shown):
     recordings: SnowMicroPenRecordings
     evaluated: tuple[EvaluatedRecording, ...]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         used = sum(recording.is_used for recording in self.evaluated)
         return Facts(f"{used} of {len(self.evaluated)} recordings used")
 
-    def _small_figure(self) -> SmallFigure | None:
+    def _notebook_figure(self) -> NotebookFigure | None:
         settings = self.recordings.settings
         lines: list[tuple[FloatArray, FloatArray]] = []
         for index, recording in enumerate(self.evaluated):
             if recording.is_used and len(lines) < MOST_LINES:
                 drawn = depth_profile(self.recordings.profile(index), settings, recording.surface)
                 lines.append((drawn.depth / MM, drawn.force))
-        return SmallFigure("depth (mm)", "force (N)", lines) if lines else None
+        return NotebookFigure("depth (mm)", "force (N)", lines) if lines else None
 
     @property
     def mean_force(self) -> FloatArray:

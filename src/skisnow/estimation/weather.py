@@ -39,7 +39,7 @@ class WeatherAtTests(Shown):
     time: tuple[str, ...]
     quantities: Mapping[str, FloatArray]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         count = int(np.isfinite(np.stack(list(self.quantities.values()))).any(axis=0).sum())
         return Facts(f"at {count} of {len(self.experiment)} experiments")
 

@@ -66,7 +66,7 @@ class Identified(Shown):
     at_bound: bool = False
     identifiable: bool = True
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"{self.parameter.key} = {self.in_words}")
 
     @property
@@ -94,7 +94,7 @@ class Profile(Shown):
     rise: FloatArray
     limit: float
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"of {self.key} at {len(self.value)} values, {ends(self.value)}")
 
 
@@ -168,7 +168,7 @@ class Identification(Shown):
     effort: Effort = field(default_factory=Effort)
     data: tuple[tuple[str, str], ...] = ()
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = tuple((identified.parameter.key, identified.in_words) for identified in self.parameters)
         return Facts(
             Message(

@@ -141,7 +141,7 @@ class RacingLine(Shown):
         """At any apex (1/m)."""
         return max(abs(self.at(x + side * 1e-9)[2]) for x in self._x for side in (-1.0, 1.0))
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         aside, along, turning = zip(*((turn.aside, turn.along, turn.turning) for turn in self.turns), strict=True)
         rows = (
             ("aside", f"{amount(min(aside), 'm')} to {amount(max(aside), 'm')}"),

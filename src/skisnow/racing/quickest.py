@@ -62,7 +62,7 @@ class QuickestLine(Shown):
             return None
         return self.start_score.time - self.score.time
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = (
             ("began from", amount(self.start_score.time, "s") if self.start_score.time else self.start_score.words),
             ("quicker by", amount(self.gained, "s")),

@@ -87,7 +87,7 @@ class Worth(Shown):
         )
         return compare_gates(own, base)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         rows = (
             ("over the snows", f"{amount(self.mean, 's')} ± {amount(self.deviation, 's')}"),
             ("faster on", f"{self.faster} of {len(self.differences)} snows"),

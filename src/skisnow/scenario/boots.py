@@ -175,7 +175,7 @@ class Boots(Shown):
                 "not_a_rotation", off=off
             )
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         unit = "s" if self.over == "time" else "m"
         return Facts(f"{len(self.at)} poses of each, {ends(self.at, unit)}, in the {self.frame}'s frame; {self.source}")
 

@@ -227,7 +227,7 @@ class Scenario(Shown):
         """The ski with the stiffness that is computed with."""
         return self.ski.stiffened(self.stiffness_factor)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         contact, sledge, start, solver = self.contact, self.sledge, self.start, self.solver
         slope = amount(self.slope.angle / DEGREE, "°") if isinstance(self.slope, Plane) else repr(self.slope)
         end = [(self.stop.duration, "s"), (self.stop.length, "m")]

@@ -127,7 +127,7 @@ class Profile(Shown):
         object.__setattr__(self, "_curve", PchipInterpolator(self.x, self.height))
         _require_no_cliff(self.x, self.coefficients)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"of {len(self.x)} points: x {ends(self.x, 'm')}, height {ends(self.height, 'm')}; {self.source}")
 
     @property

@@ -94,7 +94,7 @@ class SnowMap(Shown):
         names = " and ".join(name for name, value in (("H_V", hardness), ("S_f", stress)) if value is not None)
         return replace(snow, source=f"{snow.source}; {names}: means over the snow map {self.source}")
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         parts = [
             f"{name} {span(float(grid.values.min()) / size, float(grid.values.max()) / size, unit)}"
             for name, grid, size, unit in (

@@ -127,7 +127,7 @@ class Terrain(Shown):
         object.__setattr__(self, "surface", Grid(self.x - self.origin_x, self.y - self.origin_y, height))
         _require_no_cliff(self.surface)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         n, m = self.height.shape
         step_x, step_y = (amount(step, "m") for step in self.surface.steps)
         apart = step_x if step_x == step_y else f"{step_x} and {step_y}"

@@ -50,7 +50,7 @@ class BootMoment(Shown):
     boots: FloatArray
     wrench: FloatArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         speed, bears = float(np.linalg.norm(self.velocity[:3])), np.linalg.norm(self.wrench[:, :3], axis=1)
         rows = (
             ("run", f"{amount(self.distance, 'm')}, now at {amount(speed, 'm/s')}"),
@@ -206,7 +206,7 @@ class BootHistory(Shown):
         """(n, 2, 3) edge angle, pitch and heading in the slope's axes (rad)."""
         return angles_of(self.axes)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return field_facts(
             self, {"place": "m", "axes": "", "own_force": "N", "own_moment": "N m", "centre_of_mass": "m"}
         )

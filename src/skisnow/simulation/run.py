@@ -10,7 +10,7 @@ from typing import Any, Final, Literal, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.units import DEGREE, MM, Facts, Shown, SmallFigure, amount, field_facts, name_with_values, span
+from .._support.units import DEGREE, MM, Facts, NotebookFigure, Shown, amount, field_facts, name_with_values, span
 from ..contact import Laws
 from ..scenario import Plane, Scenario, Terrain
 from ..track.track import Track
@@ -86,7 +86,7 @@ class SkiHistory(Shown):
         """(n, 2) part of `force` along the snow's normal (N)."""
         return np.asarray(self.force_per_length @ node_lengths(self.station))
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         force = dict.fromkeys(("force_per_length", "shear_per_length"), "N/m")
         return field_facts(self, dict.fromkeys(self.__slots__, "m") | force | {"twist": "rad", "force": "N"})
 
@@ -115,7 +115,7 @@ class Groove(Shown):
     depth: FloatArray
     residual_depth: FloatArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return field_facts(self, dict.fromkeys(self.__slots__, "m") | {"left": ""})
 
 
@@ -300,7 +300,7 @@ class Run(Shown):
 
         return run_dataset(self)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         error, radius = self.energy_balance_error, self.turn_radius_quantile(0.5)
         law_names = ", ".join(f"{name} {law.partition('(')[0]}" for name, law in self.given_laws.items() if law)
         rows = (
@@ -315,9 +315,9 @@ class Run(Shown):
         )
         return Facts(self.outcome.replace("_", " "), rows)
 
-    def _small_figure(self) -> SmallFigure:
+    def _notebook_figure(self) -> NotebookFigure:
         x, y = self.place[:, 0], self.place[:, 1]
-        return SmallFigure("down the fall line (m)", "to the left (m)", [(x, y)], equal=True)
+        return NotebookFigure("down the fall line (m)", "to the left (m)", [(x, y)], equal=True)
 
     @property
     def speed(self) -> FloatArray:

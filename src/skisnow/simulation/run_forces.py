@@ -121,7 +121,7 @@ class BalanceHistory(Shown):
     pressure: FloatArray
     load: FloatArray
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         units = dict.fromkeys(("lean", "pressure_lean", "balanced_lean", "rolling_lean", "angulation"), "rad")
         return field_facts(self, units | {"leg": "m", "pressure": "m", "load": "N"})
 

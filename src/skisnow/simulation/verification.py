@@ -60,7 +60,7 @@ class Refinement(Shown):
     end_moves: float | None
     outcome: Outcome
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         moves = amount(None if self.end_moves is None else self.end_moves / CM, "cm")
         return Facts(f"{self.key} {amount(self.was)} to {amount(self.now)}: the end moves by {moves}, {self.outcome}")
 

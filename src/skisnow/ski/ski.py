@@ -13,7 +13,7 @@ import numpy.typing as npt
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import Facts, Shown, SmallFigure, amount
+from .._support.units import Facts, NotebookFigure, Shown, amount
 from ..parameters import APART
 from .checks import (
     STRAIGHT,
@@ -181,13 +181,13 @@ class Ski(Shown):
             self, keys=None, base=base, base_height=height - np.interp(0.0, self.station[::-1], height[::-1])
         )
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         """Name, length, widths, the radius of the side line in use, mass."""
         widths = "-".join(f"{width * 1e3:.4g}" for width in self.sidecut_widths)
         radius = f"radius of the side line {self.sidecut_radius_of_edge_line:.4g} m"
         return Facts(f"{self.name!r}: {self.length:.4g} m, {widths} mm, {radius}, {self.mass:.4g} kg")
 
-    def _values(self) -> Facts:
+    def _notebook_facts(self) -> Facts:
         middle = int(np.argmin(np.abs(self.station)))
         rows = (
             ("length", amount(self.length, "m")),
@@ -199,8 +199,8 @@ class Ski(Shown):
         )
         return Facts(repr(self.name), rows)
 
-    def _small_figure(self) -> SmallFigure:
-        return SmallFigure("station (m), tip at the right", "width (mm)", [(self.station, self.width * 1e3)])
+    def _notebook_figure(self) -> NotebookFigure:
+        return NotebookFigure("station (m), tip at the right", "width (mm)", [(self.station, self.width * 1e3)])
 
     @property
     def length(self) -> float:

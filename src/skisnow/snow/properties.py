@@ -7,7 +7,7 @@ from typing import Annotated, Final, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, Shown, SmallFigure, amount, span
+from .._support.units import MM, N_PER_MM2, N_PER_MM3, Facts, NotebookFigure, Shown, amount, span
 from ..parameters import Allowed, Label, Quantity, Search, Word, require_declared
 
 Interval: TypeAlias = tuple[float, float]
@@ -111,10 +111,10 @@ class SnowProperties(Shown):
             changes |= {"shear_displacement": None, "shear_displacement_interval": None}
         return replace(self, **changes) if changes else self  # type: ignore[arg-type]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(self.in_words)
 
-    def _values(self) -> Facts:
+    def _notebook_facts(self) -> Facts:
         rows = (
             ("H_V", _with_interval(self.snow_hardness, self.snow_hardness_interval, N_PER_MM3, "N/mm³")),
             ("S_f", _with_interval(self.failure_shear_stress, self.failure_shear_stress_interval, N_PER_MM2, "N/mm²")),
@@ -123,11 +123,11 @@ class SnowProperties(Shown):
         )
         return Facts(self.source, rows)
 
-    def _small_figure(self) -> SmallFigure:
+    def _notebook_figure(self) -> NotebookFigure:
         depths = (0.0, 10.0)
         hardnesses = (self.snow_hardness, *(self.snow_hardness_interval or ()))
         lines = [(depths, [hardness / N_PER_MM3 * depth for depth in depths]) for hardness in hardnesses]
-        return SmallFigure("depth (mm)", "pressure (N/mm²)", lines)
+        return NotebookFigure("depth (mm)", "pressure (N/mm²)", lines)
 
 
 def _with_interval(value: float | None, interval: Interval | None, size: float, unit: str) -> str:

@@ -88,7 +88,7 @@ class Study(Shown):
     varied: tuple[str, ...]
     points: Sequence[Point]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         subject = type(self.subject).__name__
         rows = (("of", subject), ("varied", ", ".join(self.varied)), ("table", str(self.out)))
         return Facts(f"of {len(self.points)} points, {self.file}", rows)

@@ -64,7 +64,7 @@ class StudyTable(Shown):
     varied: tuple[str, ...]
     counted: Tally | None = None
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         counts = ", ".join(f"{outcome} {count}" for outcome, count in self.counts().items())
         rows = (("outcomes", counts), ("varied", ", ".join(self.varied)), ("columns", ", ".join(self.columns)))
         return Facts(f"of {len(self.rows)} points", rows)

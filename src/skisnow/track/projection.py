@@ -54,7 +54,7 @@ class GeodeticPoint(Shown):
     longitude_deg: float
     height: float = 0.0
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(str(self))
 
     def __post_init__(self) -> None:

@@ -65,7 +65,7 @@ class TrackSummary(Shown):
     place_noise: PlaceNoise | None
     remarks: tuple[str, ...]
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         distances = ", ".join(f"{amount(distance, 'm')} by {name}" for name, distance in self.distances.items())
         rows = (
             ("points", str(len(self.track))),

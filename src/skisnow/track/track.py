@@ -100,7 +100,7 @@ class Track(Shown):
     def __len__(self) -> int:
         return len(self.time)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         flagged = ", ".join(f"{count} {code}" for code, count in self.flagged.items())
         duration = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
         rows = (

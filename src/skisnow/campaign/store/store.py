@@ -130,7 +130,7 @@ class Store(Shown):
                 place.parent.mkdir(parents=True, exist_ok=True)
         return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"at {self.path}")
 
     def close(self) -> None:

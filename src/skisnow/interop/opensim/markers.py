@@ -57,7 +57,7 @@ class Markers(Shown):
             )
         require_range("rate", self.rate, 0.0, np.inf, above=True, below=True)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         omitted = f", {len(self.omitted)} other points omitted" if self.omitted else ""
         return Facts(f"{len(self.names)} markers, {len(self.time)} frames at {amount(self.rate, 'Hz')}{omitted}")
 

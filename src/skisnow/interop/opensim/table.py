@@ -48,7 +48,7 @@ class MotionTable(Shown):
                     "wrong_shape", name=name, shape=str(np.shape(values)), shape_2=str(np.shape(self.time))
                 )
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"{len(self.columns)} columns, {len(self.time)} rows to {amount(float(self.time[-1]), 's')}")
 
 

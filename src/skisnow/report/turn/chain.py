@@ -45,7 +45,7 @@ class EnsembleRun(Shown):
     values: Mapping[str, float] = field(default_factory=dict)
     slips: float | None = None
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         return Facts(f"{outcome_words(self.outcome)} on {self.snow.in_words}")
 
 
@@ -115,7 +115,7 @@ class TurnChain(Shown):
 
         return write_turn_report(self, folder, language=language)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         runs = [(name, f"{run.outcome}, {amount(run.run_length, 'm')}") for name, run in self.runs.items()]
         rows = (("snow", self.snow.in_words), *runs, ("ensemble", f"{len(self.ensemble)} runs"))
         return Facts(f"from {self.campaign!r}, {self.site}", rows)

@@ -175,7 +175,7 @@ class Course(Shown):
         """Length from pole to pole (m)."""
         return float(np.linalg.norm(np.diff([gate.turning for gate in self.gates], axis=0), axis=1).sum())
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         kind = f"{self.discipline}, " if self.discipline else ""
         return Facts(f"{kind}{len(self.gates)} gates, {amount(self.length, 'm')} from pole to pole: {self.source}")
 

@@ -105,7 +105,7 @@ class CourseResult(Shown):
         """The first gate that was not passed, if any."""
         return next((passage for passage in self.passages if passage.outcome != "passed"), None)
 
-    def _facts(self) -> Facts:
+    def _repr_facts(self) -> Facts:
         first, last = self.passages[0].time, self.passages[-1].time
         rows = [("course", repr(self.course).strip("<>"))]
         if first is not None and last is not None:
