@@ -87,6 +87,16 @@ def test_enter_stores_a_test_of_one_row_too(desk: Desk) -> None:
     assert stored(desk, id_, DENSITY, "1") == [{"sample": "1", "site": "A", "sample_depth_mm": "", KG_PER_M3: "350"}]
 
 
+def test_a_sample_does_not_show_the_result_of_the_shear_test_with_its_number(desk: Desk) -> None:
+    id_ = begun(desk)
+    add_shear(desk, id_, "1")
+    add(desk, id_, DENSITY, "1", sample="1", site="A", snow_density_kg_per_m3="350")
+    add(desk, id_, DROP_CONE, "1", test="1", site="A", repeat="1", drop_cone_depth_mm="20")
+    assert any("S_f = " in line for line in desk.open(f"/enter/{id_}?table=shear.csv&test=1").outline())
+    for table in (DENSITY, DROP_CONE):
+        assert not any("S_f = " in line for line in desk.open(f"/enter/{id_}?table={table}&test=1").outline())
+
+
 def test_the_depth_of_a_density_sample_reaches_the_campaign(desk: Desk, tmp_path: Path) -> None:
     id_ = begun(desk)
     page = desk.open(f"/enter/{id_}?table=density.csv")
