@@ -162,6 +162,7 @@ class SnowContact {
   void march_where_needed(int k, const Situation& to);
   void remember(int k, GrooveLines& lines, bool is_eased) const;
   void press_base(int k, std::int64_t line, GrooveLines& lines) const;
+  void press_deepest(int k, std::int64_t line, GrooveLines& lines) const;
 };
 
 // A state of a contact sealed, and a contact taken to one. All throw std::invalid_argument, and change nothing.

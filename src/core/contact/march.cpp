@@ -213,6 +213,17 @@ void SnowContact::press_base(int k, std::int64_t line, GrooveLines& lines) const
   if (s.touches(i)) Touch{runner(k), s, i, *snow_, lines, lines.slot(line)}.press_base();
 }
 
+// The ground of a line takes the base only where it was deepest since its mark.
+void SnowContact::press_deepest(int k, std::int64_t line, GrooveLines& lines) const {
+  const Base& s = sections(k).base;
+  const int i = s.index(line), slot = lines.slot(line);
+  if (!s.touches(i)) return;
+  Ground ground = lines.ground(slot);
+  if (!Touch{runner(k), s, i, *snow_, lines, slot}.press_deepest(ground)) return;
+  ground.simplify(snow_->knot_area * s[DEEPEST][i] * (s[WET_TO][i] - s[WET_FROM][i]), KNOTS);
+  lines.keep(slot, ground);
+}
+
 // All grounds take the base; then the marks follow it.
 void SnowContact::remember(int k, GrooveLines& lines, bool is_eased) const {
   const Sections& s = sections(k);
@@ -292,7 +303,7 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
   }
 }
 
-// [march] As `march`, for the lines that need it.
+// [march] As `march`, for the lines that need it, which also take the base's deepest place on the way to the end.
 void SnowContact::march_where_needed(int k, const Situation& to) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (state_.accepted.empty()) return;
@@ -315,6 +326,8 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
     kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
     if (drags_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
+  kernels_->find_sections(runner(k), end, lines, is_needed_.data(), s.base);
+  for (const std::int64_t n : needed_) press_deepest(k, n, lines);
 }
 
 }  // namespace skisnow
