@@ -1,4 +1,4 @@
-// Blocks of code: a button that copies them, and a place in the tab order, so that long lines can be scrolled by key; wide equations too.
+// Blocks of code: a button that copies them, and a place in the tab order, so that long lines can be scrolled by key; wide equations and figures too.
 "use strict";
 
 const COMMAND = /^(\$ )?(skisnow|make|python|pip|\.venv\/bin\/|\.ci\/|git|kill)\b|^ +/;
@@ -44,7 +44,7 @@ function furnished(block) {
 
 /** What is wider than the page has a place in the tab order, and only that. */
 function reachable() {
-  document.querySelectorAll("article .equation").forEach((each) => {
+  document.querySelectorAll("article .equation, article figure, article p:has(> img:only-child)").forEach((each) => {
     if (each.scrollWidth > each.clientWidth) each.tabIndex = 0;
     else each.removeAttribute("tabindex");
   });
