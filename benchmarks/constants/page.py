@@ -25,11 +25,9 @@ REASONS: Final = read_reasons(Path(__file__).with_name("reasons.toml"))
 BY_S_F: Final = {"edge of 1°": 38, "carve": 0.4, "skid": 26, "skier": 13}
 """The larger of the ways (mm) by which the ends move with 0.999 and 1.001 of S_f."""
 PARTS: Final = (
-    (20.0, "28.052", "33.844"),
-    (10.0, "27.833", "33.713"),
-    (5.0, "27.729", "33.609"),
-    (2.5, "27.668", "33.580"),
-    (1.25, "27.590", "33.562"),
+    (20.0, "27.793", "33.838"),
+    (10.0, "27.742", "33.708"),
+    (5.0, "27.706", "33.615"),
 )
 """Length of a part (mm), and x of the ends (m) of the edge of 1° and of the skid."""
 PARTS_BY_BEND: Final = (
@@ -40,10 +38,10 @@ PARTS_BY_BEND: Final = (
 )
 """By case: x of the end (m) for three shares that are missed, and processor time over that as it is."""
 FIXED_STEPS: Final = (
-    ("edge of 1°", "27.755, 27.725, 27.706", "27.771, 27.748, 27.741", 95),
+    ("edge of 1°", "27.755, 27.725, 27.706", "27.771, 27.748, 27.741", 3),
     ("carve", "21.374, 21.376, 21.378", "21.372, 21.373, 21.374", 3),
-    ("skid", "33.735, 33.712, 33.694", "33.747, 33.734, 33.731", 23),
-    ("skier", "29.350, 29.343, 29.340", "29.352, 29.349", 28),
+    ("skid", "33.735, 33.712, 33.694", "33.747, 33.734, 33.731", 27),
+    ("skier", "29.350, 29.343, 29.340", "29.352, 29.349", 25),
 )
 """By case: x of the end (m) with fixed steps of 0.5, 0.25 and 0.125 ms, the same with fine lines and grooves; distance
 (mm) of the default end from the last."""
