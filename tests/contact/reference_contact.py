@@ -52,7 +52,7 @@ class Line:
 
 @dataclass
 class Edge:
-    """Of a section, to the left or to the right: place on the line, depth, reach, position, across and off the edge."""
+    """Left or right edge of a section: place on the line, depth, reach, position, across and off the edge."""
 
     place: float
     depth: float

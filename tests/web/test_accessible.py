@@ -204,7 +204,7 @@ READY = {"skis": "td", "carve": "td", "design": "td", "simulate": "summary", "st
 
 
 def test_every_page_of_the_navigation_is_looked_at() -> None:
-    """The list of campaigns is, with what is entered there, by `test_pages_of_the_lab_have_no_barriers`."""
+    """`test_pages_of_the_lab_have_no_barriers` looks at the list of campaigns and its entry pages."""
     assert {*READY, "campaigns"} == set(PAGES)
 
 
