@@ -1,9 +1,12 @@
 """A small campaign without a problem, to be changed by each test."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 import pytest
+
+from skisnow.campaign import Campaign, Problem, check_campaign, read_campaign
 
 FILES = {
     "campaign.toml": """\
@@ -55,23 +58,44 @@ S2,Nord,blade,45,6,300,10,,
 }
 
 
-@pytest.fixture
-def small_campaign() -> dict[str, str]:
-    """Texts of the files of a campaign without a problem."""
-    return dict(FILES)
+class SmallCampaign(dict[str, str]):
+    """Texts of the files of a campaign, with the folder into which they are written; further files come with a call."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(FILES)
+        self.folder = folder
+
+    def written(self, further: Mapping[str, str | bytes] | None = None) -> Path:
+        """The folder with these files alone, texts in UTF-8 as they are."""
+        return write_files(self.folder, {**self, **(further or {})})
+
+    def check(self, further: Mapping[str, str | bytes] | None = None) -> tuple[Problem, ...]:
+        return check_campaign(self.written(further))
+
+    def errors(self, further: Mapping[str, str | bytes] | None = None) -> list[Problem]:
+        return [problem for problem in self.check(further) if problem.severity == "error"]
+
+    def read(self, further: Mapping[str, str | bytes] | None = None) -> Campaign:
+        return read_campaign(self.written(further))
+
+    def replace(self, file: str, old: str, new: str) -> None:
+        self[file] = self[file].replace(old, new)
+
+
+def write_files(folder: Path, files: Mapping[str, str | bytes]) -> Path:
+    folder.mkdir(exist_ok=True)
+    for old in folder.iterdir():
+        old.unlink()
+    for name, content in files.items():
+        (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
+    return folder
 
 
 @pytest.fixture
 def write_campaign(tmp_path: Path) -> Callable[[Mapping[str, str | bytes]], Path]:
-    """Write files into a folder, texts in UTF-8 as they are."""
+    return partial(write_files, tmp_path / "campaign")
 
-    def write(files: Mapping[str, str | bytes]) -> Path:
-        folder = tmp_path / "campaign"
-        folder.mkdir(exist_ok=True)
-        for old in folder.iterdir():
-            old.unlink()
-        for name, content in files.items():
-            (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
-        return folder
 
-    return write
+@pytest.fixture
+def small(tmp_path: Path) -> SmallCampaign:
+    return SmallCampaign(tmp_path / "campaign")

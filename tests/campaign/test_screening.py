@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.present import present
 
 from skisnow.campaign import (
     QUALITY_FLAGS,
@@ -167,8 +168,7 @@ def test_beyond_the_tool(tool: str, angle_deg: float, geometry: GeometryForm, li
 
 def test_cancelled_and_the_order_of_experiments() -> None:
     campaign = campaign_of(GOOD, GOOD, GOOD[:1])
-    assert campaign.penetration is not None
-    tests = dataclasses.replace(campaign.penetration, cancelled=("", "fell over", ""))
+    tests = dataclasses.replace(present(campaign.penetration), cancelled=("", "fell over", ""))
     masks = screen_penetration(dataclasses.replace(campaign, penetration=tests))
     assert masks["cancelled"].tolist() == [False, True, False]
     assert masks["too_few_loads"].tolist() == [False, False, True]
@@ -198,7 +198,6 @@ def test_without_a_table_the_masks_are_empty() -> None:
 def test_flags_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int, int]]]) -> None:
     series = [[(float(load), float(depth)) for load, depth in each] for each in drawn]
     campaign = campaign_of(*series, resolution_mm=0.5)
-    assert campaign.penetration is not None
     expected, start, codes = [], 0, []
     for each in series:
         best = max((load, index) for index, (load, _) in enumerate(each))[1]
@@ -212,7 +211,7 @@ def test_flags_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int,
             + ["zero_depth"] * (each[best][1] == 0)
             + ["below_resolution"] * (each[best][1] < 2.5)
         )
-    assert reading_at_largest_load(campaign.penetration).tolist() == expected
+    assert reading_at_largest_load(present(campaign.penetration)).tolist() == expected
     assert [flagged(campaign, index) for index in range(len(series))] == codes
 
 
@@ -276,8 +275,7 @@ def test_creep_is_flagged_beyond_the_gauge_and_a_share_of_the_depth(
     depth: float, after: float, codes: list[str]
 ) -> None:
     campaign = campaign_of(GOOD, [(70.5, 0.5), (140.5, depth), (210.5, 4.0)])
-    tests = campaign.penetration
-    assert tests is not None
+    tests = present(campaign.penetration)
     add_creep = np.full(6, np.nan)
     add_creep[4] = after * 1e-3
     campaign = dataclasses.replace(campaign, penetration=dataclasses.replace(tests, depth_after=add_creep))

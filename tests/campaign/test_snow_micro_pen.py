@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.present import present
 
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
@@ -102,8 +103,7 @@ def test_lengths_of_the_real_recordings() -> None:
 @pytest.mark.parametrize("name", [LONG, SHORT])
 def test_real_clock_is_1024_weeks_behind_the_file_name(name: str) -> None:
     profile = read_snow_micro_pen(recording(name))
-    assert profile.clock is not None
-    assert profile.clock.date() == date(2000, 6, 24)
+    assert present(profile.clock).date() == date(2000, 6, 24)
     assert profile.date_in_file_name == profile.recorded_on == date(2020, 2, 8)
     assert profile.clock_is_one_rollover_behind
 
@@ -114,10 +114,8 @@ def test_real_position_is_at_its_snow_pit(name: str) -> None:
     profile = read_snow_micro_pen(recording(name))
     with recording(PITS[name]).open(newline="") as stream:
         pit = next(csv.DictReader(stream))
-    assert profile.latitude_deg is not None
-    assert profile.longitude_deg is not None
-    north = (profile.latitude_deg - float(pit["latitude"])) * 111_000.0
-    east = (profile.longitude_deg - float(pit["longitude"])) * 111_000.0 * math.cos(math.radians(39.0))
+    north = (present(profile.latitude_deg) - float(pit["latitude"])) * 111_000.0
+    east = (present(profile.longitude_deg) - float(pit["longitude"])) * 111_000.0 * math.cos(math.radians(39.0))
     assert math.hypot(north, east) < 30.0
     assert profile.height is None
 

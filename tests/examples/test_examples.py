@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.present import present
 
 import skisnow
 from skisnow import read_ski
@@ -34,8 +35,7 @@ def test_chain_from_campaign_to_report(tmp_path: Path) -> None:
     told = done.stdout
     assert re.search(r"“elastic” is wider .*[0-9.]+ %", told)
     assert "is higher:" in told and "is smaller" in told
-    shares = re.search(r"grip utilisation is higher: ([0-9]\.[0-9]+) against ([0-9]\.[0-9]+)", told)
-    assert shares is not None
+    shares = present(re.search(r"grip utilisation is higher: ([0-9]\.[0-9]+) against ([0-9]\.[0-9]+)", told))
     elastic, hypoplastic = map(float, shares.groups())
     assert 0.2 < hypoplastic < elastic < 308 / 410
     page = (tmp_path / "turn" / "report.html").read_text(encoding="utf-8")
@@ -57,8 +57,7 @@ def test_two_skis_turn_as_their_sidecuts(monkeypatch: pytest.MonkeyPatch, capsys
     """On hard snow R → R_sc cos ϑ; at 400 N each radius is within 0.5 % of it, so the ratio within 1 %."""
     monkeypatch.setattr(sys, "argv", ["two_skis.py"])
     runpy.run_path(str(ROOT / "examples" / "two_skis.py"), run_name="__main__")
-    printed = re.search(r"turns (\S+) times", capsys.readouterr().out)
-    assert printed is not None
+    printed = present(re.search(r"turns (\S+) times", capsys.readouterr().out))
     sidecuts = [read_ski(name).sidecut_radius_of_three_widths for name in ("giant-slalom", "slalom")]
     assert float(printed[1]) == pytest.approx(sidecuts[0] / sidecuts[1], rel=0.01)
 

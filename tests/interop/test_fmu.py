@@ -27,6 +27,7 @@ from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulation.run_setup import laid_out
 from skisnow.simulation.sledge_body import rotation
 from tests.coded import raises
+from tests.present import present
 
 from .fmi import Fmu, Instance
 
@@ -339,8 +340,7 @@ def test_an_importer_that_is_reported_nothing_begins_at_0_in_steps_that_suit_the
     for write, step in ((write_contact_fmu, "0.0002"), (write_sledge_fmu, "0.01")):
         with zipfile.ZipFile(write(SCENARIO, tmp_path / "a.fmu")) as archive:
             root = ET.fromstring(archive.read("modelDescription.xml"))
-        experiment = root.find("DefaultExperiment")
-        assert experiment is not None
+        experiment = present(root.find("DefaultExperiment"))
         assert experiment.attrib == {"startTime": "0", "stepSize": step}
 
 
@@ -352,8 +352,7 @@ def test_a_description_has_a_guid_and_says_which_variables_are_outputs(pair: Fmu
     assert len(outputs) == 12
     names = list(pair.references)
     at = {str(names.index(name) + 1 if pair.fmi == 2 else pair.references[name]) for name in outputs}
-    structure = pair.description.find("ModelStructure")
-    assert structure is not None
+    structure = present(pair.description.find("ModelStructure"))
     if pair.fmi == 2:
         told = {each.tag: [unknown.attrib["index"] for unknown in each] for each in structure}
         assert list(told) == ["Outputs", "InitialUnknowns"]

@@ -19,6 +19,7 @@ from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
 from skisnow.web.transfer import entry_files, kept_files, write_entry
 from tests.coded import raises
+from tests.present import present
 
 from ..campaign.recordings import plain_snow
 from .campaign_texts import DESK
@@ -132,8 +133,7 @@ def test_a_campaign_that_measured_the_unloading_gives_its_ratio_to_the_run_unles
     analysis = campaign_snow(lab, key)
     _, words = results_and_snow_words(analysis, "carved-46m", {})
     snow = analyse(read_campaign(tmp_path / "reference")).snow()
-    assert snow.unloading_ratio is not None
-    assert f"; k_u/H_V = {significant(snow.unloading_ratio)}, [" in words
+    assert f"; k_u/H_V = {significant(present(snow.unloading_ratio))}, [" in words
     assert "k_u" not in results_and_snow_words(analysis, "carved-46m", {"snow.unloading_ratio": "10"})[1]
 
 
@@ -165,8 +165,7 @@ def test_a_figure_is_drawn_where_there_are_data_for_it(tmp_path: Path) -> None:
     (tmp_path / "penetration.csv").write_text(PENETRATION, encoding="utf-8")
     analysis = analyse(read_campaign(tmp_path), n_resamples=100)
     by_name = {drawer.__name__: number for number, drawer in enumerate(DRAWERS)}
-    drawn = figure(analysis, by_name["force_depth"], "de")
-    assert drawn is not None
+    drawn = present(figure(analysis, by_name["force_depth"], "de"))
     assert drawn.name == "fig05_force_depth"
     assert "Eindringtiefe" in b64decode(drawn.image.partition(",")[2]).decode("utf-8")
     assert figure(analysis, by_name["stress_angle"], "de") is None

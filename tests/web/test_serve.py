@@ -28,6 +28,7 @@ from skisnow.campaign.store import Journals, Store, campaign_files, replay_journ
 from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.cli import main
 from skisnow.web.server import HEAD_BYTES, TimeLimitedProtocol
+from tests.present import present
 
 from ..campaign.store.postgresql_server import Server, run, started, why_there_is_none
 from .conftest import Served, killed_and_started_again
@@ -48,8 +49,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 def asked(served: Served, path: str, *, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], str]:
     parts = urlsplit(served.address)
-    assert parts.hostname is not None
-    connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=300)
+    connection = http.client.HTTPConnection(present(parts.hostname), parts.port, timeout=300)
     connection.request(method, path, headers=headers)
     answer = connection.getresponse()
     found = answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read().decode()
@@ -117,8 +117,7 @@ def test_a_lab_with_a_certificate_is_encrypted(tmp_path: Path) -> None:
         text=True,
     )
     try:
-        assert lab.stdout is not None
-        parts = urlsplit(lab.stdout.readline().strip())
+        parts = urlsplit(present(lab.stdout).readline().strip())
         assert parts.scheme == "https" and parts.hostname is not None
         trusted = ssl.create_default_context(cafile=str(pem))
         trusted.check_hostname = False  # the certificate is that of a name, the address is asked

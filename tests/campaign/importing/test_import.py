@@ -9,6 +9,7 @@ from openpyxl import Workbook
 from openpyxl.cell.rich_text import CellRichText, TextBlock
 from openpyxl.cell.text import InlineFont
 from openpyxl.styles import Font
+from tests.present import present
 
 from skisnow._support.errors import ParameterError
 from skisnow.campaign.importing import (
@@ -408,8 +409,7 @@ def test_thousands_separators_are_not_decimal_marks() -> None:
     assert [question.key for question in propose(FILE, bytes_of(book)).questions] == ["decimal"]
     with_comma = propose(FILE, bytes_of(book), Answers(cells={"decimal": ","}))
     campaign = campaign_of_files(with_comma.files)
-    assert campaign.penetration is not None
-    assert campaign.penetration.load[0] == pytest.approx(12.5e-3 * G)
+    assert present(campaign.penetration).load[0] == pytest.approx(12.5e-3 * G)
 
 
 def test_points_between_thousands_are_asked_for_where_commas_are_decimal_marks() -> None:
@@ -431,8 +431,7 @@ def test_each_table_of_a_sheet_has_the_site_above_it() -> None:
     assert campaign.penetration.site == ("oben", "unten")
     unnamed = propose("Hang.csv", text.replace("Ort: ", "").encode(), Answers(site={"Hang:3": "A", "Hang:8": "B"}))
     campaign = campaign_of_files(unnamed.files)
-    assert campaign.penetration is not None
-    assert campaign.penetration.site == ("A", "B")
+    assert present(campaign.penetration).site == ("A", "B")
 
 
 def test_csv_with_titles_is_read_with_its_separator() -> None:

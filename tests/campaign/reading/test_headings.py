@@ -1,23 +1,23 @@
 """Templates of a campaign's tables, and their headings."""
 
 import re
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.coded import raises
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
+from tests.present import present
 
 from skisnow._support.errors import OutputError
-from skisnow.campaign import check_campaign, read_campaign
+from skisnow.campaign import read_campaign
 from skisnow.campaign.reading.headings import columns_by_synonym
 from skisnow.campaign.reading.table_forms import DENSITY, DROP_CONE, PENETRATION, SHEAR, TableForm
 from skisnow.campaign.templates import write_new_campaign
 from skisnow.cli import main
 from skisnow.estimation import analyse
 
-WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+from ..conftest import SmallCampaign
 
 GERMAN = {
     "penetration.csv": """\
@@ -35,36 +35,31 @@ S1;Süd;blade;90;5,5;300;12,25;23.11.26
 }
 
 
-@pytest.fixture
-def german(small_campaign: dict[str, str]) -> dict[str, str | bytes]:
-    """As a German Excel writes it: semicolons, decimal commas, Windows-1252."""
-    tables = {name: text.encode("cp1252") for name, text in GERMAN.items()}
-    return {"campaign.toml": small_campaign["campaign.toml"], **tables}
-
-
 def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
-    write_campaign: WriteCampaign, german: dict[str, str | bytes], capsys: pytest.CaptureFixture[str]
+    small: SmallCampaign, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = write_campaign(german)
-    assert main(["check", str(folder)]) == 1
+    """Tables as a German Excel writes them: semicolons, decimal commas, Windows-1252."""
+    german = {name: text.encode("cp1252") for name, text in GERMAN.items()}
+    assert main(["check", str(small.written(german))]) == 1
     printed = capsys.readouterr().out.splitlines()
     errors = [line for line in printed if line.startswith("error ")]
     assert len(errors) == 4
     assert len([line for line in printed if "Windows-1252 in penetration" in line]) == 1
     lines = [found[0] for line in errors if (found := re.search(r"columns\.\w+ = \{.*?\}", line))]
-    german["campaign.toml"] = "\n".join([*lines, str(german["campaign.toml"])])
-    campaign = read_campaign(write_campaign(german))
+    small["campaign.toml"] = "\n".join([*lines, small["campaign.toml"]])
+    campaign = small.read(german)
     assert campaign.penetration is not None
     assert campaign.shear is not None
-    assert campaign.density is not None
-    assert campaign.drop_cone is not None
     assert np.degrees(campaign.penetration.edge_angle).tolist() == pytest.approx([30.0])
     assert (campaign.penetration.load.tolist(), campaign.penetration.penetration_depth[0]) == (
         [70.5, 140.5, 210.5],
         1.25e-3,
     )
     assert (campaign.shear.lever_arm[0], campaign.shear.moment[0]) == (0.3, 12.25)
-    assert (campaign.density.snow_density[0], campaign.drop_cone.drop_cone_depth[0]) == (410.5, 12.5e-3)
+    assert (present(campaign.density).snow_density[0], present(campaign.drop_cone).drop_cone_depth[0]) == (
+        410.5,
+        12.5e-3,
+    )
     assert campaign.penetration.further["time"][0] == "2026-11-23T09:10:00"
     assert not [problem for problem in campaign.problems if problem.needs_action]
 
@@ -96,58 +91,44 @@ def test_headings_that_people_write(form: TableForm, headings: list[str], column
 
 
 @pytest.mark.parametrize("ends", [";;", ""])
-def test_a_title_above_the_headings_is_passed_over(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], ends: str
-) -> None:
-    small_campaign["density.csv"] = (
-        f"Hang am 23. November{ends}\n{ends}\n{small_campaign['density.csv'].replace(',', ';')}"
-    )
-    campaign = read_campaign(write_campaign(small_campaign))
-    assert campaign.density is not None
-    assert campaign.density.row.tolist() == [4, 5, 6]
+def test_a_title_above_the_headings_is_passed_over(small: SmallCampaign, ends: str) -> None:
+    small["density.csv"] = f"Hang am 23. November{ends}\n{ends}\n{small['density.csv'].replace(',', ';')}"
+    campaign = small.read()
+    assert present(campaign.density).row.tolist() == [4, 5, 6]
 
 
-def test_many_alike_are_counted(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_many_alike_are_counted(small: SmallCampaign, capsys: pytest.CaptureFixture[str]) -> None:
     """Merged cells: a name only in the first row."""
     rows = [f"{'D1' if row == 2 else ''},Süd,{300 + row}" for row in range(2, 20)]
     table = "\n".join(["sample,site,snow_density_kg_per_m3", *rows])
-    assert main(["check", str(write_campaign({**small_campaign, "density.csv": table}))]) == 1
+    assert main(["check", str(small.written({"density.csv": table}))]) == 1
     printed = capsys.readouterr().out.splitlines()
     assert len([line for line in printed if "density.csv, row" in line]) == 10
     assert any("7 more" in line and "row 19" in line for line in printed)
     assert printed[-1] == "errors: 17, warnings: 0, flags: 0"
 
 
-def test_a_unit_of_another_quantity_is_neither_proposed_nor_taken(
-    write_campaign: WriteCampaign, german: dict[str, str | bytes], small_campaign: dict[str, str]
-) -> None:
+def test_a_unit_of_another_quantity_is_neither_proposed_nor_taken(small: SmallCampaign) -> None:
     table = GERMAN["penetration.csv"].replace("Eindringtiefe [mm]", "Eindringtiefe [kg]")
-    files = {**german, "penetration.csv": table, "shear.csv": small_campaign["shear.csv"]}
-    problem = next(problem for problem in check_campaign(write_campaign(files)) if problem.severity == "error")
+    problem = small.errors({"penetration.csv": table})[0]
     assert "depth_mm" not in problem.action.split("}")[0]
     assert "Eindringtiefe [kg]" in problem.action
-    mapped = f'columns."Eindringtiefe [kg]" = "depth_mm"\n{small_campaign["campaign.toml"]}'
-    table = small_campaign["penetration.csv"].replace("depth_mm", "Eindringtiefe [kg]")
-    (problem,) = check_campaign(write_campaign({**small_campaign, "campaign.toml": mapped, "penetration.csv": table}))
+    mapped = f'columns."Eindringtiefe [kg]" = "depth_mm"\n{small["campaign.toml"]}'
+    table = small["penetration.csv"].replace("depth_mm", "Eindringtiefe [kg]")
+    (problem,) = small.check({"campaign.toml": mapped, "penetration.csv": table})
     assert (problem.severity, problem.code, problem.row, problem.column) == ("error", "other_unit", 1, "depth_mm")
 
 
-def test_a_mapping_of_one_table_comes_before_that_of_all(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
+def test_a_mapping_of_one_table_comes_before_that_of_all(small: SmallCampaign) -> None:
     mapping = '[columns]\n"Tiefe" = "depth_mm"\nOrt = "site"\n[columns.drop_cone]\nTIEFE = "drop_cone_depth_mm"\n'
-    small_campaign["campaign.toml"] += mapping
+    small["campaign.toml"] += mapping
     for name in ("penetration.csv", "shear.csv"):
-        small_campaign[name] = small_campaign[name].replace("depth_mm", "Tiefe", 1).replace(",site,", ",Ort,")
-    small_campaign["drop_cone.csv"] = small_campaign["drop_cone.csv"].replace("drop_cone_depth_mm", "Tiefe")
-    campaign = read_campaign(write_campaign(small_campaign))
+        small[name] = small[name].replace("depth_mm", "Tiefe", 1).replace(",site,", ",Ort,")
+    small.replace("drop_cone.csv", "drop_cone_depth_mm", "Tiefe")
+    campaign = small.read()
     assert campaign.problems == ()
-    assert campaign.drop_cone is not None
-    assert campaign.drop_cone.drop_cone_depth[0] == 12.5e-3
-    assert campaign.shear is not None
-    assert campaign.shear.penetration_depth[0] == 5.5e-3
+    assert present(campaign.drop_cone).drop_cone_depth[0] == 12.5e-3
+    assert present(campaign.shear).penetration_depth[0] == 5.5e-3
 
 
 @pytest.mark.parametrize(
@@ -159,11 +140,9 @@ def test_a_mapping_of_one_table_comes_before_that_of_all(
         ('columns = "x"', "columns", "[columns]"),
     ],
 )
-def test_a_mapping_to_no_column_is_rejected(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], line: str, column: str, told: str
-) -> None:
-    small_campaign["campaign.toml"] = f"{line}\n{small_campaign['campaign.toml']}"
-    (problem,) = check_campaign(write_campaign(small_campaign))
+def test_a_mapping_to_no_column_is_rejected(small: SmallCampaign, line: str, column: str, told: str) -> None:
+    small["campaign.toml"] = f"{line}\n{small['campaign.toml']}"
+    (problem,) = small.check()
     assert (problem.code, problem.column) == ("bad_toml", column)
     assert told in problem.action
 
@@ -176,10 +155,7 @@ def test_a_new_campaign_is_sound_and_its_examples_count_nowhere(tmp_path: Path, 
     campaign = read_campaign(folder)
     assert (campaign.name, campaign.problems) == ("Hintertux", ())
     assert campaign.penetration is not None
-    assert campaign.shear is not None
-    assert campaign.density is not None
-    assert campaign.drop_cone is not None
-    tables = (campaign.penetration, campaign.shear, campaign.density, campaign.drop_cone)
+    tables = (campaign.penetration, present(campaign.shear), present(campaign.density), present(campaign.drop_cone))
     assert all(table.cancelled[0].startswith("example") and len(table.cancelled) == 1 for table in tables)
     tool = campaign.tools[campaign.penetration.tool[0]]
     assert (tool.length, tool.width) == (0.2, 0.062)  # type: ignore[attr-defined]

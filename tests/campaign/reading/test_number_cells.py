@@ -1,7 +1,7 @@
 """Cells to numbers: what Python would take for a number and people do not."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
 
@@ -15,6 +15,8 @@ from skisnow import analyse, results_dict, write_reference
 from skisnow.campaign import Problem, check_campaign, read_campaign
 from skisnow.campaign.problems import error
 from skisnow.campaign.reading.columns import decimal_mark, is_number, iso_moment, number, numbers
+
+from ..conftest import SmallCampaign
 
 GOOD = {"1": 1.0, "-2.5": -2.5, "+.5": 0.5, "3.": 3.0, "1e3": 1000.0, "2.5E-1": 0.25, " 7.5\u00a0": 7.5, "007": 7.0}
 BAD = [
@@ -121,11 +123,9 @@ def test_days_that_are_none_or_could_be_two(cell: str) -> None:
     assert iso_moment(cell) is None
 
 
-def test_a_day_that_cannot_be_read_is_one_warning_and_stays(
-    write_campaign: Callable[[Mapping[str, str | bytes]], Path], small_campaign: dict[str, str]
-) -> None:
+def test_a_day_that_cannot_be_read_is_one_warning_and_stays(small: SmallCampaign) -> None:
     table = "sample,site,snow_density_kg_per_m3,time\nD1,Süd,410,1.2.2026\nD2,Süd,400,gestern\nD3,Nord,390,3/4/2026\n"
-    folder = write_campaign({**small_campaign, "density.csv": table})
+    folder = small.written({"density.csv": table})
     (problem,) = check_campaign(folder)
     found = (problem.severity, problem.code, problem.row, problem.column, problem.experiment)
     assert problem.value is not None and problem.value.startswith("gestern, ")

@@ -6,24 +6,25 @@ import itertools
 import math
 import os
 import random
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.present import present
 
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign import Campaign, Problem, check_campaign, read_campaign
 from skisnow.geometry import Disc, LyingCylinder, SkiPiece
 
-WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+from ..conftest import SmallCampaign
+
 CSV_FILES = ("penetration.csv", "shear.csv", "density.csv", "drop_cone.csv")
 
 
-def test_the_small_campaign_in_si(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    campaign = read_campaign(write_campaign(small_campaign))
+def test_the_small_in_si(small: SmallCampaign) -> None:
+    campaign = small.read()
     assert campaign.problems == ()
     assert (campaign.name, campaign.place, campaign.observers) == ("north slope", "Kühtai", ("A. Müller", "B"))
     assert campaign.gauge_resolution == pytest.approx(1e-5)
@@ -38,9 +39,8 @@ def test_the_small_campaign_in_si(write_campaign: WriteCampaign, small_campaign:
     assert campaign.excluding == {"cancelled", "too_few_loads", "loads_not_rising", "depth_shrinks", "zero_depth"}
 
 
-def test_penetration_in_si(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    tests = read_campaign(write_campaign(small_campaign)).penetration
-    assert tests is not None
+def test_penetration_in_si(small: SmallCampaign) -> None:
+    tests = present(small.read().penetration)
     assert tests.experiment == ("P1", "P2")
     assert tests.site == ("Süd", "Nord")
     assert tests.tool == ("piece", "disc 100")
@@ -55,8 +55,8 @@ def test_penetration_in_si(write_campaign: WriteCampaign, small_campaign: dict[s
     assert tests.further == {"remark": ("first", "", "hard, wet", "", "")}
 
 
-def test_the_other_tables_in_si(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    campaign = read_campaign(write_campaign(small_campaign))
+def test_the_other_tables_in_si(small: SmallCampaign) -> None:
+    campaign = small.read()
     shear, density, cone = campaign.shear, campaign.density, campaign.drop_cone
     assert shear is not None
     assert density is not None
@@ -71,9 +71,9 @@ def test_the_other_tables_in_si(write_campaign: WriteCampaign, small_campaign: d
     assert cone.site_means() == pytest.approx({"Süd": 0.015})  # mean of 13 and 17 mm, not of the three repeats
 
 
-def test_hashes_are_those_of_the_raw_files(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign["corrections.csv"] = "file,experiment,row,column,old,new,who,when,why\n"
-    folder = write_campaign(small_campaign)
+def test_hashes_are_those_of_the_raw_files(small: SmallCampaign) -> None:
+    small["corrections.csv"] = "file,experiment,row,column,old,new,who,when,why\n"
+    folder = small.written()
     expected = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.iterdir()}
     assert read_campaign(folder).file_hashes == expected
 
@@ -106,17 +106,14 @@ ENCODINGS = {"utf-8": None, "utf-8-sig": None, "utf-16": "UTF-16", "cp1252": "Wi
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
-def test_every_form_reads_the_same(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], encoding: str, separator: str
-) -> None:
-    small_campaign["penetration.csv"] = small_campaign["penetration.csv"].replace('"hard, wet"', "hard and wet")
-    expected = plain(read_campaign(write_campaign(small_campaign)))
+def test_every_form_reads_the_same(small: SmallCampaign, encoding: str, separator: str) -> None:
+    small.replace("penetration.csv", '"hard, wet"', "hard and wet")
+    expected = plain(small.read())
     for comma, line_end, stray in itertools.product((False, True), ("\n", "\r\n", "\r"), (False, True)):
         files = {
-            name: rewritten(small_campaign[name], separator, comma, line_end, stray=stray).encode(encoding)
-            for name in CSV_FILES
+            name: rewritten(small[name], separator, comma, line_end, stray=stray).encode(encoding) for name in CSV_FILES
         }
-        campaign = read_campaign(write_campaign({**files, "campaign.toml": small_campaign["campaign.toml"]}))
+        campaign = small.read(files)
         np.testing.assert_equal(plain(campaign), expected)
         stated = {(problem.code, problem.value) for problem in campaign.problems if problem.file == "penetration.csv"}
         wanted = {("encoding", ENCODINGS[encoding])} if ENCODINGS[encoding] else set()
@@ -125,97 +122,77 @@ def test_every_form_reads_the_same(
         assert stated == wanted
 
 
-def test_utf_16_big_endian_and_toml_in_windows_1252(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    files: dict[str, str | bytes] = {**small_campaign}
-    files["campaign.toml"] = small_campaign["campaign.toml"].replace("\n", "\r\n").encode("cp1252")
-    files["shear.csv"] = b"\xfe\xff" + small_campaign["shear.csv"].encode("utf-16-be")
-    campaign = read_campaign(write_campaign(files))
+def test_utf_16_big_endian_and_toml_in_windows_1252(small: SmallCampaign) -> None:
+    toml = small["campaign.toml"].replace("\n", "\r\n").encode("cp1252")
+    campaign = small.read({"campaign.toml": toml, "shear.csv": b"\xfe\xff" + small["shear.csv"].encode("utf-16-be")})
     assert campaign.place == "Kühtai"
-    assert campaign.shear is not None
-    assert campaign.shear.site == ("Süd", "Nord")
+    assert present(campaign.shear).site == ("Süd", "Nord")
     assert [(problem.code, problem.file, problem.value) for problem in campaign.problems] == [
         ("encoding", "campaign.toml", "Windows-1252"),
         ("encoding", "shear.csv", "UTF-16"),
     ]
 
 
-def test_line_that_names_the_separator(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign["shear.csv"] = "sep=;\r\n" + rewritten(small_campaign["shear.csv"], ";", True, "\r\n", stray=False)
-    shear = read_campaign(write_campaign(small_campaign)).shear
-    assert shear is not None
+def test_line_that_names_the_separator(small: SmallCampaign) -> None:
+    small["shear.csv"] = "sep=;\r\n" + rewritten(small["shear.csv"], ";", True, "\r\n", stray=False)
+    shear = present(small.read().shear)
     assert shear.row.tolist() == [3, 4]
     assert shear.moment.tolist() == [12.25, 10.0]
 
 
-def test_rows_are_file_lines_over_blank_lines_and_line_breaks_in_quotes(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    header, *rows = small_campaign["penetration.csv"].splitlines()
+def test_rows_are_file_lines_over_blank_lines_and_line_breaks_in_quotes(small: SmallCampaign) -> None:
+    header, *rows = small["penetration.csv"].splitlines()
     rows[0] = 'P1,Süd,piece,30,70.5,1.25,a,350,,"two\r\nlines"'  # lines 2 and 3
     text = "\n".join([header, rows[0], "", ",,,,,,,,,", " ,\t,,", rows[1], rows[2], rows[3], rows[4]])
-    tests = read_campaign(write_campaign({**small_campaign, "penetration.csv": text})).penetration
-    assert tests is not None
+    tests = present(small.read({"penetration.csv": text}).penetration)
     assert tests.row.tolist() == [2, 7, 8, 9, 10]
     assert tests.further["remark"][0] == "two\r\nlines"
 
 
-def test_padding_of_spreadsheet_programs(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    lines = small_campaign["density.csv"].splitlines()
+def test_padding_of_spreadsheet_programs(small: SmallCampaign) -> None:
+    lines = small["density.csv"].splitlines()
     padded = "\n".join([lines[0] + ",,", lines[1] + ",,", lines[2], lines[3] + ",,,,"])
-    campaign = read_campaign(write_campaign({**small_campaign, "density.csv": padded}))
+    campaign = small.read({"density.csv": padded})
     assert campaign.problems == ()
     assert campaign.density is not None
     assert campaign.density.snow_density.tolist() == [410.5, 300.0, 310.0]
     assert campaign.density.further == {}
 
 
-def test_short_rows_have_blank_cells(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    text = small_campaign["shear.csv"].replace("S2,Nord,blade,45,6,300,10,,", "S2,Nord,blade,45,6,300,10")
-    shear = read_campaign(write_campaign({**small_campaign, "shear.csv": text})).shear
-    assert shear is not None
+def test_short_rows_have_blank_cells(small: SmallCampaign) -> None:
+    text = small["shear.csv"].replace("S2,Nord,blade,45,6,300,10,,", "S2,Nord,blade,45,6,300,10")
+    shear = present(small.read({"shear.csv": text}).shear)
     assert shear.spot == ("a", "")
 
 
-def test_name_falls_back_to_the_folder(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    toml = small_campaign["campaign.toml"]
-    campaign = read_campaign(write_campaign({**small_campaign, "campaign.toml": toml.partition("\n")[2]}))
+def test_name_falls_back_to_the_folder(small: SmallCampaign) -> None:
+    toml = small["campaign.toml"]
+    campaign = small.read({"campaign.toml": toml.partition("\n")[2]})
     assert campaign.name == "campaign"
 
 
-def test_status_cancels_the_experiment_and_says_why(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    files = dict(small_campaign)
-    files["penetration.csv"] = (
-        files["penetration.csv"]
-        .replace("140.5,2.5,a,,,", "140.5,2.5,a,,tool slipped,")
-        .replace("360,,", "360,rain,")
-        .replace("350,,first", "350,tool slipped,first")
-    )
-    files["drop_cone.csv"] = "test,site,repeat,drop_cone_depth_mm,status\nC1,S,1,12,\nC1,S,2,30,crust\nC2,S,1,17,\n"
-    files["density.csv"] = "sample,site,snow_density_kg_per_m3,status\nD1,S,400,\nD1,S,100,spilt\nD1,N,300,\n"
-    campaign = read_campaign(write_campaign(files))
-    assert campaign.penetration is not None
-    assert campaign.penetration.cancelled == ("tool slipped; rain", "")
+def test_status_cancels_the_experiment_and_says_why(small: SmallCampaign) -> None:
+    for old, new in (("2.5,a,,,", "2.5,a,,tool slipped,"), ("360,,", "360,rain,"), ("350,,", "350,tool slipped,")):
+        small.replace("penetration.csv", old, new)
+    small["drop_cone.csv"] = "test,site,repeat,drop_cone_depth_mm,status\nC1,S,1,12,\nC1,S,2,30,crust\nC2,S,1,17,\n"
+    small["density.csv"] = "sample,site,snow_density_kg_per_m3,status\nD1,S,400,\nD1,S,100,spilt\nD1,N,300,\n"
+    campaign = small.read()
+    assert present(campaign.penetration).cancelled == ("tool slipped; rain", "")
     assert campaign.drop_cone is not None
     assert campaign.drop_cone.cancelled == ("crust", "crust", "")
     assert campaign.drop_cone.site_means() == pytest.approx({"S": 0.017})
-    assert campaign.density is not None
-    assert campaign.density.site_means() == {"N": 300.0}
+    assert present(campaign.density).site_means() == {"N": 300.0}
 
 
-def test_unknown_columns_are_kept_and_named(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_unknown_columns_are_kept_and_named(small: SmallCampaign) -> None:
     text = "sample,site,snow_density_kg_per_m3,Wetter,time\nD1,Süd,410.5,sonnig,9:30\n"
-    campaign = read_campaign(write_campaign({**small_campaign, "density.csv": text}))
-    assert campaign.density is not None
-    assert campaign.density.further == {"Wetter": ("sonnig",), "time": ("9:30",)}
+    campaign = small.read({"density.csv": text})
+    assert present(campaign.density).further == {"Wetter": ("sonnig",), "time": ("9:30",)}
     (problem,) = campaign.problems
     assert (problem.severity, problem.code, problem.row, problem.column) == ("warning", "unknown_column", 1, "Wetter")
 
 
-def test_nothing_is_lost_in_a_large_file(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_nothing_is_lost_in_a_large_file(small: SmallCampaign) -> None:
     """More rows than are taken at once, with line breaks in quotes and a late bad cell: all are found again."""
     draw = random.Random(3)
     rows = [
@@ -224,10 +201,9 @@ def test_nothing_is_lost_in_a_large_file(write_campaign: WriteCampaign, small_ca
     ]
     lines = ["experiment,site,tool,edge_angle_deg,load_N,depth_mm,note"]
     lines += [f'{name},s,piece,45,{load},{depth},"{note}\n"' for name, load, depth, note in rows]
-    folder = write_campaign({**small_campaign, "penetration.csv": "\n".join(lines)})
+    folder = small.written({"penetration.csv": "\n".join(lines)})
     told: list[str] = []
-    tests = read_campaign(folder, progress=told.append).penetration
-    assert tests is not None
+    tests = present(read_campaign(folder, progress=told.append).penetration)
     assert len(tests.load) == len(rows)
     assert tests.load.tolist() == [float(load) for _, load, _, _ in rows]
     np.testing.assert_allclose(tests.penetration_depth, [float(depth) / 1000 for _, _, depth, _ in rows], rtol=1e-15)
@@ -236,20 +212,14 @@ def test_nothing_is_lost_in_a_large_file(write_campaign: WriteCampaign, small_ca
     assert tests.further["note"] == tuple(note for _, _, _, note in rows)
     assert "penetration.csv: 30,001 rows" in told
     lines[29_000] = lines[29_000].replace(".25", ".2S", 1)
-    (problem,) = [
-        each
-        for each in check_campaign(write_campaign({**small_campaign, "penetration.csv": "\n".join(lines)}))
-        if each.severity == "error"
-    ]
+    (problem,) = small.errors({"penetration.csv": "\n".join(lines)})
     assert (problem.code, problem.row, problem.column) == ("not_a_number", 2 * 29_000, "load_N")
 
 
-def test_all_problems_are_raised_with_the_warnings(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    small_campaign["penetration.csv"] = small_campaign["penetration.csv"].replace("2.5", "-2.5").replace("70.5", "x")
-    small_campaign["shear.csv"] = small_campaign["shear.csv"].replace("spot", "Ort")
-    folder = write_campaign(small_campaign)
+def test_all_problems_are_raised_with_the_warnings(small: SmallCampaign) -> None:
+    small["penetration.csv"] = small["penetration.csv"].replace("2.5", "-2.5").replace("70.5", "x")
+    small.replace("shear.csv", "spot", "Ort")
+    folder = small.written()
     with pytest.raises(FieldDataError) as caught:
         read_campaign(folder)
     assert caught.value.problems == check_campaign(folder)
@@ -272,9 +242,9 @@ def test_no_folder(tmp_path: Path, kind: str) -> None:
         read_campaign(place)
 
 
-def test_folder_and_pipe_in_place_of_a_file(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    del small_campaign["density.csv"], small_campaign["shear.csv"]
-    folder = write_campaign(small_campaign)
+def test_folder_and_pipe_in_place_of_a_file(small: SmallCampaign) -> None:
+    del small["density.csv"], small["shear.csv"]
+    folder = small.written()
     (folder / "density.csv").mkdir()
     os.mkfifo(folder / "shear.csv")
     problems = check_campaign(folder)
@@ -306,10 +276,8 @@ BROKEN = st.one_of(
 
 @SHARED_FOLDER
 @given(name=st.sampled_from(("campaign.toml", "corrections.csv", *CSV_FILES)), content=BROKEN)
-def test_random_files_give_problems(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], name: str, content: bytes
-) -> None:
-    assert_told_and_not_raised(write_campaign({**small_campaign, name: content}))
+def test_random_files_give_problems(small: SmallCampaign, name: str, content: bytes) -> None:
+    assert_told_and_not_raised(small.written({name: content}))
 
 
 @SHARED_FOLDER
@@ -320,31 +288,28 @@ def test_random_files_give_problems(
     content=BROKEN,
 )
 def test_damaged_files_give_problems(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], name: str, place: float, length: int, content: bytes
+    small: SmallCampaign, name: str, place: float, length: int, content: bytes
 ) -> None:
-    checked_bytes = small_campaign[name].encode()
+    checked_bytes = small[name].encode()
     start = int(place * len(checked_bytes))
     damaged = checked_bytes[:start] + content[:length] + checked_bytes[start + length :]
-    assert_told_and_not_raised(write_campaign({**small_campaign, name: damaged}))
+    assert_told_and_not_raised(small.written({name: damaged}))
 
 
 @pytest.mark.parametrize(("content", "code"), [(None, "bad_toml"), ("", "empty_file"), (" \r\n", "empty_file")])
-def test_no_campaign_toml_is_one_problem(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], content: str | None, code: str
-) -> None:
+def test_no_campaign_toml_is_one_problem(small: SmallCampaign, content: str | None, code: str) -> None:
     """Not one more for every tool that it would have described."""
-    del small_campaign["campaign.toml"]
-    folder = write_campaign(small_campaign if content is None else {**small_campaign, "campaign.toml": content})
-    (problem,) = check_campaign(folder)
+    del small["campaign.toml"]
+    (problem,) = small.check({} if content is None else {"campaign.toml": content})
     assert (problem.severity, problem.code, problem.file) == ("error", code, "campaign.toml")
 
 
-def test_a_table_in_capitals_is_not_passed_over(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_a_table_in_capitals_is_not_passed_over(small: SmallCampaign) -> None:
     """Only where the file system tells capitals apart; elsewhere the file simply is the table."""
-    small_campaign["Density.csv"] = "sample,site,snow_density_kg_per_m3\n1,A,400\n"
-    small_campaign.pop("density.csv", None)
-    folder = write_campaign(small_campaign)
+    small["Density.csv"] = "sample,site,snow_density_kg_per_m3\n1,A,400\n"
+    small.pop("density.csv", None)
+    folder = small.written()
     if (folder / "density.csv").exists():
         pytest.skip("the file system does not tell capitals apart")
-    problems = [p for p in check_campaign(folder) if p.severity == "error"]
+    problems = small.errors()
     assert [(p.code, p.file, p.allowed) for p in problems] == [("unreadable_file", "Density.csv", "density.csv")]

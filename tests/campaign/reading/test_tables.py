@@ -1,15 +1,14 @@
 """Tables of a campaign and their text."""
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
-
 import pytest
 from tests.key_names import DROP_CONE_DEPTH
+from tests.present import present
 
-from skisnow.campaign import Problem, check_campaign, read_campaign
+from skisnow.campaign import Problem
 from skisnow.campaign.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, inspect_csv
 
-WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+from ..conftest import SmallCampaign
+
 Where = tuple[str, str, int | None, str | None, str | None, str | None]
 
 PEN, SHEAR, DENSITY, CONE = "penetration.csv", "shear.csv", "density.csv", "drop_cone.csv"
@@ -53,20 +52,17 @@ CHANGES: list[tuple[str, str, str, Where]] = [
 
 
 @pytest.mark.parametrize(("file", "old", "new", "expected"), CHANGES)
-def test_a_wrong_cell(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], file: str, old: str, new: str, expected: Where
-) -> None:
-    assert small_campaign[file].count(old) == 1
-    small_campaign[file] = small_campaign[file].replace(old, new)
-    problems = [problem for problem in check_campaign(write_campaign(small_campaign)) if problem.severity == "error"]
-    assert [where(problem) for problem in problems] == [expected]
+def test_a_wrong_cell(small: SmallCampaign, file: str, old: str, new: str, expected: Where) -> None:
+    assert small[file].count(old) == 1
+    small.replace(file, old, new)
+    assert [where(problem) for problem in small.errors()] == [expected]
 
 
-def test_limits_that_are_still_allowed(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("70.5,0.5", "0.001,0").replace("a,360", "a,917")
-    small_campaign[SHEAR] = small_campaign[SHEAR].replace("blade,45,6,300,10", "blade,0.5,0,0.1,0")
-    small_campaign[CONE] = small_campaign[CONE].replace("12.5", "0")
-    found = check_campaign(write_campaign(small_campaign))
+def test_limits_that_are_still_allowed(small: SmallCampaign) -> None:
+    small[PEN] = small[PEN].replace("70.5,0.5", "0.001,0").replace("a,360", "a,917")
+    small.replace(SHEAR, "blade,45,6,300,10", "blade,0.5,0,0.1,0")
+    small.replace(CONE, "12.5", "0")
+    found = small.check()
     # allowed, and so far from the other rows that a warning asks for their unit
     assert [(each.severity, *where(each)[:4]) for each in found] == [
         ("warning", "unlikely_unit", PEN, 5, "load_N"),
@@ -74,18 +70,16 @@ def test_limits_that_are_still_allowed(write_campaign: WriteCampaign, small_camp
     ]
 
 
-def test_every_problem_is_found_at_once(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_every_problem_is_found_at_once(small: SmallCampaign) -> None:
     for file, old, new, _ in (CHANGES[0], CHANGES[7], CHANGES[17], CHANGES[23], CHANGES[25]):
-        small_campaign[file] = small_campaign[file].replace(old, new)
+        small.replace(file, old, new)
     expected = [where for *_, where in (CHANGES[0], CHANGES[7], CHANGES[17], CHANGES[23], CHANGES[25])]
-    assert [where(problem) for problem in check_campaign(write_campaign(small_campaign))] == expected
+    assert [where(problem) for problem in small.check()] == expected
 
 
-def test_missing_columns_name_the_nearest(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign[SHEAR] = (
-        small_campaign[SHEAR].replace("moment_Nm", "Moment (Nm)").replace("lever_arm_mm", "x").replace("site", "Site")
-    )
-    problems = check_campaign(write_campaign(small_campaign))
+def test_missing_columns_name_the_nearest(small: SmallCampaign) -> None:
+    small[SHEAR] = small[SHEAR].replace("moment_Nm", "Moment (Nm)").replace("lever_arm_mm", "x").replace("site", "Site")
+    problems = small.check()
     assert [where(problem) for problem in problems] == [
         ("missing_column", SHEAR, 1, "site", None, "Site"),
         ("missing_column", SHEAR, 1, "lever_arm_mm", None, None),
@@ -99,94 +93,89 @@ def test_missing_columns_name_the_nearest(write_campaign: WriteCampaign, small_c
 
 @pytest.mark.parametrize(("heading", "newtons"), [("load_kg", 9.80665), ("Last [kg]", 9.80665), ("load_kN", 1e3)])
 def test_a_heading_in_another_unit_is_mapped_and_not_renamed(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], heading: str, newtons: float
+    small: SmallCampaign, heading: str, newtons: float
 ) -> None:
     """Numbers in kg below the name load_N would be read as N."""
-    before = read_campaign(write_campaign(small_campaign)).penetration
-    small_campaign[PEN] = small_campaign[PEN].replace("load_N", heading)
-    missing = next(each for each in check_campaign(write_campaign(small_campaign)) if each.code == "missing_column")
+    before = small.read().penetration
+    small.replace(PEN, "load_N", heading)
+    missing = next(each for each in small.check() if each.code == "missing_column")
     assert repr(heading) in missing.action
     assert "'load_N'" in missing.action
-    small_campaign["campaign.toml"] += f'\n[columns]\n"{heading}" = "load_N"\n'
-    read = read_campaign(write_campaign(small_campaign)).penetration
+    small["campaign.toml"] += f'\n[columns]\n"{heading}" = "load_N"\n'
+    read = present(small.read().penetration)
     assert before is not None
-    assert read is not None
     assert read.load == pytest.approx(newtons * before.load)
 
 
-def test_points_in_a_file_of_commas(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_points_in_a_file_of_commas(small: SmallCampaign) -> None:
     """Also a quoted comma counts, so that 1.234 could be a thousand."""
     text = "test;site;repeat;drop_cone_depth_mm\nC1;S;1;12,5\nC1;S;2;13,5\nC2;S;1;1.234\n"
-    problems = check_campaign(write_campaign({**small_campaign, CONE: text}))
-    errors = [problem for problem in problems if problem.severity == "error"]
+    errors = small.errors({CONE: text})
     assert [where(problem) for problem in errors] == [("not_a_number", CONE, 4, DROP_CONE_DEPTH, "C2", "1.234")]
     assert "decimal commas" in errors[0].action
     quoted = 'test,site,repeat,drop_cone_depth_mm\nC1,S,1,"12,5"\nC1,S,2,13\n'
-    problems = check_campaign(write_campaign({**small_campaign, CONE: quoted}))
+    problems = small.check({CONE: quoted})
     assert [where(problem) for problem in problems] == [("separator", CONE, None, None, None, "decimal comma")]
 
 
 @pytest.mark.parametrize(("cell", "separator", "mark"), [("12 mm", ",", "."), ("1x", ";", ",")])
 def test_a_cell_that_is_no_number_in_either_way_of_writing(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], cell: str, separator: str, mark: str
+    small: SmallCampaign, cell: str, separator: str, mark: str
 ) -> None:
     rows = ["test,site,repeat,drop_cone_depth_mm", f"C1,S,1,12{mark}5", f"C1,S,2,13{mark}5", f"C2,S,1,{cell}"]
     first, *others = (row.split(",", 3) for row in rows)
     text = "".join(separator.join(row) + "\n" for row in (first, *others))
-    problems = check_campaign(write_campaign({**small_campaign, CONE: text}))
-    (error,) = [problem for problem in problems if problem.severity == "error"]
+    (error,) = small.errors({CONE: text})
     assert where(error) == ("not_a_number", CONE, 4, DROP_CONE_DEPTH, "C2", cell)
     assert f" 12{mark}5" in error.action
 
 
-def test_text_in_a_column_that_nobody_named(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_text_in_a_column_that_nobody_named(small: SmallCampaign) -> None:
     text = "sample,,site,snow_density_kg_per_m3\nD1,,S,400\nD2,?,S,300\n"
-    problems = check_campaign(write_campaign({**small_campaign, DENSITY: text}))
+    problems = small.check({DENSITY: text})
     assert [where(problem) for problem in problems] == [("unreadable_file", DENSITY, 3, None, None, "?")]
 
 
 @pytest.mark.parametrize("file", [SHEAR, DENSITY, CONE])
 @pytest.mark.parametrize("content", [b"", "header"])
-def test_empty_files(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], file: str, content: str | bytes
-) -> None:
+def test_empty_files(small: SmallCampaign, file: str, content: str | bytes) -> None:
     if content == "header":
-        content = small_campaign[file].splitlines()[0] + "\r\n;,\t\r\n"
+        content = small[file].splitlines()[0] + "\r\n;,\t\r\n"
         assert content.startswith(("experiment", "sample", "test"))
         content = content.replace(";,\t", ",,")
-    problems = check_campaign(write_campaign({**small_campaign, file: content}))
+    problems = small.check({file: content})
     assert [(problem.severity, problem.code, problem.file) for problem in problems] == [("error", "empty_file", file)]
 
 
 @pytest.mark.parametrize("file", [PEN, SHEAR, DENSITY, CONE, "campaign.toml", "corrections.csv"])
-def test_binary_files(write_campaign: WriteCampaign, small_campaign: dict[str, str], file: str) -> None:
+def test_binary_files(small: SmallCampaign, file: str) -> None:
     workbook = b"PK\x03\x04\x14\x00\x06\x00\x08\x00\x00\x00!\x00"
-    (problem,) = check_campaign(write_campaign({**small_campaign, file: workbook}))
+    (problem,) = small.check({file: workbook})
     assert (problem.severity, problem.code, problem.file) == ("error", "unreadable_file", file)
     assert "CSV" in problem.action
 
 
-def test_no_measurements(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    description = {"campaign.toml": small_campaign["campaign.toml"]}
-    (problem,) = check_campaign(write_campaign(description))
+def test_no_measurements(small: SmallCampaign) -> None:
+    for name in (PEN, SHEAR, DENSITY, CONE):
+        del small[name]
+    (problem,) = small.check()
     assert (problem.severity, problem.code, problem.file) == ("error", "unreadable_file", PEN)
     assert SHEAR in problem.allowed
 
 
-def test_reading_ends_after_many_errors(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_reading_ends_after_many_errors(small: SmallCampaign) -> None:
     """100,000 wrong rows; the last problem names the row at which reading ended."""
-    small_campaign[CONE] += "9\n" * 100_000
-    problems = [each for each in check_campaign(write_campaign(small_campaign)) if each.file == CONE]
+    small[CONE] += "9\n" * 100_000
+    problems = [each for each in small.check() if each.file == CONE]
     assert 10_000 < len(problems) < 30_000
     (last,) = (each for each in problems if each.code == "unreadable_file")
-    assert last.row is not None
-    assert last.row < 15_000
+    assert present(last.row) < 15_000
 
 
-def test_repeated_rows_are_listed_up_to_a_number(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    *_, row = small_campaign[DENSITY].splitlines()
-    small_campaign[DENSITY] += f"{row}\n" * 5000
-    problems = [each for each in check_campaign(write_campaign(small_campaign)) if each.code == "repeated_row"]
+def test_repeated_rows_are_listed_up_to_a_number(small: SmallCampaign) -> None:
+    *_, row = small[DENSITY].splitlines()
+    small[DENSITY] += f"{row}\n" * 5000
+    problems = [each for each in small.check() if each.code == "repeated_row"]
     assert len(problems) == 1001
     assert sum(each.row is None and "4000" in str(each.value) for each in problems) == 1
 

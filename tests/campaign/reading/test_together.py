@@ -1,16 +1,17 @@
 """Files that belong to one campaign: branches of a series, and tables read together."""
 
 import math
-from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.present import present
 
 from skisnow.campaign import check_campaign, read_campaign
 from skisnow.campaign.problems import Problem, lines_of
 
-WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
+from ..conftest import SmallCampaign
+
 Where = tuple[str, str, int | None, str | None, str | None, str | None]
 
 PEN, SHEAR, DENSITY, CONE = "penetration.csv", "shear.csv", "density.csv", "drop_cone.csv"
@@ -38,40 +39,33 @@ CHANGES: list[tuple[str, str, str, list[Where]]] = [
 
 
 @pytest.mark.parametrize(("file", "old", "new", "expected"), CHANGES)
-def test_rows_that_disagree(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], file: str, old: str, new: str, expected: list[Where]
-) -> None:
-    assert small_campaign[file].count(old) == 1
-    small_campaign[file] = small_campaign[file].replace(old, new)
-    assert [where(problem) for problem in check_campaign(write_campaign(small_campaign))] == expected
+def test_rows_that_disagree(small: SmallCampaign, file: str, old: str, new: str, expected: list[Where]) -> None:
+    assert small[file].count(old) == 1
+    small.replace(file, old, new)
+    assert [where(problem) for problem in small.check()] == expected
 
 
-def test_an_experiment_that_is_reported_in_two_places(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    small_campaign[PEN] += "P1,Süd,piece,30,280.5,5,a,,,\n"
-    (problem,) = check_campaign(write_campaign(small_campaign))
+def test_an_experiment_that_is_reported_in_two_places(small: SmallCampaign) -> None:
+    small[PEN] += "P1,Süd,piece,30,280.5,5,a,,,\n"
+    (problem,) = small.check()
     assert where(problem) == ("mixed_experiment", PEN, 7, "experiment", "P1", "P1")
     assert "row 2" in problem.allowed
 
 
-def test_the_spot_may_be_in_any_row(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("1.25,a", "1.25,").replace("3.75,a", "3.75,")
-    tests = read_campaign(write_campaign(small_campaign)).penetration
-    assert tests is not None
+def test_the_spot_may_be_in_any_row(small: SmallCampaign) -> None:
+    small[PEN] = small[PEN].replace("1.25,a", "1.25,").replace("3.75,a", "3.75,")
+    tests = present(small.read().penetration)
     assert tests.spot == ("a", "")
 
 
-def test_samples_of_one_name_are_fine(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign[DENSITY] = small_campaign[DENSITY].replace("D2", "D1")
-    assert check_campaign(write_campaign(small_campaign)) == ()
+def test_samples_of_one_name_are_fine(small: SmallCampaign) -> None:
+    small.replace(DENSITY, "D2", "D1")
+    assert small.check() == ()
 
 
-def test_unknown_tool_is_reported_once_in_each_experiment(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("piece", "Piece").replace("disc 100", "disc")
-    problems = check_campaign(write_campaign(small_campaign))
+def test_unknown_tool_is_reported_once_in_each_experiment(small: SmallCampaign) -> None:
+    small[PEN] = small[PEN].replace("piece", "Piece").replace("disc 100", "disc")
+    problems = small.check()
     assert [where(problem) for problem in problems] == [
         ("unknown_tool", PEN, 2, "tool", "P1", "Piece"),
         ("unknown_tool", PEN, 5, "tool", "P2", "disc"),
@@ -79,12 +73,10 @@ def test_unknown_tool_is_reported_once_in_each_experiment(
     assert "disc 100, piece, roll" in problems[0].allowed
 
 
-def test_unknown_tool_of_two_experiments_is_one_line(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    table = small_campaign[PEN].replace("piece", "Piece").replace("disc 100", "Piece")
-    small_campaign[PEN] = table.replace("P2,Nord,Piece,0", "P2,Nord,Piece,30")
-    problems = check_campaign(write_campaign(small_campaign))
+def test_unknown_tool_of_two_experiments_is_one_line(small: SmallCampaign) -> None:
+    table = small[PEN].replace("piece", "Piece").replace("disc 100", "Piece")
+    small[PEN] = table.replace("P2,Nord,Piece,0", "P2,Nord,Piece,30")
+    problems = small.check()
     lines = [line for line in lines_of(problems) if "unknown_tool" in line]
     assert [problem.experiment for problem in problems if problem.code == "unknown_tool"] == ["P1", "P2"]
     assert len(lines) == 1
@@ -92,39 +84,31 @@ def test_unknown_tool_of_two_experiments_is_one_line(
 
 
 @pytest.mark.parametrize("tool", ["disc 100", "roll"])
-def test_tools_without_an_edge_lie_flat(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], tool: str
-) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("disc 100,0", f"{tool},10")
-    problems = check_campaign(write_campaign(small_campaign))
+def test_tools_without_an_edge_lie_flat(small: SmallCampaign, tool: str) -> None:
+    small.replace(PEN, "disc 100,0", f"{tool},10")
+    problems = small.check()
     assert [where(problem) for problem in problems] == [("out_of_range", PEN, 5, "edge_angle_deg", "P2", "10")]
 
 
 @pytest.mark.parametrize(("angle", "warned"), [("60", False), ("60.5", True), ("89.9", True)])
-def test_steep_angles_are_warned_of(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], angle: str, warned: bool
-) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", f"piece,{angle}")
-    problems = check_campaign(write_campaign(small_campaign))
+def test_steep_angles_are_warned_of(small: SmallCampaign, angle: str, warned: bool) -> None:
+    small.replace(PEN, "piece,30", f"piece,{angle}")
+    problems = small.check()
     expected = ("angle_above_60", PEN, 2, "edge_angle_deg", "P1", angle)
     assert [(problem.severity, where(problem)) for problem in problems] == [("warning", expected)] * warned
 
 
 @pytest.mark.parametrize(("angle", "warned"), [("1.6", False), ("1.5708", True), ("0.5236", True)])
-def test_angles_that_look_like_radians(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], angle: str, warned: bool
-) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", f"piece,{angle}")
-    problems = check_campaign(write_campaign(small_campaign))
+def test_angles_that_look_like_radians(small: SmallCampaign, angle: str, warned: bool) -> None:
+    small.replace(PEN, "piece,30", f"piece,{angle}")
+    problems = small.check()
     expected = ("angles_look_like_radians", PEN, None, "edge_angle_deg", None, f"{angle} to {angle}")
     assert [(problem.severity, where(problem)) for problem in problems] == [("warning", expected)] * warned
 
 
-def test_flat_tests_alone_do_not_look_like_radians(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    small_campaign[PEN] = small_campaign[PEN].replace("piece,30", "piece,0")
-    assert check_campaign(write_campaign(small_campaign)) == ()
+def test_flat_tests_alone_do_not_look_like_radians(small: SmallCampaign) -> None:
+    small.replace(PEN, "piece,30", "piece,0")
+    assert small.check() == ()
 
 
 # Shear experiments of several rows: one moment for each turning angle
@@ -144,8 +128,7 @@ def written(folder: Path, *rows: str, head: str = HEAD + ",turning_angle_deg") -
 
 def test_the_row_of_the_largest_moment_is_the_experiment(tmp_path: Path) -> None:
     campaign = read_campaign(written(tmp_path, *TURNED, *ALONE))
-    tests = campaign.shear
-    assert tests is not None
+    tests = present(campaign.shear)
     assert tests.experiment == ("S1", "S2", "S3")
     assert tests.moment.tolist() == [30.0, 20.0, 22.0]
     assert tests.row.tolist() == [3, 5, 6]
@@ -159,8 +142,7 @@ def test_the_row_of_the_largest_moment_is_the_experiment(tmp_path: Path) -> None
 
 
 def test_without_angles_each_row_is_an_experiment(tmp_path: Path) -> None:
-    tests = read_campaign(written(tmp_path, *(row.rpartition(",")[0] for row in ALONE), head=HEAD)).shear
-    assert tests is not None
+    tests = present(read_campaign(written(tmp_path, *(row.rpartition(",")[0] for row in ALONE), head=HEAD)).shear)
     assert tests.turning is None
     assert len(tests) == 2
 
@@ -202,14 +184,12 @@ OTHER = [("P2", 10, 1.0, ""), ("P2", 30, 3.5, ""), ("P2", 10, 3.1, "unloading")]
 
 
 def test_both_branches_stand_apart_with_their_rows(tmp_path: Path) -> None:
-    tests = read_campaign(written_unloaded(tmp_path, *UP, *DOWN, *OTHER)).penetration
-    assert tests is not None
-    assert tests.unloading is not None
+    tests = present(read_campaign(written_unloaded(tmp_path, *UP, *DOWN, *OTHER)).penetration)
     assert tests.first.tolist() == [0, 3, 5]
     assert tests.row.tolist() == [2, 3, 4, 7, 8]
     np.testing.assert_allclose(tests.penetration_depth, np.array([1.0, 2.0, 3.0, 1.0, 3.5]) * 1e-3)
     assert tests.further["time"] == ("t10l", "t20", "t30L", "t10", "t30")
-    back = tests.unloading
+    back = present(tests.unloading)
     assert back.first.tolist() == [0, 2, 3]
     assert back.row.tolist() == [5, 6, 9]
     assert back.load.tolist() == [20.0, 10.0, 10.0]
@@ -224,15 +204,12 @@ def test_a_depth_read_once_more_stands_beside_its_reading(tmp_path: Path) -> Non
     cells = ["depth_after_mm", "", "2.05", "", "9", ""]
     text = "\n".join(f"{line},{cell}" for line, cell in zip(lines, cells, strict=True))
     (folder / "penetration.csv").write_text(text + "\n", encoding="utf-8")
-    tests = read_campaign(folder).penetration
-    assert tests is not None
-    assert tests.depth_after is not None
-    np.testing.assert_allclose(tests.depth_after, [np.nan, 2.05e-3, np.nan])
+    tests = present(read_campaign(folder).penetration)
+    np.testing.assert_allclose(present(tests.depth_after), [np.nan, 2.05e-3, np.nan])
 
 
 def test_without_unloading_there_is_none(tmp_path: Path) -> None:
-    tests = read_campaign(written_unloaded(tmp_path, *UP)).penetration
-    assert tests is not None
+    tests = present(read_campaign(written_unloaded(tmp_path, *UP)).penetration)
     assert tests.unloading is None
 
 
@@ -249,6 +226,5 @@ def test_impossible_input_is_rejected_with_its_row(
 ) -> None:
     (found,) = errors(written_unloaded(tmp_path, *rows))
     assert (found.code, found.row, found.column, found.file) == (code, row, "branch", "penetration.csv")
-    assert found.allowed is not None
-    assert told in found.allowed
+    assert told in present(found.allowed)
     assert "another experiment" in found.action

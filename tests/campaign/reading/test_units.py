@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.key_names import SNOW_DENSITY
+from tests.present import present
 
 from skisnow import write_reference
 from skisnow.campaign import Campaign, Problem, check_campaign, read_campaign
@@ -67,8 +68,7 @@ def problems(folder: Path) -> list[Problem]:
 
 
 def loads_of(read: Campaign) -> list[float]:
-    assert read.penetration is not None
-    return [float(each) for each in read.penetration.load]
+    return [float(each) for each in present(read.penetration).load]
 
 
 def test_loads_that_look_like_kg_are_rejected_with_both_readings(write_campaign: WriteCampaign) -> None:
@@ -181,8 +181,7 @@ def test_stated_lever_arms_are_believed(
 ) -> None:
     folder = write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{cell},23.1\n", arm=arm, load="Last [N]"))
     assert not [each for each in problems(folder) if each.severity == "error"]
-    shear = read_campaign(folder).shear
-    assert shear is not None
+    shear = present(read_campaign(folder).shear)
     assert float(shear.lever_arm[0]) == pytest.approx(1e-3 * millimetres)
 
 
@@ -232,8 +231,7 @@ def test_densities_are_converted(
     write_campaign: WriteCampaign, heading: str, column: str, cell: float, value: float
 ) -> None:
     files = campaign(load="Last [N]", mapped={heading: column}, density=f"Probe,Ort,{heading}\nD1,A,{cell}\n")
-    density = read_campaign(write_campaign(files)).density
-    assert density is not None
+    density = present(read_campaign(write_campaign(files)).density)
     assert density.snow_density.tolist() == pytest.approx([value])
 
 
@@ -244,8 +242,7 @@ def test_densities_are_converted(
 def test_angles_are_converted(write_campaign: WriteCampaign, heading: str, cell: float, degrees: float) -> None:
     files = campaign(load="Last [N]", mapped={heading: "edge_angle_deg"})
     files["penetration.csv"] = f"Versuch,Ort,Werkzeug,{heading},Last [N],Tiefe\n1,A,ski,{cell},100.5,1.2\n"
-    tests = read_campaign(write_campaign(files)).penetration
-    assert tests is not None
+    tests = present(read_campaign(write_campaign(files)).penetration)
     assert np.degrees(tests.edge_angle).tolist() == pytest.approx([degrees])
 
 
@@ -290,8 +287,7 @@ def test_a_row_of_units_below_the_headings_is_believed(write_campaign: WriteCamp
     folder = write_campaign(campaign(f"{units}\n{LOADS}"))
     read = read_campaign(folder)
     assert loads_of(read) == pytest.approx([98.0665, 294.1995, 490.3325])
-    assert read.penetration is not None
-    assert read.penetration.row.tolist() == [3, 4, 5]
+    assert present(read.penetration).row.tolist() == [3, 4, 5]
     assert not problems(folder)
 
 

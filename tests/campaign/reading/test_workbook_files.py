@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.present import present
 
 from skisnow._support.errors import FieldDataError
-from skisnow.campaign import Campaign, campaign_of_files, check_campaign, read_campaign
+from skisnow.campaign import Campaign, campaign_of_files, read_campaign
 from skisnow.estimation import analyse, quality_flags, results_dict
 
 from ...support.user_files.test_workbook import packed
+from ..conftest import SmallCampaign
 from ..recordings import plain_snow
 
-WriteCampaign = Callable[[Mapping[str, str | bytes]], Path]
 TABLES = ("penetration", "shear", "density", "drop_cone")
 DESCRIBED: dict[str, list[list[Any]]] = {
     "campaign": [
@@ -46,12 +47,10 @@ def cells(text: str) -> list[list[Any]]:
     return [[cell(word) for word in row] for row in csv.reader(io.StringIO(text))]
 
 
-def test_a_workbook_says_what_the_files_say(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str], tmp_path: Path
-) -> None:
-    written = read_campaign(write_campaign(small_campaign))
+def test_a_workbook_says_what_the_files_say(small: SmallCampaign, tmp_path: Path) -> None:
+    written = small.read()
     workbook = tmp_path / "Hang.xlsx"
-    workbook.write_bytes(packed(**DESCRIBED, **{name: cells(small_campaign[f"{name}.csv"]) for name in TABLES}))
+    workbook.write_bytes(packed(**DESCRIBED, **{name: cells(small[f"{name}.csv"]) for name in TABLES}))
     found = read_campaign(workbook)
     assert found.problems == written.problems == ()
     described = ("name", "place", "observers", "tools", "plates", "gauge_resolution", "load_uncertainty", "load_steps")
@@ -65,9 +64,7 @@ def test_a_workbook_says_what_the_files_say(
 PRESSED = "Hang.xlsx, sheet Penetration"
 
 
-def test_sheets_beside_files_and_problems_by_sheet_and_row(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
+def test_sheets_beside_files_and_problems_by_sheet_and_row(small: SmallCampaign) -> None:
     rows: list[list[Any]] = [["Versuch", "Ort", "Stempel", "Winkel [°]", "Last [N]", "Tiefe [mm]", "Datum"], []]
     rows.append(["P1", "Süd", "piece", 30.0, 70.5, 1.25, datetime(2026, 11, 23, 9, 10)])
     rows.append(["P1", "Süd", "piece", 30.0, 140.5, "zwei", None])
@@ -75,14 +72,13 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(
     line = "".join(
         f'columns.penetration."{written}" = "{name}"\n' for written, name in zip(rows[0], headings, strict=True)
     )
-    files: dict[str, str | bytes] = {"shear.csv": small_campaign["shear.csv"], "~$Hang.xlsx": b"open"}
-    files["campaign.toml"] = line + small_campaign["campaign.toml"]
-    files["Hang.xlsx"] = packed(Penetration=rows, Diagramm=[["x"]])
-    (problem,) = check_campaign(write_campaign(files))
+    for name in ("penetration.csv", "density.csv", "drop_cone.csv"):
+        del small[name]
+    small["campaign.toml"] = line + small["campaign.toml"]
+    (problem,) = small.check({"~$Hang.xlsx": b"open", "Hang.xlsx": packed(Penetration=rows, Diagramm=[["x"]])})
     assert (problem.code, problem.file, problem.row) == ("not_a_number", PRESSED, 4)
     rows[3][5] = 2.5
-    files["Hang.xlsx"] = packed(Penetration=rows, Diagramm=[["x"]])
-    campaign = read_campaign(write_campaign(files))
+    campaign = small.read({"Hang.xlsx": packed(Penetration=rows, Diagramm=[["x"]])})
     assert campaign.penetration is not None
     assert campaign.penetration.row.tolist() == [3, 4]
     assert campaign.penetration.further["time"][0] == "2026-11-23T09:10:00"
@@ -91,27 +87,22 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(
     assert campaign.unread_files == (PRESSED.replace("Penetration", "Diagramm"),)
 
 
-def test_what_is_there_twice_is_rejected(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
+def test_what_is_there_twice_is_rejected(small: SmallCampaign) -> None:
     book = packed(density=[["sample"]])
-    (problem,) = check_campaign(write_campaign({**small_campaign, "Hang.xlsx": book}))
+    (problem,) = small.check({"Hang.xlsx": book})
     assert (problem.code, problem.file, problem.value) == ("unreadable_file", "Hang.xlsx, sheet density", "density.csv")
 
 
-def test_a_sheet_that_looks_like_a_table_is_named(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
+def test_a_sheet_that_looks_like_a_table_is_named(small: SmallCampaign) -> None:
     rows = cells("Versuch,Ort,Platte,Winkel,Tiefe,Hebelarm,Moment\nS1,Süd,blade,90,5,300,12\n")
-    files: dict[str, str | bytes] = {**small_campaign, "Hang.xlsx": packed(Scherung=rows)}
-    del files["shear.csv"]
-    (problem,) = check_campaign(write_campaign(files))
+    del small["shear.csv"]
+    (problem,) = small.check({"Hang.xlsx": packed(Scherung=rows)})
     assert (problem.severity, problem.code, problem.value) == ("warning", "unread_sheet", "Scherung")
     assert "looks like shear" in problem.action
 
 
-def test_a_workbook_that_cannot_be_read_is_a_problem(
-    write_campaign: WriteCampaign, small_campaign: dict[str, str]
-) -> None:
-    (problem,) = check_campaign(write_campaign({**small_campaign, "Hang.xlsx": b"PK\3\4"}))
+def test_a_workbook_that_cannot_be_read_is_a_problem(small: SmallCampaign) -> None:
+    (problem,) = small.check({"Hang.xlsx": b"PK\3\4"})
     assert (problem.severity, problem.code, problem.file) == ("error", "unreadable_file", "Hang.xlsx")
     assert ".xlsx" in problem.action
 
@@ -130,41 +121,39 @@ def numbers_of(campaign: Campaign) -> dict[str, object]:
     }
 
 
-def test_results_are_those_of_the_folder(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign["notes.txt"] = "wind"
-    folder = read_campaign(write_campaign(small_campaign))
-    campaign = campaign_of_files(at_hand(small_campaign))
+def test_results_are_those_of_the_folder(small: SmallCampaign) -> None:
+    small["notes.txt"] = "wind"
+    folder = small.read()
+    campaign = campaign_of_files(at_hand(small))
     assert numbers_of(campaign) == numbers_of(folder)
     assert campaign.unread_files == folder.unread_files == ("notes.txt",)
-    assert campaign.penetration is not None
-    assert folder.penetration is not None
-    assert np.array_equal(campaign.penetration.load, folder.penetration.load)
+    assert np.array_equal(present(campaign.penetration).load, present(folder.penetration).load)
 
 
-def test_nothing_is_opened(small_campaign: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_opened(small: SmallCampaign, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("the disk was asked")
 
-    files = at_hand(small_campaign)
+    files = at_hand(small)
     for name in ("stat", "lstat", "scandir", "listdir"):
         monkeypatch.setattr(os, name, refused)
     monkeypatch.setattr(Path, "open", refused)
     assert campaign_of_files(files).name == "north slope"
 
 
-def test_errors_are_those_of_the_folder(write_campaign: WriteCampaign, small_campaign: dict[str, str]) -> None:
-    small_campaign["shear.csv"] = small_campaign["shear.csv"].replace("12.25", "twelve")
-    small_campaign["Density.csv"] = small_campaign.pop("density.csv")
+def test_errors_are_those_of_the_folder(small: SmallCampaign) -> None:
+    small.replace("shear.csv", "12.25", "twelve")
+    small["Density.csv"] = small.pop("density.csv")
     with pytest.raises(FieldDataError) as told:
-        read_campaign(write_campaign(small_campaign))
+        small.read()
     with pytest.raises(FieldDataError) as found:
-        campaign_of_files(at_hand(small_campaign))
+        campaign_of_files(at_hand(small))
     assert found.value.problems == told.value.problems
     assert len(found.value.problems) == 2
 
 
-def test_files_that_are_named_alone_are_reported(small_campaign: dict[str, str]) -> None:
-    campaign = campaign_of_files(at_hand(small_campaign), others=("photo.jpg", ".hidden"))
+def test_files_that_are_named_alone_are_reported(small: SmallCampaign) -> None:
+    campaign = campaign_of_files(at_hand(small), others=("photo.jpg", ".hidden"))
     assert campaign.unread_files == ("photo.jpg",)
 
 
@@ -176,14 +165,10 @@ SOUND = plain_snow(1.0)
 HEAD = "recording,site,file\n"
 
 
-def test_recordings_are_read_in_the_order_of_the_table(small_campaign: dict[str, str], write_campaign: Write) -> None:
+def test_recordings_are_read_in_the_order_of_the_table(small: SmallCampaign) -> None:
     table = "recording,site,spot,file,surface_mm,operator\nb,Süd,a,two.PNT,30.5,X\na,Nord,,one.pnt,,Y\n"
-    folder = write_campaign(
-        small_campaign | {"snow_micro_pen.csv": table, "one.pnt": SOUND, "two.PNT": SOUND, "three.pnt": SOUND}
-    )
-    campaign = read_campaign(folder)
-    found = campaign.snow_micro_pen
-    assert found is not None
+    campaign = small.read({"snow_micro_pen.csv": table, "one.pnt": SOUND, "two.PNT": SOUND, "three.pnt": SOUND})
+    found = present(campaign.snow_micro_pen)
     assert (found.recording, found.site, found.spot) == (("b", "a"), ("Süd", "Nord"), ("a", ""))
     assert found.surface[0] == pytest.approx(0.0305)
     assert found.further == {"operator": ("X", "Y")}
@@ -204,21 +189,16 @@ def test_recordings_are_read_in_the_order_of_the_table(small_campaign: dict[str,
         ("r,,one.pnt\n", 2, "site", "non-empty"),
     ],
 )
-def test_wrong_cells(
-    small_campaign: dict[str, str], write_campaign: Write, rows: str, row: int, column: str, words: str
-) -> None:
+def test_wrong_cells(small: SmallCampaign, rows: str, row: int, column: str, words: str) -> None:
     further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + rows, "one.pnt": SOUND, "two.pnt": SOUND}
-    problems = check_campaign(write_campaign({**small_campaign, **further}))
-    (problem,) = [each for each in problems if each.severity == "error"]
+    (problem,) = small.errors(further)
     assert (problem.row, problem.column) == (row, column)
     assert words in problem.allowed
 
 
-def test_a_damaged_recording_is_reported_with_its_name(small_campaign: dict[str, str], write_campaign: Write) -> None:
+def test_a_damaged_recording_is_reported_with_its_name(small: SmallCampaign) -> None:
     further: dict[str, str | bytes] = {"snow_micro_pen.csv": HEAD + "r7,Süd,one.pnt\n", "one.pnt": SOUND[:5000]}
-    (problem,) = [
-        each for each in check_campaign(write_campaign({**small_campaign, **further})) if each.severity == "error"
-    ]
+    (problem,) = small.errors(further)
     assert (problem.file, problem.experiment, problem.code) == ("one.pnt", "r7", "unreadable_file")
     assert "cut off" in problem.action
 
@@ -233,10 +213,8 @@ def test_a_damaged_recording_is_reported_with_its_name(small_campaign: dict[str,
         ("to_dept_mm = 4", "snow_micro_pen.to_dept_mm", "to_depth_mm"),
     ],
 )
-def test_wrong_settings(
-    small_campaign: dict[str, str], write_campaign: Write, section: str, column: str, words: str
-) -> None:
-    small_campaign["campaign.toml"] += f"\n[snow_micro_pen]\n{section}\n"
-    (problem,) = [each for each in check_campaign(write_campaign(small_campaign)) if each.severity == "error"]
+def test_wrong_settings(small: SmallCampaign, section: str, column: str, words: str) -> None:
+    small["campaign.toml"] += f"\n[snow_micro_pen]\n{section}\n"
+    (problem,) = small.errors()
     assert (problem.code, problem.column) == ("bad_toml", column)
     assert words in problem.allowed

@@ -11,6 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from tests.present import present
 
 import skisnow
 from skisnow._support.errors import OutputError, ParameterError
@@ -396,21 +397,19 @@ def test_what_is_written_of_turning_and_waiting_is_read_back(seed: int, tmp_path
     write_reference(tmp_path, seed=seed, turning_angles=True, creep=True)
     read = read_campaign(tmp_path)
     assert read.shear is not None
-    assert read.penetration is not None
     assert read.shear.turning is not None
     assert drawn.shear.turning is not None
     assert read.shear.turning.turning_angle == pytest.approx(drawn.shear.turning.turning_angle, abs=1e-12)
     assert np.array_equal(read.shear.turning.moment, drawn.shear.turning.moment)
     assert np.array_equal(read.shear.row, drawn.shear.row)
-    assert read.penetration.depth_after == pytest.approx(drawn.penetration.depth_after, nan_ok=True)
+    assert present(read.penetration).depth_after == pytest.approx(drawn.penetration.depth_after, nan_ok=True)
 
 
 def test_u_y_is_found_where_nothing_errs() -> None:
     """Without errors, to the rounding of moments and of angles, 0.0001° at 250 mm: 0.4 µm of 250."""
     noise = dataclasses.replace(QUIET, turning_sd=0.0)
     drawn = reference_campaign(1, noise=noise, turning_angles=True)
-    found = skisnow.analyse(drawn.campaign(), n_resamples=100).shear
-    assert found is not None
+    found = present(skisnow.analyse(drawn.campaign(), n_resamples=100).shear)
     assert found.displacement.value == pytest.approx(drawn.shear_displacement, rel=0.01)
     assert np.median(drawn.shear_displacement) == pytest.approx(0.25e-3, rel=0.1)
 
@@ -418,11 +417,9 @@ def test_u_y_is_found_where_nothing_errs() -> None:
 def test_the_interval_of_u_y_holds_its_median_and_creep_is_flagged() -> None:
     analysis = skisnow.analyse(reference_campaign(1, turning_angles=True, creep=True).campaign(), n_resamples=100)
     snow = analysis.snow()
-    assert snow.shear_displacement_interval is not None
-    low, high = snow.shear_displacement_interval
+    low, high = present(snow.shear_displacement_interval)
     assert low < 0.25e-3 < high
-    assert analysis.campaign.penetration is not None
     flagged = screen_penetration(analysis.campaign)["creeps"].tolist()
-    sites = [site for site, flag in zip(analysis.campaign.penetration.site, flagged, strict=True) if flag]
+    sites = [site for site, flag in zip(present(analysis.campaign.penetration).site, flagged, strict=True) if flag]
     assert set(sites) == {"site B"}
     assert len(sites) > 20  # of 30 series with seven depths, each of which grows by more than 1 % in e^(-1/3) = 72 %

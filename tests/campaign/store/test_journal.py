@@ -9,6 +9,7 @@ import pytest
 from sqlalchemy import insert
 from sqlalchemy.exc import IntegrityError
 from tests.coded import raises
+from tests.present import present
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
@@ -67,8 +68,7 @@ def test_what_was_entered_is_read_as_a_campaign(store: Store, tmp_path: Path) ->
     id_, _ = campaign_with(journals, "1.5", "2.25", "3")
     write_campaign(replay_journal(journals.entries(id_)), tmp_path)
     campaign = read_campaign(tmp_path)
-    assert campaign.penetration is not None
-    series = campaign.penetration.series(0)
+    series = present(campaign.penetration).series(0)
     assert series.load.tolist() == [20.0, 40.0, 60.0]
     np.testing.assert_allclose(series.penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
     np.testing.assert_allclose(series.edge_angle, np.pi / 6, rtol=1e-15)
@@ -116,8 +116,7 @@ def test_a_correction_keeps_the_first_reading_and_what_came_between(store: Store
     assert lines[1].split(",")[2:6] == ["3", "depth_mm", "22.5", "2.52"] and ",2.52,2.25," in lines[2]
     write_campaign(now, tmp_path)
     campaign = read_campaign(tmp_path)
-    assert campaign.penetration is not None
-    np.testing.assert_allclose(campaign.penetration.penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
+    np.testing.assert_allclose(present(campaign.penetration).penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
     assert [each.old for each in campaign.corrections] == ["22.5", "2.52"]
 
 
@@ -280,8 +279,7 @@ def correction(test: str, cells: dict[str, str]) -> NewEntry:
 
 def depths(folder: Path) -> dict[str, list[float]]:
     """Depths (mm) of each series as an analysis reads them."""
-    tests = read_campaign(folder).penetration
-    assert tests is not None
+    tests = present(read_campaign(folder).penetration)
     found = {name: tests.series(index).penetration_depth * 1e3 for index, name in enumerate(tests.experiment)}
     return {name: [round(float(depth), 9) for depth in each] for name, each in found.items()}
 

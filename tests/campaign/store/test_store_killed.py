@@ -15,6 +15,7 @@ from typing import IO
 
 import numpy as np
 import pytest
+from tests.present import present
 
 from skisnow.campaign.store import Journals, Store, sync
 
@@ -92,8 +93,7 @@ def nursery() -> Iterator[Nursery]:
         [sys.executable, "-c", NURSERY], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
     ) as process:
         assert process.stdin is not None
-        assert process.stdout is not None
-        yield Nursery(process, process.stdin, process.stdout)
+        yield Nursery(process, process.stdin, present(process.stdout))
         process.stdin.close()
         assert process.wait(timeout=300) == 0
 
@@ -243,8 +243,7 @@ def syncing_nursery() -> Iterator[SyncingNursery]:
         env=environment,
     ) as process:
         yield SyncingNursery(process)
-        assert process.stdin is not None
-        process.stdin.close()
+        present(process.stdin).close()
         assert process.wait(timeout=300) == 0
 
 

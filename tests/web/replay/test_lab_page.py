@@ -17,6 +17,7 @@ from skisnow.replay.skier import JOINTS
 from skisnow.report.run.file import write_run_file
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import in_sections
+from tests.present import present
 
 from ...replay.test_skier import run_of_skier
 from ...report.runs import circle_run
@@ -139,8 +140,9 @@ def replay() -> Replay:
 
 @pytest.fixture(scope="module")
 def seen(drawing_chromium: Any, replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Watched]:
-    assert replay.gate_times is not None
-    ghost = replace(replay, title="its ghost", time=replay.time + 7.0, gate_times=replay.gate_times + np.array(LATER))
+    ghost = replace(
+        replay, title="its ghost", time=replay.time + 7.0, gate_times=present(replay.gate_times) + np.array(LATER)
+    )
     page = write_replay(replay, tmp_path_factory.mktemp("page") / "replay.html", ghost=ghost)
     watched = Watched(drawing_chromium, page.as_uri())
     yield watched
@@ -148,7 +150,6 @@ def seen(drawing_chromium: Any, replay: Replay, tmp_path_factory: pytest.TempPat
 
 
 def test_parts_stand_between_the_joints(seen: Watched, replay: Replay) -> None:
-    assert replay.skier is not None
     frame = 5
     turn = Rotation.from_quat(replay.attitude[frame], scalar_first=True)
     for part, joint in (("left thigh", "left knee"), ("right forearm", "right elbow"), ("head", "neck")):
@@ -157,7 +158,7 @@ def test_parts_stand_between_the_joints(seen: Watched, replay: Replay) -> None:
             part.updateWorldMatrix(true, false);
             const back = replay.stage.space.matrixWorld.clone().invert();
             return Array.from(part.matrixWorld.clone().premultiply(back).elements.slice(12, 15));"""
-        expected = replay.place[frame] + turn.apply(replay.skier.joints[frame, JOINTS.index(joint)])
+        expected = replay.place[frame] + turn.apply(present(replay.skier).joints[frame, JOINTS.index(joint)])
         assert seen.does(script) == pytest.approx(expected, abs=1e-4), part
     assert seen.page.get_by_text("Assumed: knees").count() == 1
     red = seen.picture().reshape(-1, 3)
@@ -166,8 +167,7 @@ def test_parts_stand_between_the_joints(seen: Watched, replay: Replay) -> None:
 
 
 def test_the_gap_is_reported_when_both_have_passed_a_gate(seen: Watched, replay: Replay) -> None:
-    assert replay.gate_times is not None
-    first, second = (replay.time[0] + replay.gate_times).tolist()
+    first, second = (replay.time[0] + present(replay.gate_times)).tolist()
     told = []
     for time in (first + 0.2, first + 0.3, second + 0.01):
         seen.does(f"replay.seek({time})")
