@@ -175,6 +175,7 @@ def test_bytes_and_file_hold_the_skier_and_its_gates(run: Run, replay: Replay, t
     of_file = replay_of_file(folder)
     assert of_file.skier is not None
     assert of_file.skier.height == pytest.approx(HEIGHT)
+    assert back.skier.weight == of_file.skier.weight == 75.0 * run.scenario.gravity
     assert of_file.skier.joints == pytest.approx(replay.skier.joints, abs=1e-6)
     assert dict(of_file.facts)["Skis"].startswith("giant-slalom, ")
 

@@ -187,13 +187,13 @@ def _words(replay: Replay) -> dict[str, Any]:
 
 
 def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
-    """Height of the body, names of the joints, and joints and sizes of the parts' meshes."""
+    """Height and weight of the body, names of the joints, and joints and sizes of the parts' meshes."""
     parts = [
         {"name": part.name, "start": part.start, "end": part.end, "vertices": len(part.mesh.vertices),
          "triangles": len(part.mesh.pieces)}
         for part in skier_parts(skier.height)
     ]  # fmt: skip
-    return {"height": skier.height, "joints": list(JOINTS), "parts": parts}
+    return {"height": skier.height, "weight": skier.weight, "joints": list(JOINTS), "parts": parts}
 
 
 def _pack(array_type: _ArrayType, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
@@ -235,7 +235,8 @@ def _build(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay:
         terrain = ReplayTerrain(**some("x", "y", "height", before="terrain_"), grade=(grade[0], grade[1]))
     skier = None
     if "skier_joints" in arrays:
-        skier = ReplaySkier(height=header["skier"]["height"], joints=arrays["skier_joints"])
+        body = header["skier"]
+        skier = ReplaySkier(height=body["height"], weight=body["weight"], joints=arrays["skier_joints"])
     track = None
     if "track_place" in arrays:
         track = ReplayTrack(name=header["track_name"], place=arrays["track_place"], time=arrays.get("track_time"))

@@ -32,7 +32,7 @@ from .replay import (
     groove_times,
     quaternions,
 )
-from .skier import replay_skier
+from .skier import drawn_joints
 
 _AROUND: Final = 30.0
 """Distance around a run with measured heights (m); beyond it the slope is a plane."""
@@ -50,7 +50,7 @@ class Setting:
     line_spacing: distance of the snow's lines along the path (m).
     edge_angle, stance_width, centre_of_mass_height: sizes of the sledge (rad, m, m).
     course: course in the scenario's axes, for its gates.
-    skier_height: height of the skier's body (m) (default: a sledge).
+    body: height (m) and weight (N) of the skier's body (default: a sledge).
     facts: lines of name and value for the reader.
     """
 
@@ -62,7 +62,7 @@ class Setting:
     line_spacing: float
     facts: tuple[tuple[str, str], ...]
     course: Course | None = None
-    skier_height: float | None = None
+    body: tuple[float, float] | None = None
 
 
 def replay_of_run(
@@ -132,7 +132,7 @@ def _setting(run: Run) -> Setting:
         line_spacing=run.numbers["line_spacing_m"],
         facts=facts,
         course=scenario.course,
-        skier_height=height_of(sledge.mass, sledge.inertia[0]) if scenario.skier else None,
+        body=(height_of(sledge.mass, sledge.inertia[0]), sledge.mass * scenario.gravity) if scenario.skier else None,
     )
 
 
@@ -189,7 +189,7 @@ def assemble_replay(
         track=None if track is None else _on_the_snow(track, slope),
         gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
         gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting, boots),
-        skier=None if setting.skier_height is None else _skier(arrays, setting.skier_height, boots),
+        skier=None if setting.body is None else _skier(arrays, *setting.body, boots),
     )
 
 
@@ -215,12 +215,15 @@ def _boot_axes(boots: ReplayBoots) -> FloatArray:
     return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
 
 
-def _skier(arrays: Mapping[str, FloatArray], height: float, boots: ReplayBoots | None) -> ReplaySkier | None:
+def _skier(
+    arrays: Mapping[str, FloatArray], height: float, weight: float, boots: ReplayBoots | None
+) -> ReplaySkier | None:
     """Skier of a run; None without moving boots."""
     if boots is None:
         return None
     axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
-    return replay_skier(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
+    joints = drawn_joints(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
+    return ReplaySkier(height=height, weight=weight, joints=joints)
 
 
 def _profile(slope: Profile) -> FloatArray:

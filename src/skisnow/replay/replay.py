@@ -32,13 +32,14 @@ class ReplayBoots:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ReplaySkier:
-    """A skier: height of the body (m), and drawn joints (n, 17, 3).
+    """A skier: height (m) and weight (N) of the body, and drawn joints (n, 17, 3).
 
     The joints are relative to the middle between the boots, in the body's axes (m) and in the order of
     `skisnow.replay.skier.JOINTS`.
     """
 
     height: float
+    weight: float
     joints: FloatArray
 
 

@@ -130,7 +130,8 @@ def _values(file: Any, name: str) -> FloatArray:
 def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
     ski, slope = ski or _ski(path, values), _slope(path, values)
     has_skier, edge_angle = values.get("skier.steers") is not None, needed_value(values, "sledge.edge_angle_deg")
-    inertia = needed_value(values, "sledge.inertia_kg_m2")
+    mass, inertia = needed_value(values, "sledge.mass_kg"), needed_value(values, "sledge.inertia_kg_m2")
+    body = height_of(mass, inertia[0]), mass * needed_value(values, "slope.gravity_m_per_s2")
     return Setting(
         slope=slope,
         course=_course(path, values, slope),
@@ -146,7 +147,7 @@ def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, s
             ratio=needed_value(values, "snow.unloading_ratio"),
             skis=skis_words(ski.name, None if has_skier else edge_angle),
         ),
-        skier_height=height_of(needed_value(values, "sledge.mass_kg"), inertia[0]) if has_skier else None,
+        body=body if has_skier else None,
     )
 
 

@@ -46,10 +46,10 @@ _ROUNDS: Final = 12
 """Iterations; each one reduces the error of the centre of mass about five times."""
 
 
-def replay_skier(
+def drawn_joints(
     height: float, place: FloatArray, attitude: FloatArray, boots: tuple[FloatArray, FloatArray], centre: FloatArray
-) -> ReplaySkier:
-    """Drawn skier of a run.
+) -> FloatArray:
+    """Drawn joints (n, 17, 3) of a skier, as in `ReplaySkier`.
 
     place, attitude: origin (n, 3) (m) and axes as columns (n, 3, 3) of the frame of the joints.
     boots: places (n, 2, 3) (m) and axes as rows (n, 2, 3, 3) of the boots: ahead, left across the base, off it.
@@ -64,7 +64,7 @@ def replay_skier(
         pelvis = pelvis + centre - centre_of_mass(joints)
     joints = _joints(height, body, _within_reach(pelvis, ankle, body[1], height), ankle, boots[1])
     relative = np.stack([joints[name] for name in JOINTS], axis=1) - place[:, None]
-    return ReplaySkier(height=height, joints=np.einsum("nka,nab->nkb", relative, attitude))
+    return np.einsum("nka,nab->nkb", relative, attitude)
 
 
 def _hip(pelvis: FloatArray, left: FloatArray, side: int, height: float) -> FloatArray:

@@ -166,12 +166,34 @@ def test_parts_stand_between_the_joints(seen: Watched, replay: Replay) -> None:
     assert seen.complaints == []
 
 
+def test_load_shares_and_turned_skis_are_numbers_beside_bars(seen: Watched, replay: Replay) -> None:
+    assert replay.skier is not None and replay.skis.boots is not None
+    frame = 5
+    weights = np.linalg.norm(replay.skis.force[frame].sum(axis=0)) / replay.skier.weight
+    left, right = (100.0 * replay.skis.normal_force[frame] / replay.skis.normal_force[frame].sum()).round()
+    step, (w, x, y, z) = np.diff(replay.place, axis=0)[frame], replay.skis.boots.attitude[frame, 0]
+    skis = np.arctan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+    turned = np.degrees(skis - np.arctan2(step[1], step[0]))
+    assert abs(turned) > 2.0 and left != right
+    seen.does(f"replay.seek({replay.time[frame]})")
+    lines = [line.inner_text().split("\n") for line in seen.page.locator(".replay-readings > div").all()]
+    told = dict(line for line in lines if len(line) == 2)
+    assert told["Load in body weights"] == f"{weights:.1f}"
+    assert told["Skis turned from path"] == f"{abs(turned):.0f}° {'left' if turned > 0.0 else 'right'}"
+    assert told["Skis turned from body"] == "0°"
+    for name, share in (("Load on left ski", left), ("Load on right ski", right)):
+        assert told[name] == f"{share:.0f} %"
+        bar = seen.page.get_by_role("meter", name=name)
+        assert bar.get_attribute("aria-valuenow") == f"{share:.0f}"
+        assert bar.evaluate("each => getComputedStyle(each).backgroundImage").count(f" {share:.0f}%") == 2
+
+
 def test_the_gap_is_reported_when_both_have_passed_a_gate(seen: Watched, replay: Replay) -> None:
     first, second = (replay.time[0] + present(replay.gate_times)).tolist()
     told = []
     for time in (first + 0.2, first + 0.3, second + 0.01):
         seen.does(f"replay.seek({time})")
-        told.append(seen.page.locator(".replay-large").last.inner_text().split("\n"))
+        told.append(seen.page.locator(".replay-large", has_text="Gap").inner_text().split("\n"))
     assert told == [
         ["Gap at the first gate", "not yet"],
         ["Gap at gate 1", "0.25 s ahead"],

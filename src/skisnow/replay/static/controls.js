@@ -1,7 +1,8 @@
 // The words, buttons and sliders around the picture: made once, each with a name that a screen reader says.
 
 import { css, GHOST, gradient, TRACK } from "./colours.js";
-import { edgeAngle } from "./motion.js";
+import { skiForces } from "./force_arrows.js";
+import { edgeAngle, yaws } from "./motion.js";
 import { settings } from "./sharpness.js";
 import { asWritten, decimal, said } from "./words.js";
 
@@ -136,16 +137,42 @@ function ticksOf(most, goesOn = false) {
 
 const LEFT = 0;
 
-/** Mean edge angle of both skis, and to which side. */
-function edged(run, time) {
-  const angle = (90 / Math.PI) * (edgeAngle(run, 0, time) + edgeAngle(run, 1, time));
-  const size = Math.abs(angle).toFixed(0);
-  if (Math.abs(angle) < 0.5) return said("flat");
+/** An angle (rad) in degrees, and to which side. */
+function sided(angle, none = "0°") {
+  const size = Math.abs((180 / Math.PI) * angle).toFixed(0);
+  if (size === "0") return none;
   return angle > 0 ? said("{}° left", size) : said("{}° right", size);
 }
 
+/** A bar of a share, beside its number. */
+export const meter = () => made("span", { className: "replay-meter", role: "meter", "aria-valuemin": 0, "aria-valuemax": 100 });
+
+export function setMeter(element, { name, share }) {
+  element.style.setProperty("--share", `${share}%`);
+  element.setAttribute("aria-valuenow", share);
+  element.setAttribute("aria-label", name);
+}
+
+/** Readings of a skier: edge angle, force of the snow over the weight, share of each ski (%), and how the skis are turned. */
+function skierReadings(run, pose) {
+  const forces = skiForces(run, pose.at);
+  const force = Math.hypot(...[0, 1, 2].map((axis) => forces[0].vector[axis] + forces[1].vector[axis]));
+  const [left, right] = forces.map(({ normal }) => Math.max(normal, 0));
+  const share = left + right > 0 ? Math.round((100 * left) / (left + right)) : 0;
+  const shares = left + right > 0 ? [share, 100 - share] : [0, 0];
+  const names = [said("Load on left ski"), said("Load on right ski")];
+  const { body, path } = yaws(run, pose);
+  return [
+    { name: said("Edge angle"), text: sided((edgeAngle(run, 0, pose.time) + edgeAngle(run, 1, pose.time)) / 2, said("flat")), large: true },
+    { name: said("Load in body weights"), text: decimal(force / run.skier.weight, 1), large: true },
+    ...shares.map((each, ski) => ({ name: names[ski], text: `${each} %`, share: each, large: false })),
+    { name: said("Skis turned from body"), text: sided(body), large: false },
+    { name: said("Skis turned from path"), text: sided(path), large: false },
+  ];
+}
+
 /**
- * What is told of a moment, as {name, text, large, words}: the numbers that matter first and large. `outer` is the ski
+ * What is told of a moment, as {name, text, large, share}: the numbers that matter first and large. `outer` is the ski
  * that carries more; `gap` is told of two runs through gates, `forces` of both skis, {total, normal} (N) each, where they are shown.
  */
 export function readings(run, pose, { row, outer, gap = null, forces = null }) {
@@ -155,14 +182,12 @@ export function readings(run, pose, { row, outer, gap = null, forces = null }) {
   const turn = curvature > 0 ? said("{} m left", size) : said("{} m right", size);
   const radius = Math.abs(curvature) < 1e-3 ? said("straight") : turn;
   const depths = Array.from(of("depth", 2), (depth) => (depth > 0 ? `${decimal(1000 * depth, 1)} mm` : said("above the snow")));
-  const depth = (ski, large) => ({ name: ski === LEFT ? said("Depth at left boot") : said("Depth at right boot"), text: depths[ski], large: large && !run.skier });
+  const depth = (ski, large) => ({ name: ski === LEFT ? said("Depth at left boot") : said("Depth at right boot"), text: depths[ski], large });
   const lines = [
     { name: said("Speed"), text: `${decimal(of("speed")[0], 2)} m/s`, large: true },
     { name: said("Turn radius"), text: radius, large: true },
-    ...(run.skier ? [{ name: said("Edge angle"), text: edged(run, pose.time), large: true }] : []),
     ...(gap ? [{ ...gap, large: true }] : []),
-    depth(outer, true),
-    depth(1 - outer, false),
+    ...(run.skier ? skierReadings(run, pose) : [depth(outer, true), depth(1 - outer, false)]),
     { name: said("Time"), text: `${decimal(pose.time, 2)} s`, large: false },
   ];
   if (!forces) return lines;

@@ -76,6 +76,24 @@ export function edgeAngle(run, ski, time) {
   return Math.atan2(-along(across), along(away));
 }
 
+/** Angle of the skis (rad), positive to the left: to the body, and to the path. */
+export function yaws(run, pose) {
+  const normal = surfaceNormal(run, pose.place[0], pose.place[1]);
+  const skis = [0, 1].map((ski) => bootPose(run, pose, ski).forward);
+  const heading = skis[0].map((part, i) => part + skis[1][i]);
+  const [index] = pose.at;
+  const { values } = run.arrays.place;
+  const path = [0, 1, 2].map((axis) => (values.length > 3 ? values[3 * index + 3 + axis] - values[3 * index + axis] : 0));
+  return { body: turned(pose.forward, heading, normal), path: turned(path, heading, normal) };
+}
+
+/** Angle (rad) about a normal from one direction to another. */
+function turned(from, to, normal) {
+  const dot = (one, other) => one.reduce((sum, part, i) => sum + part * other[i], 0);
+  const cross = [0, 1, 2].map((i) => from[(i + 1) % 3] * to[(i + 2) % 3] - from[(i + 2) % 3] * to[(i + 1) % 3]);
+  return Math.atan2(dot(cross, normal), dot(from, to) - dot(from, normal) * dot(to, normal));
+}
+
 /**
  * Cross sections of a ski: at each station the middle of the base, and unit vectors across it to the left and away from
  * the snow, as skisnow.replay.shapes has them. Nine numbers each, in space.

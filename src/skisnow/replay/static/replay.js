@@ -2,7 +2,7 @@
 
 import { decoded } from "./binary.js";
 import { VIEWS } from "./cameras.js";
-import { controls, depthTitle, fillLegend, forceTitle, laidOut, made, marks, MOST_RELIEF, readings } from "./controls.js";
+import { controls, depthTitle, fillLegend, forceTitle, laidOut, made, marks, meter, MOST_RELIEF, readings, setMeter } from "./controls.js";
 import { skiForces } from "./force_arrows.js";
 import { gapAt } from "./gap.js";
 import { miniMap } from "./mini_map.js";
@@ -104,9 +104,11 @@ class Player {
   #tell() {
     const { parts } = this;
     if (parts.readings.children.length !== this.lines.length) {
-      this.words = this.lines.map(() => [made("dt"), made("dd")]);
+      this.words = this.lines.map(() => [made("dt"), made("span")]);
+      this.meters = this.lines.map(({ share }) => (share === undefined ? [] : [meter()]));
       parts.readings.replaceChildren(
-        ...this.lines.map(({ large }, i) => made("div", { className: large ? "replay-large" : "replay-small" }, ...this.words[i])),
+        ...this.lines.map(({ large }, i) => made("div", { className: large ? "replay-large" : "replay-small" },
+          this.words[i][0], made("dd", {}, ...this.meters[i], this.words[i][1]))),
       );
     }
     this.lines.forEach(({ name, text }, i) => {
@@ -114,6 +116,7 @@ class Player {
         if (this.words[i][part].textContent !== words) this.words[i][part].textContent = words;
       });
     });
+    this.meters.forEach((found, i) => found.forEach((each) => setMeter(each, this.lines[i])));
     parts.time.value = this.time;
     parts.time.setAttribute("aria-valuetext", said("{} seconds", decimal(this.time, 2)));
     if (parts.model) parts.model.href = this.addresses.modelAddress(this.time, this.exaggeration);
