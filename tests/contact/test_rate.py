@@ -160,6 +160,14 @@ def test_a_wedge_relaxes_as_all_its_points() -> None:
         assert abs(then / first - LEFT) < spacing / (depth / math.tan(0.7)) * (1.0 - LEFT), spacing
 
 
+def test_a_base_that_reaches_far_along_a_line_is_pressed_at_once() -> None:
+    """Newton's method passes such poses. Pieces as long as the delayed depth's places would be 60 billion."""
+    contact = SnowContact(SnowField(H, 0.0, 1.0, delayed_share=SHARE, retardation_time=TAU), [straight()])
+    contact.update(*flat(2e-3), 1e-3)
+    found = [turn * up(contact, (flat(2e-3)[0], edged(0.0, turn=0.5 * math.pi - turn)[None])) for turn in (1e-5, 1e-9)]
+    assert found[1] == pytest.approx(found[0], rel=1e-3)
+
+
 def test_turned_about_the_snows_normal_nothing_changes() -> None:
     snow = SnowField(H, 0.0, 5.0, damping=C, delayed_share=SHARE, retardation_time=TAU)
     found = []

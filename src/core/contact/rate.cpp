@@ -187,8 +187,9 @@ struct BaseOnLine {
       if (knot < ground.count) next = std::min(next, ground.place[knot] - c.place);
       Straight depth{pieces.at_grip[piece], pieces.fall[piece]};
       if (!delayed.empty()) {
-        const double place = (std::floor((c.place + x) / delayed.spacing + 1e-6) + 1.0) * delayed.spacing;
-        next = std::min(next, place - c.place);
+        const double number = std::floor((c.place + x) / delayed.spacing + 1e-6) + 1.0;
+        if (number <= double(delayed.end()))  // beyond its places it is zero, however far a base reaches
+          next = std::min(next, std::max(number, double(delayed.first) - 1.0) * delayed.spacing - c.place);
         const double here = known(x), slope = (known(next) - here) / (next - x);
         depth = depth + Straight{slope * x - here, -slope};
       }
