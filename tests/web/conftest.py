@@ -41,13 +41,11 @@ class Served:
     """A server process on a store, which can be killed and started again at the same address.
 
     The command takes seconds to load what it needs, so one process loads that and brings forth all servers; with
-    `as_command` a server is started as a person does, with `further` words. Pictures of a report are empty but with
-    `are_drawn`.
+    `as_command` a server is started as a person does, with `further` words. Otherwise pictures of a report are empty.
     """
 
     store: Path
     as_command: bool = False
-    are_drawn: bool = False
     further: tuple[str, ...] = ()
     address: str = ""
     process: BaseProcess | subprocess.Popen[str] | None = field(default=None, repr=False)
@@ -77,7 +75,7 @@ class Served:
         context.set_forkserver_preload(["skisnow.web.server", "skisnow.web.pages.replay", "skisnow.web.pages.analysis"])
         hears, tells = context.Pipe(duplex=False)
         program = str(Path(__file__).with_name("served_here.py"))
-        given = self.store, port, tells, self.are_drawn
+        given = self.store, port, tells
         process = context.Process(target=runpy.run_path, args=(program, {"given": given}, "__main__"))
         self.process = process
         process.start()
@@ -151,14 +149,6 @@ def servers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servers]:
 def served(servers: Servers) -> Served:
     """A lab in which nothing was entered yet; a test may kill it."""
     return servers.one()
-
-
-@pytest.fixture
-def served_with_figures(tmp_path: Path) -> Iterator[Served]:
-    """A separate lab that draws."""
-    lab = Served(tmp_path / "store.sqlite3", are_drawn=True).start()
-    yield lab
-    lab.kill()
 
 
 @pytest.fixture(scope="session")

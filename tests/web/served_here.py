@@ -1,5 +1,4 @@
-"""The program of a process that has loaded the lab already; given are a store, a port, where to tell the address, and
-whether figures are drawn.
+"""The program of a process that has loaded the lab already; given are a store, a port, and where to tell the address.
 
 The process that draws for the lab runs this file, too, under another name: nothing stands here that takes long to load.
 """
@@ -33,10 +32,9 @@ if __name__ == "__main__":
     from skisnow.web.server import serve
     from skisnow.web.settings import Lab
 
-    place, port, tells, are_drawn = globals()["given"]
-    os.environ[UNDRAWN] = "" if are_drawn else "1"
-    if not are_drawn:
-        runs.COMMAND = (sys.executable, str(Path(__file__).with_name("simulate_here.py")))
+    place, port, tells = globals()["given"]
+    os.environ[UNDRAWN] = "1"
+    runs.COMMAND = (sys.executable, str(Path(__file__).with_name("simulate_here.py")))
     with Store.open(place) as store:
         serve(Lab(store, place.parent / "lab"), host="127.0.0.1", port=port, token=None, tell=tells.send)
 elif os.environ.get(UNDRAWN):

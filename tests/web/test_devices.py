@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from skisnow import samples
@@ -43,36 +42,36 @@ def camera_picture() -> bytes:
     return content.getvalue()
 
 
-def test_a_photo_is_made_small_and_loses_what_the_camera_added(page: Page, served: Served) -> None:
+def test_photo_and_position_of_a_series_on_a_phone(page: Page, served: Served) -> None:
+    """The hardness stays in view; a position needs consent; a photo becomes small and loses what the camera added."""
+    page.set_viewport_size({"width": 390, "height": 600})
+    page.context.set_geolocation({"latitude": 47.25, "longitude": 11.5, "accuracy": 6.0})
     create(page, served)
     enter_series(page, "1")
     ready(page)
+    value = page.get_by_text("H_V =")
+    value.wait_for()
+    for depth in page.get_by_label("Depth under").all():
+        depth.evaluate("each => { each.focus(); each.scrollIntoView({ block: 'end' }); }")
+        boxes = [each.bounding_box() for each in (value, depth)]
+        assert all(box is not None and box["y"] >= 0 and box["y"] + box["height"] <= 600 for box in boxes)
     page.get_by_text("Photo and position").click()
+    page.get_by_role("button", name="Store my position with this test").click()
+    page.get_by_text("did not allow it").wait_for()
+    assert attached(served) == []
+    page.context.grant_permissions(["geolocation"])
+    page.get_by_role("button", name="Store my position with this test").click()
+    page.get_by_text("47.25000°").wait_for()
+    cells = [each.rows[0].cells for each in attached(served)]
+    assert [(each["latitude_deg"], each["longitude_deg"]) for each in cells] == [("47.25", "11.5")]
     page.locator(".attachments input[type=file]").set_input_files(
         {"name": "slope.jpg", "mimeType": "image/jpeg", "buffer": camera_picture()}
     )
     page.get_by_text("Photo, ").wait_for()
-    (photo,) = map(photo_of, attached(served))
-    assert photo is not None
+    (photo,) = filter(None, map(photo_of, attached(served)))
     with Image.open(io.BytesIO(photo)) as stored:
         assert (stored.size, stored.format) == ((1600, 1200), "JPEG")
         assert not dict(stored.getexif())
-
-
-@pytest.mark.parametrize("is_allowed", [True, False])
-def test_a_position_is_stored_after_consent_only(page: Page, served: Served, is_allowed: bool) -> None:
-    page.context.set_geolocation({"latitude": 47.25, "longitude": 11.5, "accuracy": 6.0})
-    if is_allowed:
-        page.context.grant_permissions(["geolocation"])
-    create(page, served)
-    enter_series(page, "1")
-    ready(page)
-    page.get_by_text("Photo and position").click()
-    assert attached(served) == []
-    page.get_by_role("button", name="Store my position with this test").click()
-    page.get_by_text("47.25000°" if is_allowed else "did not allow it").wait_for()
-    cells = [each.rows[0].cells for each in attached(served)]
-    assert [(each["latitude_deg"], each["longitude_deg"]) for each in cells] == [("47.25", "11.5")] * is_allowed
 
 
 def test_the_preview_of_a_workbook_is_as_wide_as_the_page(page: Page, served: Served) -> None:
@@ -100,16 +99,3 @@ def test_the_editor_of_a_ski_and_its_drawing_are_side_by_side_on_a_laptop(page: 
     assert factor is not None and factor["y"] + factor["height"] <= 800
     for box in results:
         assert box is not None and box["y"] + box["height"] <= 800 and box["x"] > factor["x"] + factor["width"]
-
-
-def test_the_hardness_stays_in_view_while_depths_are_typed_on_a_phone(page: Page, served: Served) -> None:
-    page.set_viewport_size({"width": 390, "height": 600})
-    create(page, served)
-    enter_series(page, "1")
-    ready(page)
-    value = page.get_by_text("H_V =")
-    value.wait_for()
-    for depth in page.get_by_label("Depth under").all():
-        depth.evaluate("each => { each.focus(); each.scrollIntoView({ block: 'end' }); }")
-        boxes = [each.bounding_box() for each in (value, depth)]
-        assert all(box is not None and box["y"] >= 0 and box["y"] + box["height"] <= 600 for box in boxes)

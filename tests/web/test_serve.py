@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import csv
 import http.client
 import io
@@ -11,7 +10,6 @@ import os
 import re
 import shlex
 import shutil
-import socket
 import ssl
 import subprocess
 import sys
@@ -21,18 +19,14 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
-import uvicorn
-from starlette.types import Receive, Scope, Send
 
 from skisnow.campaign.store import Journals, Store, campaign_files, replay_journal
 from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.cli import main
-from skisnow.web.server import HEAD_BYTES, TimeLimitedProtocol
 from tests.present import present
 
 from ..campaign.store.postgresql_server import Server, run, started, why_there_is_none
 from .conftest import Served, killed_and_started_again
-from .finished import finished
 from .test_day import PLATE, SERIES, TOOL, VALUES, enter_series
 
 if TYPE_CHECKING:
@@ -57,17 +51,14 @@ def asked(served: Served, path: str, *, method: str = "GET", **headers: str) -> 
     return found
 
 
-def command(*words: str, store: Path) -> subprocess.CompletedProcess[str]:
-    arguments = [sys.executable, "-m", "skisnow", "serve", "--store", str(store), *words]
-    return subprocess.run(arguments, capture_output=True, text=True, timeout=300, check=False)
-
-
 def test_the_first_line_is_the_address_of_this_machine_alone(served: Served) -> None:
     parts = urlsplit(served.address)
     assert (parts.scheme, parts.hostname) == ("http", "127.0.0.1")
     status, headers, text = asked(served, "/")
     assert status == 200 and "skisnow" in text
     assert "default-src 'none'" in headers["content-security-policy"]
+    assert asked(served, "/import", method="POST", Origin="http://evil.example")[0] == 403
+    assert asked(served, "/", Host="evil.example")[0] == 421
 
 
 @pytest.fixture
@@ -77,9 +68,8 @@ def unserved(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("unserved")
-@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.0.2.1"])
-def test_another_host_needs_a_token(host: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serve", "--host", host, "--store", str(tmp_path / "s.sqlite3")]) == 1
+def test_another_host_needs_a_token(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", "--host", "0.0.0.0", "--store", str(tmp_path / "s.sqlite3")]) == 1
     out, err = capsys.readouterr()
     assert out == "" and "add --token" in err and "Traceback" not in err
 
@@ -143,18 +133,6 @@ def test_a_store_that_broke_is_reported_in_a_sentence(tmp_path: Path) -> None:
     assert "Traceback" not in text
 
 
-def test_foreign_posts_and_sockets_are_rejected(served: Served) -> None:
-    assert asked(served, "/import", method="POST", Origin="http://evil.example")[0] == 403
-    assert asked(served, "/import", method="POST")[0] == 403
-    upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
-    key = {"Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ=="}
-    path = "/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
-    assert asked(served, path, **upgrade, **key, Origin="http://evil.example")[0] == 403
-    own = served.address.rstrip("/")
-    assert asked(served, "/", Host="evil.example")[0] == 421
-    assert asked(served, "/", Origin=own)[0] == 200
-
-
 def ask_lab(served: Served, path: str, body: str | None = None) -> tuple[int, str]:
     parts = urlsplit(served.address)
     connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
@@ -196,51 +174,6 @@ def test_malformed_messages_leave_a_line_each_and_no_trace(served: Served, capfd
         assert log.count(f"malformed {kind} (KeyError)") == 1
     assert "Traceback" not in log
     assert "Traceback" not in capfd.readouterr().err
-
-
-async def greeting(_: Scope, receive: Receive, send: Send) -> None:
-    while (await receive()).get("more_body"):
-        pass
-    await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"2")]})
-    await send({"type": "http.response.body", "body": b"hi"})
-
-
-class Hasty(TimeLimitedProtocol):
-    head_s = 0.2
-    body_s = 0.3
-
-
-@pytest.mark.parametrize(
-    "sent",
-    [
-        b"",
-        b"GET / HT",
-        b"GET / HTTP/1.1\r\nHost: x\r\n\r\nGET / HTTP/1.1\r\nHo",
-        b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\nhalf",
-        b"GET / HTTP/1.1\r\nA: " + HEAD_BYTES * b"a",
-    ],
-    ids=["nothing", "half a line", "a second half", "half a body", "an endless head"],
-)
-def test_half_a_request_is_not_waited_for(sent: bytes) -> None:
-    """The end of the stream comes from the server; without it the test would wait for ever."""
-
-    async def talk() -> bytes:
-        with socket.create_server(("127.0.0.1", 0)) as listener:
-            config = uvicorn.Config(
-                greeting, http=Hasty, ws="none", lifespan="off", log_level="critical", timeout_keep_alive=600
-            )
-            server = uvicorn.Server(config)
-            serving = asyncio.create_task(server.serve(sockets=[listener]))
-            reader, writer = await asyncio.open_connection(*listener.getsockname())
-            writer.write(sent)
-            heard = await asyncio.wait_for(reader.read(), 60)
-            writer.close()
-            server.should_exit = True
-            await serving
-            return heard
-
-    heard = finished(talk())
-    assert heard.count(b"hi") == (1 if b"\r\n\r\nGET" in sent else 0)
 
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "store.md"

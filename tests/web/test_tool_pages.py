@@ -1,10 +1,9 @@
-"""The pages of an analysis, of skis and of carves in a browser."""
+"""The page that designs a ski, in a browser."""
 
 from __future__ import annotations
 
 import io
 import re
-import urllib.request
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +14,6 @@ import pandas
 import pytest
 from PIL import Image
 
-from skisnow.campaign.store import Journals, NewEntry, Store
 from skisnow.carving.answer import answer_dict, answered
 from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.report.formatting import significant
@@ -27,65 +25,6 @@ from .conftest import Served, ready
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-DESCRIPTION = """name = "growing"
-load_steps_N = [20, 40, 60]
-gauge_resolution_mm = 0.01
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-"""
-
-
-def used(results: dict[str, object]) -> tuple[int, int]:
-    counts = []
-    for kind in ("penetration", "shear"):
-        part = results[kind]
-        assert isinstance(part, dict)
-        counts.append(sum(row["used"] for row in part["experiments"]))
-    return counts[0], counts[1]
-
-
-def html(served: Served, path: str) -> str:
-    """The server's first answer to a browser."""
-    with urllib.request.urlopen(served.address.rstrip("/") + path) as answer:
-        return str(answer.read().decode())
-
-
-def test_the_numbers_are_there_with_the_page_until_something_is_entered(
-    page: Page, served_with_figures: Served
-) -> None:
-    served = served_with_figures
-    with Store.open(served.store) as store:
-        journals = Journals(store)
-        id_ = journals.begin(DESCRIPTION)
-        last = 0
-        for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.15"), ("60", "2.6"))):
-            cells = {"experiment": "1", "site": "A", "spot": "", "tool": "ski piece", "edge_angle_deg": "30"}
-            row = NewEntry(
-                action="add", file="penetration.csv", test="1", position=position,
-                cells={**cells, "load_N": load, "depth_mm": depth},
-            )  # fmt: skip
-            last = journals.append(id_, row, seen=last).sequence
-    path = f"/analysis/entry/{id_}"
-    assert "Computing" in html(served, path)
-    page.goto(served.address.rstrip("/") + path)
-    page.get_by_text("1 penetration experiment (1 used)").first.wait_for()
-    assert "1 penetration experiment (1 used)" in html(served, path)
-    assert f"/enter/{id_}" in html(served, path)  # the way back
-    drawn = page.locator("figure img").first
-    drawn.wait_for()
-    assert len(drawn.get_attribute("src") or "") > 5000 and drawn.evaluate("each => each.decode().then(() => true)")
-    with Store.open(served.store) as store:
-        cancelled = NewEntry(action="cancel", file="penetration.csv", test="1", why="the tool slipped")
-        Journals(store).append(id_, cancelled, seen=last)
-    assert "1 penetration experiment" not in html(served, path)
-    page.reload()
-    page.get_by_text("1 penetration experiment (0 used)").first.wait_for()
-
-
-PARTS = ("forebody", "afterbody")
 SNOW = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
 """That of the first sliders."""
 
@@ -96,11 +35,6 @@ def carve_answer(edge_angle_deg: float, snow: Mapping[str, object] = SNOW, *, sk
     return answer_dict(answered(carve_question({**asked, **snow})))
 
 
-def radius(edge_angle_deg: float, snow: Mapping[str, object] = SNOW) -> str:
-    answer = carve_answer(edge_angle_deg, snow)
-    return f"carver: carved radius {significant(answer['turn_radius_boot_m'])} m"
-
-
 def test_the_sliders_are_inputs_of_a_carved_turn() -> None:
     for name, (label, stops, start) in SLIDERS.items():
         assert label.endswith(f"({CARVE_KEYS[name].unit})")
@@ -108,31 +42,6 @@ def test_the_sliders_are_inputs_of_a_carved_turn() -> None:
         assert [float(stop) for stop in stops] == sorted({float(stop) for stop in stops})
         assert all(CARVE_KEYS[name].in_range(float(stop)) == float(stop) for stop in stops)
     assert all(CARVE_KEYS["unloading_ratio"].in_range(float(ratio)) for ratio in RATIOS)
-
-
-def test_the_radius_follows_the_slider(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}carve")
-    headline = page.get_by_role("region", name="Carved radius")
-    headline.get_by_text("carved radius").wait_for()
-    assert headline.inner_text() == radius(45.0)
-    ready(page)
-    slider = page.get_by_role("slider", name="Edge angle (°)")
-    slider.focus()
-    for _ in range(3):
-        page.keyboard.press("ArrowRight")
-    page.get_by_text("Edge angle (°): 48").wait_for()
-    headline.get_by_text(radius(48.0), exact=True).wait_for()
-    assert slider.get_attribute("aria-valuetext") == "48"
-    assert radius(48.0) != radius(45.0)
-    loads = [page.get_by_role("row", name=f"Load on the {part}").get_by_role("cell").inner_text() for part in PARTS]
-    assert sum(float(load.removesuffix(" N")) for load in loads) == pytest.approx(800.0, abs=2.0)  # three digits each
-    assert page.locator("svg .name").all_text_contents() == ["carver"] * 4
-    assert page.locator("svg .end").all_text_contents() == ["◂ tail", "tip ▸"] * 4
-    page.get_by_label("Snow", exact=True).click()
-    page.get_by_role("option", name="published: race-piste").click()
-    page.get_by_text("Snow: H_V = 0.207 N/mm³").wait_for()
-    headline.get_by_text(radius(48.0, {"published": "race-piste"}), exact=True).wait_for()
-    assert page.get_by_role("slider", name="Snow hardness H_V (N/mm³)").is_hidden()
 
 
 def saved(page: Page, button: str) -> tuple[str, bytes]:

@@ -3,7 +3,7 @@
 import csv
 import io
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -160,7 +160,6 @@ def test_files_that_are_named_alone_are_reported(small: SmallCampaign) -> None:
 # snow_micro_pen.csv and the files that it names: every wrong cell is reported with its row
 
 
-Write = Callable[[Mapping[str, str | bytes]], Path]
 SOUND = plain_snow(1.0)
 HEAD = "recording,site,file\n"
 

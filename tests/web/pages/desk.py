@@ -120,6 +120,13 @@ class Sheet:
 
         self.desk.do(pressed, self.client)
 
+    def sends(self, text: str, number: int, **further: str) -> bool:
+        """Press a button whose answer the browser waits for; whether the answer is yes."""
+        button = next(each for each in self.of(ui.button) if each.text.startswith(text))
+        self.fire(button, "click", {"number": number, **further})
+        assert self.scripts[-1] in (f"lab.answered({number}, true)", f"lab.answered({number}, false)")
+        return self.scripts[-1].endswith("true)")
+
     def fire(self, element: Element, event: str, args: object) -> None:
         """The browser's message about an element."""
         self.desk.do(lambda: self._handle(element, event, args), self.client)
@@ -150,10 +157,6 @@ class Sheet:
     def leave(self) -> None:
         """Close the page, as when the browser goes elsewhere."""
         self.desk.do(self.client.delete)
-
-    def works(self, name: str) -> bool:
-        """Whether work of this name is still done behind the page."""
-        return any(task.get_name() == name for task in background_tasks.running_tasks)
 
     def focused(self) -> Any:
         """The element that the page has put the focus on last."""

@@ -10,10 +10,15 @@ def slowly(page: Any) -> None:
     page.get_by_label("Speed of play").select_option("0.1")
 
 
+WIDTH, HEIGHT = 960, 600
+
+
 class Watched:
     """A page with all that it asked for and said."""
 
-    def __init__(self, browser: Any, address: str, *, width: int = 960, height: int = 600, plays: bool = False) -> None:
+    def __init__(
+        self, browser: Any, address: str, *, width: int = WIDTH, height: int = HEIGHT, plays: bool = False
+    ) -> None:
         """Open it; but for `plays` it is stopped and at its start."""
         self.page = browser.new_page(viewport={"width": width, "height": height})
         self.page.set_default_timeout(PATIENCE_MS)

@@ -13,7 +13,7 @@ from skisnow.replay import Replay, ReplayTrack, replay_of_run, ski_edges, write_
 
 from ...replay.test_terrain_and_boots import X, Y, hills, over, run_with_boots
 from ...report.runs import circle_run
-from .browsers import Watched, slowly
+from .browsers import HEIGHT, WIDTH, Watched, slowly
 
 TRACK = ReplayTrack(name="GNSS", place=np.array([[0.0, 0.0, 0.0], [10.0, 3.0, 0.0]]), time=np.array([0.0, 2.0]))
 GATES = np.array([[4.0, 3.0], [9.0, -2.0]])
@@ -132,13 +132,12 @@ def test_the_replay_stops_at_its_end_and_restarts(seen: Watched) -> None:
     assert seen.does("replay.play(); return replay.time") < 1.0
 
 
-def test_the_replay_requests_nothing_and_logs_no_error(fresh: Watched, address: str) -> None:
+def test_the_replay_requests_nothing_and_logs_no_error(seen: Watched, address: str) -> None:
     for view in VIEWS:
-        fresh.does(f"replay.look('{view}'); replay.exaggerate(7); replay.show('forces', true); replay.seek(1.0)")
-    pictures_later(fresh)
-    asked = [each for each in fresh.requests if not each.startswith(("blob:", "data:"))]
-    assert asked == [address]
-    assert fresh.complaints == []
+        seen.does(f"replay.look('{view}'); replay.exaggerate(7); replay.show('forces', true); replay.seek(1.0)")
+    pictures_later(seen)
+    assert [each for each in seen.requests if not each.startswith(("blob:", "data:"))] == [address]
+    assert seen.complaints == []
 
 
 def test_edges_in_the_browser_are_those_of_the_library(seen: Watched, replay: Replay) -> None:
@@ -399,10 +398,9 @@ def test_moving_boots_over_measured_heights(drawing_chromium: Any, tmp_path: Pat
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (844, 390)])
-def test_a_phone_shows_it_all_without_scrolling_sideways(
-    drawing_chromium: Any, address: str, width: int, height: int
-) -> None:
-    phone = Watched(drawing_chromium, address, width=width, height=height)
+def test_a_phone_shows_it_all_without_scrolling_sideways(seen: Watched, width: int, height: int) -> None:
+    phone = seen
+    phone.page.set_viewport_size({"width": width, "height": height})
     try:
         phone.does("replay.seek(2.0)")
         assert phone.page.locator("html").evaluate("each => each.scrollWidth") <= width
@@ -422,4 +420,4 @@ def test_a_phone_shows_it_all_without_scrolling_sideways(
         )
         assert small == []  # a finger in a glove
     finally:
-        phone.close()
+        phone.page.set_viewport_size({"width": WIDTH, "height": HEIGHT})

@@ -1,11 +1,14 @@
 """Analyses: their page and the list of them."""
 
+import asyncio
 import io
 import os
 import re
 import threading
 import zipfile
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,19 +18,104 @@ from nicegui import ui
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
 from skisnow.campaign.reading import FilesInMemory
-from skisnow.campaign.store import Journals
+from skisnow.campaign.store import Journals, NewEntry
 from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.key_results import key_results
 from skisnow.report.campaign.verdicts import verdicts
 from skisnow.web import campaign_analysis as analyses_module
-from skisnow.web.campaign_analysis import AnalysisCache, CampaignSource, Choice, Numbers, Refusal, analyse_files
+from skisnow.web.campaign_analysis import (
+    AnalysisCache,
+    CampaignSource,
+    Choice,
+    FigureImage,
+    Numbers,
+    Refusal,
+    analyse_files,
+    choosable_flags,
+)
 from skisnow.web.pages import analysis as page_module
 from skisnow.web.subprocesses import Worker
 from tests.coded import raises
 
+from ...campaign_texts import HARD, SHEARED, SOFT, pressed, sheared
 from ..desk import Desk, Sheet
-from .shared import COUNTED, FILES, FLAGS, SHEAR, TOML, WRONG, Drawing, kept, status
+
+TOML = SHEARED
+PENETRATION = pressed(
+    {"1": ("A", SOFT), "2": ("A", SOFT), "3": ("B", HARD), "4": ("B", HARD[:2]), "5": ("A", SOFT)}, {"5": "slipped"}
+)  # 4 has fewer than three loads
+SHEAR = sheared({"a": ("A", 20), "1": ("A", 21), "c": ("B", 30)})
+FILES = {"campaign.toml": TOML, "penetration.csv": PENETRATION, "shear.csv": SHEAR}
+FLAGS = choosable_flags()
+COUNTED = "5 penetration experiments (3 used), 3 shear experiments (3 used), 2 sites."
+
+
+@dataclass
+class Drawing:
+    """Do the work of the other process in this one; figures wait for the gate."""
+
+    gate: asyncio.Event = field(default_factory=asyncio.Event)
+    asked: list[Any] = field(default_factory=list)
+    reports: list[Any] = field(default_factory=list)
+    done: int = 0
+    """Figures that are there."""
+    held: int = 0
+    """Only figures of so many points wait; 0: all."""
+
+
+def points(analysis: Any) -> int:
+    return sum(row["used"] for row in analysis.results["penetration"]["experiments"])
+
+
+def kept(desk: Desk, folder: Path, files: dict[str, str] | None = None) -> str:
+    """The id of a kept campaign that no other test has: what was analysed stays in memory."""
+    texts = files or FILES
+    return desk.kept(folder, texts | {"campaign.toml": f"{texts['campaign.toml']}# {folder}\n"})
+
+
+def status(page: Sheet) -> str:
+    return next(line for line in page.outline() if line.startswith("[status] "))[9:]
+
+
+WRONG = {"campaign.toml": TOML, "penetration.csv": PENETRATION.replace("30,40,2.1", "30,-40,2.1", 1)}
+
+
+@pytest.fixture
+def drawing(monkeypatch: pytest.MonkeyPatch) -> Drawing:
+    """The gate is open at first. Of three figures the second has no data; the third is wide."""
+    made = Drawing()
+    made.gate.set()
+
+    def drawn(analysis: Any, number: int, _language: str) -> FigureImage | None:
+        if number == 1:
+            return None
+        return FigureImage(
+            f"fig{number}", f"{points(analysis)} points", f"<b>Figure {number}.</b> A", f"data:{number}", number == 2
+        )
+
+    def written(analysis: Any, out: str, language: str) -> None:
+        made.reports.append((Path(out).name, language))
+        (Path(out) / "figures").mkdir(parents=True)
+        (Path(out) / "figures" / "one.svg").write_text("<svg/>", encoding="utf-8")
+        rows = analysis.results["penetration"]["experiments"]
+        (Path(out) / "report.html").write_text(f"{[row['used'] for row in rows]}", encoding="utf-8")
+        (Path(out) / "results.json").write_text("{}", encoding="utf-8")
+
+    async def do(_self: Worker, work: Callable[..., Any], *given: Any) -> Any:
+        made.asked.append((work.__name__, *given[1:]))
+        if work is drawn:
+            if made.held in (0, points(given[0])):
+                await made.gate.wait()
+            made.done += 1
+        return work(*given)
+
+    monkeypatch.setattr(analyses_module, "figure", drawn)
+    monkeypatch.setattr(analyses_module, "N_FIGURES", 3)
+    monkeypatch.setattr(page_module, "write_whole_report", written)
+    monkeypatch.setattr(Worker, "do", do)
+    return made
+
 
 EXPERIMENTS = [
     "field Penetration 1, A, 30° = True",
@@ -234,6 +322,25 @@ def test_a_report_waits_for_the_numbers_of_the_choice(
     finally_says(page, "Computing …")
     with ThreadPoolExecutor(1) as beside:
         assert used(beside.submit(desk.get, path).result(60).text) == "TFTFF"
+    assert drawing.asked
+
+
+def test_numbers_are_on_the_page_at_once_until_something_is_entered(desk: Desk, drawing: Drawing) -> None:
+    journals, last = Journals(desk.lab.store), 0
+    id_ = journals.begin(TOML)
+    head = {"experiment": "1", "site": "A", "tool": "ski piece", "edge_angle_deg": "30"}
+    for position, (load, depth) in enumerate((("20", "1.5"), ("40", "2.15"), ("60", "2.6"))):
+        cells = {**head, "load_N": load, "depth_mm": depth}
+        row = NewEntry(action="add", file="penetration.csv", test="1", position=position, cells=cells)
+        last = journals.append(id_, row, seen=last).sequence
+    finally_says(desk.open(f"/analysis/entry/{id_}"), "1 penetration experiment (1 used), 1 site.")
+    html = desk.open(f"/analysis/entry/{id_}").html
+    assert "1 penetration experiment (1 used)" in html and f"/enter/{id_}" in html
+    cancelled = NewEntry(action="cancel", file="penetration.csv", test="1", why="the tool slipped")
+    journals.append(id_, cancelled, seen=last)
+    page = desk.open(f"/analysis/entry/{id_}")
+    assert "1 penetration experiment" not in page.html
+    finally_says(page, "1 penetration experiment (0 used), 1 site.")
     assert drawing.asked
 
 

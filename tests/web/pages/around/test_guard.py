@@ -299,7 +299,7 @@ def test_a_process_ends_with_its_server(monkeypatch: pytest.MonkeyPatch) -> None
         ("localhost", None, ""),
         ("0.0.0.0", "snow", ""),
         ("127.0.0.1", "snow", ""),
-        ("0.0.0.0", None, "no_token"),
+        *((host, None, "no_token") for host in ("0.0.0.0", "::", "192.0.2.1")),
         ("127.0.0.1", " ", "blank_token"),
     ],
 )

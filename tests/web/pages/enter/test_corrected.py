@@ -7,40 +7,32 @@ from nicegui import ui
 
 from skisnow.campaign.store import NewEntry
 from skisnow.report.formatting import significant
-from skisnow.web.edit_session import EditSession
 from skisnow.web.words import hardness_words
 
-from ..desk import Desk, Sheet, values
-from .shared import (
+from ..desk import Sheet, values
+from .conftest import (
     CANCEL,
     NAME,
     OTHER_LOAD,
     PENETRATION,
-    add_series,
+    Entered,
     after_waiting,
     back,
-    begun,
-    begun_series,
-    depths,
     enter,
-    history,
     leave,
     selected,
-    series_page,
     undo_button,
-    write,
 )
 
 
-def test_the_hardness_follows_the_readings(desk: Desk) -> None:
+def test_the_hardness_follows_the_readings(entered: Entered) -> None:
     """A wedge at ϑ = 30°: V = 200 mm · e²/(2 tan ϑ), and H_V = F/V where all readings give the same."""
-    id_ = begun(desk)
-    page = begun_series(desk, id_)
+    page = entered.begun_series()
     enter(page, "Depth under 20 N (mm)", str(2.6 * math.sqrt(20 / 60)))
     enter(page, "Depth under 40.5 N (mm)", str(2.6 * math.sqrt(40.5 / 60)))
     enter(page, "Depth under 60 N (mm)", "2.6")
     by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
-    row = EditSession(desk.lab, id_).quick_results("A").experiments["penetration.csv", "1"]
+    row = entered.session().quick_results("A").experiments["penetration.csv", "1"]
     assert hardness_words(row).startswith(f"{significant(by_hand)} N/mm³, [")
     page.shows(f"[value] H_V = {hardness_words(row)}")
     assert "[quiet] Test 1" in page.outline()
@@ -52,9 +44,8 @@ def test_the_hardness_follows_the_readings(desk: Desk) -> None:
     assert panel["lines"][0]["y"] == [20, 40.5, 60]
 
 
-def test_too_few_loads_are_reported_when_the_series_is_left(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = begun_series(desk, id_)
+def test_too_few_loads_are_reported_when_the_series_is_left(entered: Entered) -> None:
+    page = entered.begun_series()
     enter(page, "Depth under 20 N (mm)", "1.5")
     enter(page, "Depth under 40.5 N (mm)", "2.15")
     page.shows("H_V = ")
@@ -64,23 +55,22 @@ def test_too_few_loads_are_reported_when_the_series_is_left(desk: Desk) -> None:
     page.shows(few)
     assert "h2 New series" in page.outline()
     assert page.focused() is page.field("Edge angle (°)")
-    add_series(desk, id_, "2", ("20", "1.5"))
-    page = series_page(desk, id_)  # another one was begun since
+    entered.add_series("2", ("20", "1.5"))
+    page = entered.series_page()  # another one was begun since
     page.shows(few)
     enter(page, "Depth under 60 N (mm)", "2.6")
     page.until(lambda: not any(few in line for line in page.outline()))
 
 
-def asked_to_correct(desk: Desk, id_: str) -> Sheet:
-    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "22.5"))
-    page = series_page(desk, id_)
+def asked_to_correct(entered: Entered) -> Sheet:
+    entered.add_series("1", ("20", "1.5"), ("40.5", "22.5"))
+    page = entered.series_page()
     enter(page, "Depth under 40.5 N (mm)", "2,25", number=1)
     return page
 
 
-def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
+def test_another_depth_asks_for_a_reason(entered: Entered) -> None:
+    page = asked_to_correct(entered)
     assert page.field("Why").value == "typing error"
     why = page.field("Why")
     assert page.focused() is why
@@ -92,11 +82,11 @@ def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     assert page.field("Why") is why
     page.press("Correct it")
     assert page.outcome() == "good"
-    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.25")]
-    entry = history(desk, id_)[-1]
+    assert entered.depths() == [("20", "1.5"), ("40.5", "2.25")]
+    entry = entered.history()[-1]
     assert (entry.action, entry.about, entry.why, entry.who) == (
         "correct",
-        history(desk, id_)[1].sequence,
+        entered.history()[1].sequence,
         "misread",
         "Ada",
     )
@@ -107,26 +97,24 @@ def test_another_depth_asks_for_a_reason(desk: Desk) -> None:
     assert "misread" in undo_button(page)
 
 
-def test_a_correction_without_a_reason_is_rejected(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
+def test_a_correction_without_a_reason_is_rejected(entered: Entered) -> None:
+    page = asked_to_correct(entered)
     page.fill("Why", "  ")
     form = page.field("Why").parent_slot.parent
     page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
     assert page.outcome() == "bad"
     assert page.scripts[-1] == "lab.answered(2, false)"
     assert "field Why = '  '" in page.outline()
-    assert len(history(desk, id_)) == 2
+    assert len(entered.history()) == 2
     page.fill("Why", " slip ")
     page.fire(form, "keydown.enter", {"number": 3, "once": "c"})
     assert page.scripts[-1] == "lab.answered(3, true)"
-    assert history(desk, id_)[-1].why == "slip"
+    assert entered.history()[-1].why == "slip"
 
 
-def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"), ("40.5", "22.5"))
-    page = series_page(desk, id_)
+def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(entered: Entered) -> None:
+    entered.add_series("1", ("20", "1.5"), ("40.5", "22.5"))
+    page = entered.series_page()
     leave(page, "Depth under 40.5 N (mm)", "2.25")
     assert page.field("Why").value == "typing error"
     assert page.focused() is page.field("Depth under 60 N (mm)")
@@ -139,13 +127,12 @@ def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(
     lines = page.between("20 N: 1.5 mm becomes 2.26 mm.")
     assert lines[1] == "40.5 N: 22.5 mm becomes 2.26 mm."
     page.press("Correct it")
-    assert depths(desk, id_) == [("20", "2.26"), ("40.5", "2.26")]
+    assert entered.depths() == [("20", "2.26"), ("40.5", "2.26")]
 
 
-def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_)
+def test_what_is_no_depth_is_no_correction(entered: Entered) -> None:
+    entered.add_series("1", ("20", "1.5"))
+    page = entered.series_page()
     name = "Depth under 20 N (mm)"
     enter(page, name, "", number=1)
     assert page.outcome() == "bad"
@@ -155,30 +142,28 @@ def test_what_is_no_depth_is_no_correction(desk: Desk) -> None:
     enter(page, "Depth under 60 N (mm)", "3")
     leave(page, name)
     assert page.outcome() == "good"
-    assert history(desk, id_)[-1].who == "Bo"
+    assert entered.history()[-1].who == "Bo"
 
 
-def test_a_correction_after_another_persons_is_rejected(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
-    first = history(desk, id_)[0].sequence
+def test_a_correction_after_another_persons_is_rejected(entered: Entered) -> None:
+    page = asked_to_correct(entered)
+    first = entered.history()[0].sequence
     cells = {"depth_mm": "1.6"}
-    write(desk, id_, NewEntry(action="correct", file=PENETRATION, test="1", about=first, cells=cells, why="slip"))
+    entered.write(NewEntry(action="correct", file=PENETRATION, test="1", about=first, cells=cells, why="slip"))
     page.press("Correct it")
     assert page.outcome() == "bad"
-    assert depths(desk, id_) == [("20", "1.6"), ("40.5", "22.5")]
+    assert entered.depths() == [("20", "1.6"), ("40.5", "22.5")]
     assert page.field("Why").value == "typing error"
     page.press("Leave it as it was")
     assert page.field("Depth under 20 N (mm)").value == "1.6"
     enter(page, "Depth under 40.5 N (mm)", "2.25")
     page.press("Correct it")
-    assert depths(desk, id_) == [("20", "1.6"), ("40.5", "2.25")]
+    assert entered.depths() == [("20", "1.6"), ("40.5", "2.25")]
 
 
-def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_)
+def test_a_series_is_cancelled_with_a_reason(entered: Entered) -> None:
+    entered.add_series("1", ("20", "1.5"))
+    page = entered.series_page()
     page.press(CANCEL)
     assert page.field("Why").value == ""
     assert page.focused() is page.field("Why")
@@ -190,11 +175,9 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     page.press("Cancel the test")
     assert page.outcome() == "bad"
     page.fill("Why", " the tool  slipped ")
-    button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
-    page.fire(button, "click", {"number": 1})
-    assert page.scripts[-1] == "lab.answered(1, true)"
+    assert page.sends("Cancel the test", 1)
     assert page.outcome() == "good"
-    entry = history(desk, id_)[-1]
+    entry = entered.history()[-1]
     assert (entry.action, entry.why, entry.who, entry.test) == ("cancel", "the tool slipped", "Ada", "1")
     page.shows("[quiet] Test 1")
     lines = page.between("h2 Series 1", "[quiet] Test 1")
@@ -206,64 +189,55 @@ def test_a_series_is_cancelled_with_a_reason(desk: Desk) -> None:
     assert "the tool slipped" in undo_button(page)
 
 
-def test_a_test_that_somebody_wrote_about_is_not_cancelled(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    page = series_page(desk, id_)
+def test_a_test_that_somebody_wrote_about_is_not_cancelled(entered: Entered) -> None:
+    entered.add_series("1", ("20", "1.5"))
+    page = entered.series_page()
     page.press(CANCEL)
-    add_series(desk, id_, "1", ("60", "3"))
+    entered.add_series("1", ("60", "3"))
     page.fill("Why", "slip")
-    button = next(each for each in page.of(ui.button) if each.text == "Cancel the test")
-    page.fire(button, "click", {"number": 1})
-    assert page.scripts[-1] == "lab.answered(1, false)"
+    assert not page.sends("Cancel the test", 1)
     assert page.outcome() == "bad"
-    assert EditSession(desk.lab, id_).test(PENETRATION, "1").cancelled == ""
+    assert entered.session().test(PENETRATION, "1").cancelled == ""
 
 
-def test_the_last_entry_is_undone_and_stays_in_the_history(desk: Desk) -> None:
-    id_ = begun(desk)
-    add_series(desk, id_, "1", ("20", "1.5"))
-    add_series(desk, id_, "1", ("60", "3"), who="")
-    page = series_page(desk, id_)
+def test_the_last_entry_is_undone_and_stays_in_the_history(entered: Entered) -> None:
+    entered.add_series("1", ("20", "1.5"))
+    entered.add_series("1", ("60", "3"), who="")
+    page = entered.series_page()
     page.press("Undo: entered 3 mm under 60 N")
     assert page.outcome() == "good"
-    _, second, undo = history(desk, id_)
+    _, second, undo = entered.history()
     assert (undo.action, undo.about, undo.who) == ("undo", second.sequence, "Ada")
     assert page.field("Depth under 60 N (mm)").value == ""
     assert "1.5 mm" in undo_button(page)
     assert len([line for line in page.outline() if line.endswith("(undone)")]) == 1
     assert page.focused() is page.field("Depth under 40.5 N (mm)")
     page.press(undo_button(page))
-    assert depths(desk, id_) == []
+    assert entered.depths() == []
     assert page.between("h2 Series 1")[1] == "[quiet] A · ski piece · 30°"
     assert f"button {CANCEL}" not in page.outline()
     assert undo_button(page) == ""
     assert any("&site=A" in each for each in page.scripts)
 
 
-def test_a_series_is_left_when_all_that_was_typed_is_stored(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = begun_series(desk, id_)
+def test_a_series_is_left_when_all_that_was_typed_is_stored(entered: Entered) -> None:
+    page = entered.begun_series()
     page.fill("Depth under 20 N (mm)", "x")
     page.fill(back("40.5"), "2.5")
-    button = next(each for each in page.of(ui.button) if each.text == "Next series")
-    page.fire(button, "click", {"number": 1})
+    assert not page.sends("Next series", 1)
     assert page.outcome() == "bad"
-    assert page.scripts[-1] == "lab.answered(1, false)"
     assert page.focused() is page.field("Depth under 20 N (mm)")
     assert selected(page) == [page.field("Depth under 20 N (mm)")]
     page.fill("Depth under 20 N (mm)", "")
     page.fill(back("40.5"), "")
     page.fill(after_waiting("40.5"), "2.2")
     page.fill(after_waiting("60"), "2.7")
-    page.fire(button, "click", {"number": 2})
+    assert not page.sends("Next series", 2)
     assert page.outcome() == "bad"
-    assert page.scripts[-1] == "lab.answered(2, false)"
     assert page.focused() is page.field(after_waiting("40.5"))
     page.fill(after_waiting("40.5"), "")
     page.fill(after_waiting("60"), " ")
-    page.fire(button, "click", {"number": 3})
-    assert page.scripts[-1] == "lab.answered(3, true)"
+    assert page.sends("Next series", 3)
     assert page.field(NAME).value == "1"
 
 
@@ -274,9 +248,8 @@ def changed_states(page: Sheet) -> list[str]:
     return [each.text for each in page.of(ui.label) if "changed" in each.classes]
 
 
-def test_a_change_is_never_shown_as_stored(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
+def test_a_change_is_never_shown_as_stored(entered: Entered) -> None:
+    page = asked_to_correct(entered)
     assert len(changed_states(page)) == 1
     assert "good" not in page.status()
     states = [each.text for each in page.of(ui.label) if "stored" in each.classes]
@@ -287,26 +260,22 @@ def test_a_change_is_never_shown_as_stored(desk: Desk) -> None:
 
 
 @pytest.mark.parametrize("act", ["Next series", CANCEL, "Undo"])
-def test_an_unanswered_correction_holds_what_would_lose_it(desk: Desk, act: str) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
-    button = next(each for each in page.of(ui.button) if each.text.startswith(act))
-    page.fire(button, "click", {"number": 7})
-    assert page.scripts[-1] == "lab.answered(7, false)"
+def test_an_unanswered_correction_holds_what_would_lose_it(entered: Entered, act: str) -> None:
+    page = asked_to_correct(entered)
+    assert not page.sends(act, 7)
     assert page.field("Depth under 40.5 N (mm)").value == "2,25"
     assert page.focused() is page.field("Why")
     assert "40.5 N: 22.5 mm becomes 2.25 mm." in page.outline()
     assert len(changed_states(page)) == 1
-    assert len(history(desk, id_)) == 2
+    assert len(entered.history()) == 2
     page.press("Correct it")
-    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "2.25")]
+    assert entered.depths() == [("20", "1.5"), ("40.5", "2.25")]
     page.press("Next series")
     assert "h2 New series" in page.outline()
 
 
-def test_a_change_outlives_another_reading(desk: Desk) -> None:
-    id_ = begun(desk)
-    page = asked_to_correct(desk, id_)
+def test_a_change_outlives_another_reading(entered: Entered) -> None:
+    page = asked_to_correct(entered)
     enter(page, "Depth under 60 N (mm)", "3")
     page.fill("Further load (N)", "80")
     page.fill("Its depth (mm)", "4")
@@ -317,4 +286,4 @@ def test_a_change_outlives_another_reading(desk: Desk) -> None:
     page.press("Leave it as it was")
     assert page.field("Depth under 40.5 N (mm)").value == "22.5"
     assert changed_states(page) == []
-    assert depths(desk, id_) == [("20", "1.5"), ("40.5", "22.5"), ("60", "3"), ("80", "4")]
+    assert entered.depths() == [("20", "1.5"), ("40.5", "22.5"), ("60", "3"), ("80", "4")]

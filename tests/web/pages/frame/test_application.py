@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 import uvicorn
@@ -150,49 +151,6 @@ def test_networks_have_tries_of_their_own() -> None:
     assert tries.wait_s("another") == 0.0
 
 
-class Wire(asyncio.Transport):
-    """A connection that hears what a server does with it."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.closed = False
-        self.written = b""
-        self.protocol: asyncio.BaseProtocol | None = None
-
-    def write(self, data: Any) -> None:
-        self.written += bytes(data)
-
-    def close(self) -> None:
-        self.closed = True
-
-    def is_closing(self) -> bool:
-        return self.closed
-
-    def set_protocol(self, protocol: asyncio.BaseProtocol) -> None:
-        self.protocol = protocol
-
-    def get_protocol(self) -> asyncio.BaseProtocol:
-        assert self.protocol is not None
-        return self.protocol
-
-    def pause_reading(self) -> None:
-        """As if it did."""
-
-    def resume_reading(self) -> None:
-        """As if it did."""
-
-
-class Timer:
-    """Calls that are due later."""
-
-    def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
-        self.is_waiting = True
-
-    def cancel(self) -> None:
-        self.is_waiting = False
-
-
 async def hi(_: Scope, receive: Receive, send: Send) -> None:
     while (await receive()).get("more_body"):
         pass
@@ -201,31 +159,33 @@ async def hi(_: Scope, receive: Receive, send: Send) -> None:
 
 
 class Patience:
-    """The server's side of a connection, and for how long it waits with it."""
+    """The server's side of a connection to nobody, and for how long it waits with it."""
 
     def __init__(self) -> None:
-        self.wire = Wire()
+        self.wire = Mock(spec=asyncio.Transport)
+        self.wire.is_closing.side_effect = lambda: self.wire.close.called
+        self.wire.get_extra_info.return_value = None
         self.state = ServerState()
-        self.timers: list[Timer] = []
+        self.timers: list[tuple[float, Mock]] = []
         loop = asyncio.get_running_loop()
         later = loop.call_later
 
         def call_later(seconds: float, act: Callable[..., Any], *given: Any, **named: Any) -> Any:
             if act != self.wire.close:
                 return later(seconds, act, *given, **named)
-            self.timers.append(Timer(seconds))
-            return self.timers[-1]
+            self.timers.append((seconds, Mock()))
+            return self.timers[-1][1]
 
         vars(loop)["call_later"] = call_later
         config = uvicorn.Config(hi, ws="none", lifespan="off", log_level="critical")
         config.load()
         self.protocol = TimeLimitedProtocol(config, self.state, {})
-        self.wire.set_protocol(self.protocol)
+        self.wire.get_protocol.return_value = self.protocol
         self.protocol.connection_made(self.wire)
 
     @property
     def waits(self) -> list[float]:
-        return [each.seconds for each in self.timers if each.is_waiting]
+        return [seconds for seconds, timer in self.timers if not timer.cancel.called]
 
     async def hears(self, data: bytes) -> list[float]:
         """How long it waits for a message."""
@@ -234,7 +194,7 @@ class Patience:
 
     async def answers(self, count: int) -> None:
         """Wait until so many answers are there."""
-        while self.wire.written.count(b"hi") < count:
+        while b"".join(bytes(call.args[0]) for call in self.wire.write.call_args_list).count(b"hi") < count:
             await asyncio.sleep(0)
 
 
@@ -289,14 +249,14 @@ def test_a_head_without_an_end_is_cut_off_and_each_request_is_counted_by_itself(
                 start = b"GET / HTTP/1.1\r\nHost: x\r\nA: "
                 await server.hears(start)
                 await server.hears(b"a" * (65_536 - len(start)))
-                assert not server.wire.closed
+                assert not server.wire.close.called
                 assert await server.hears(b"\r\n\r\n") == []
                 await server.answers(number)
             await server.hears(b"GET / HTTP/1.1\r\nA: ")
             await server.hears(b"a" * (65_536 - 19))
-            assert not server.wire.closed
+            assert not server.wire.close.called
             await server.hears(b"a")
-            assert server.wire.closed
+            assert server.wire.close.called
 
     finished(talk())
 

@@ -14,6 +14,10 @@ import pytest
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.replay import replay_bytes, replay_of_file, replay_of_run
 from skisnow.replay.page import in_language
+from skisnow.report.run.file import write_run_file
+from skisnow.scenario import scenario_values
+from skisnow.scenario.keys import in_sections
+from skisnow.simulation.run_summary import summary_dict
 from skisnow.ski import read_ski
 from skisnow.track.read import read_track
 from skisnow.web import lab_tracks
@@ -24,10 +28,25 @@ from tests.coded import raises
 
 from ....report.runs import circle_run
 from ...replay.test_addresses import gpx
-from ..desk import Desk, Sheet
+from ..desk import Desk, Sheet, in_this_process
 
 TRACK = b"time_s,x_m,y_m,z_m\n0,1,2,0.1\n1,4,6,0.2\n"
 ODD = 'a "b" \\n <i>&c\\'
+
+
+@pytest.fixture(scope="module")
+def run_files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """Files of a turn as the command leaves them."""
+    place, run = tmp_path_factory.mktemp("run") / "run.nc", circle_run(count=11)
+    write_run_file(run, in_sections(scenario_values(run.scenario)), place)
+    summary = json.dumps(summary_dict(run), allow_nan=False)
+    return {"run.nc": place.read_bytes(), "summary.json": summary.encode()}
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Read sent files in this process; gives limits, work and its arguments."""
+    return in_this_process(monkeypatch, "replay_addresses")
 
 
 def options(page: Sheet, key: str) -> list[tuple[str, str, bool]]:

@@ -1,7 +1,9 @@
 """Helpers that the tests of this folder share."""
 
+from dataclasses import dataclass
 from typing import Any
 
+import pytest
 from nicegui import ui
 
 from skisnow.campaign.store import JournalEntry, Journals, NewEntry
@@ -57,52 +59,62 @@ def undo_button(page: Sheet) -> str:
     return next((each.text for each in page.of(ui.button) if each.text.startswith("Undo")), "")
 
 
-def begun(desk: Desk, text: str = TOML) -> str:
-    return Journals(desk.lab.store).begin(text)
+@dataclass
+class Entered:
+    """A campaign that is being entered, with its pages and what is stored of it."""
+
+    desk: Desk
+    id_: str
+
+    def open(self, query: str = "", language: str = "en") -> Sheet:
+        return self.desk.open(f"/enter/{self.id_}{query}", language)
+
+    def series_page(self, name: str = "1", language: str = "en") -> Sheet:
+        return self.open(f"?table=penetration.csv&test={name}", language)
+
+    def begun_series(self) -> Sheet:
+        """A page on a series that has no reading yet."""
+        return self.open("?table=penetration.csv&test=1&site=A&tool=ski%20piece&edge_angle_deg=30")
+
+    def session(self) -> EditSession:
+        return EditSession(self.desk.lab, self.id_)
+
+    def write(self, entry: NewEntry) -> JournalEntry:
+        journals = Journals(self.desk.lab.store)
+        return journals.append(self.id_, entry, seen=journals.entries(self.id_)[-1].sequence)
+
+    def add(self, file: str, name: str, **cells: str) -> JournalEntry:
+        """A row that somebody entered."""
+        position = len(self.session().test(file, name).history)
+        who = cells.pop("who", "Ada")
+        return self.write(NewEntry(action="add", file=file, test=name, cells=cells, position=position, who=who))
+
+    def add_series(self, name: str, *readings: tuple[str, str], **further: str) -> None:
+        for load, depth in readings:
+            self.add(PENETRATION, name, **{"experiment": name, **SERIES, "load_N": load, "depth_mm": depth} | further)
+
+    def add_shear(self, name: str, **further: str) -> None:
+        self.add(SHEAR, name, **({"experiment": name} | SHEARED | further))
+
+    def stored(self, file: str, name: str) -> list[dict[str, str]]:
+        """The rows of a test as they are now."""
+        return [row.cells for row in self.session().test(file, name).rows]
+
+    def depths(self, name: str = "1") -> list[tuple[str, str]]:
+        return [(row["load_N"], row["depth_mm"]) for row in self.stored(PENETRATION, name)]
+
+    def history(self) -> list[JournalEntry]:
+        return list(Journals(self.desk.lab.store).entries(self.id_))[1:]
 
 
-def write(desk: Desk, id_: str, entry: NewEntry) -> JournalEntry:
-    journals = Journals(desk.lab.store)
-    return journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
+def begun(desk: Desk, text: str = TOML) -> Entered:
+    return Entered(desk, Journals(desk.lab.store).begin(text))
 
 
-def add(desk: Desk, id_: str, file: str, name: str, **cells: str) -> JournalEntry:
-    """A row that somebody entered."""
-    position = len(EditSession(desk.lab, id_).test(file, name).history)
-    who = cells.pop("who", "Ada")
-    return write(desk, id_, NewEntry(action="add", file=file, test=name, cells=cells, position=position, who=who))
-
-
-def add_series(desk: Desk, id_: str, name: str, *readings: tuple[str, str], **further: str) -> None:
-    for load, depth in readings:
-        cells = {"experiment": name, **SERIES, "load_N": load, "depth_mm": depth} | further
-        add(desk, id_, PENETRATION, name, **cells)
-
-
-def add_shear(desk: Desk, id_: str, name: str, **further: str) -> None:
-    add(desk, id_, SHEAR, name, **({"experiment": name} | SHEARED | further))
-
-
-def stored(desk: Desk, id_: str, file: str, name: str) -> list[dict[str, str]]:
-    """The rows of a test as they are now."""
-    return [row.cells for row in EditSession(desk.lab, id_).test(file, name).rows]
-
-
-def depths(desk: Desk, id_: str, name: str = "1") -> list[tuple[str, str]]:
-    return [(row["load_N"], row["depth_mm"]) for row in stored(desk, id_, PENETRATION, name)]
-
-
-def history(desk: Desk, id_: str) -> list[JournalEntry]:
-    return list(Journals(desk.lab.store).entries(id_))[1:]
-
-
-def series_page(desk: Desk, id_: str, name: str = "1", language: str = "en") -> Sheet:
-    return desk.open(f"/enter/{id_}?table=penetration.csv&test={name}", language)
-
-
-def begun_series(desk: Desk, id_: str) -> Sheet:
-    """A page on a series that has no reading yet."""
-    return desk.open(f"/enter/{id_}?table=penetration.csv&test=1&site=A&tool=ski%20piece&edge_angle_deg=30")
+@pytest.fixture
+def entered(desk: Desk) -> Entered:
+    """A campaign in which nothing was entered yet."""
+    return begun(desk)
 
 
 def enter(page: Sheet, name: str, text: str, number: int | None = None) -> None:
@@ -142,22 +154,6 @@ def selected(page: Sheet) -> list[Any]:
     """Fields whose text was marked, so that it is typed over."""
     told = [each for each in [*page.at_first, *page.scripts] if '"select"' in each]
     return [page.client.elements.get(int(each.split("(")[1].split(",")[0])) for each in told]
-
-
-HEAD = [
-    "h1 Desk",
-    "link Penetration -> /enter/{id}?table=penetration.csv",
-    "link Shear -> /enter/{id}?table=shear.csv",
-    "link Density -> /enter/{id}?table=density.csv",
-    "link Drop cone -> /enter/{id}?table=drop_cone.csv",
-    "link Analysis -> /analysis/entry/{id}",
-    "link Campaign -> /describe?entry={id}",
-    "field Operator = 'Ada'",
-]
-
-
-def head(id_: str) -> list[str]:
-    return [line.format(id=id_) for line in HEAD]
 
 
 def found(**curves: SeriesCurve) -> QuickResults:
