@@ -69,12 +69,11 @@ def test_a_file_filled_by_its_name_has_a_hidden_one_until_it_is_whole(tmp_path: 
 
 
 def test_folders_above_a_file_are_made_and_nothing_stays_open(tmp_path: Path) -> None:
-    opened = Path("/proc/self/fd")
-    before = len(list(opened.iterdir())) if opened.is_dir() else 0
+    before = open_files()
     for number in range(5):
         write_file(tmp_path / "far" / "away" / f"{number}.txt", "text")
     assert len(list((tmp_path / "far" / "away").iterdir())) == 5
-    assert (len(list(opened.iterdir())) if opened.is_dir() else 0) == before
+    assert open_files() == before
 
 
 def test_a_folder_is_tried_before_long_work(tmp_path: Path) -> None:

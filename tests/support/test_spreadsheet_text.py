@@ -56,6 +56,7 @@ def test_every_text_comes_back() -> None:
     [
         ("Höhe".encode(), "utf-8", None),
         ("Höhe".encode("utf-8-sig"), "utf-8-sig", None),
+        ("\ufeffHöhe".encode("utf-8-sig"), "utf-8-sig", None),  # two byte order marks
         ("Höhe".encode("utf-16"), "utf-16", "UTF-16"),
         (b"\xfe\xff" + "Höhe".encode("utf-16-be"), "utf-16", "UTF-16"),
         ("Höhe".encode("cp1252"), "cp1252", "Windows-1252"),
@@ -99,7 +100,16 @@ def test_a_first_line_that_names_the_separator(head: str, separator: str | None)
 
 @pytest.mark.parametrize(
     ("head", "separator"),
-    [("a;b;c,d\n", ";"), ("a,b;c", ","), ("a\tb\n1,2,3,4", "\t"), (";;\n,\na,b", ","), ('"a;b;c"\td', "\t"), ("", ",")],
+    [
+        ("a;b;c,d\n", ";"),
+        ("a,b;c", ","),
+        ("a\tb\n1,2,3,4", "\t"),
+        (";;\n,\na,b", ","),
+        ('"a;b;c"\td', "\t"),
+        ("", ","),
+        ('"a\nb,c,d";e\n', ";"),
+        ("a\n", ","),
+    ],
 )
 def test_the_separator_of_the_first_line_that_says_something(head: str, separator: str) -> None:
     assert most_frequent_separator(head) == separator
@@ -131,6 +141,8 @@ def test_no_number_is_longer_than_the_longest() -> None:
         ([["1,5", "2.5"]], ",", "."),
         ([["1", "a,b"], ["2,5"], ["3.5", "4.5"]], "\t", ","),
         ([["1", "2"], []], ";", "."),
+        ([], ";", "."),
+        ([["ca. 5", "0,25"]], ",", ","),
     ],
 )
 def test_the_first_fractions_tell_the_decimal_mark(groups: list[list[str]], separator: str, mark: str) -> None:

@@ -14,7 +14,7 @@ from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 from skisnow import analyse, results_dict, write_reference
 from skisnow.campaign import Problem, check_campaign, read_campaign
 from skisnow.campaign.problems import error
-from skisnow.campaign.reading.columns import decimal_mark, is_number, iso_moment, number, numbers
+from skisnow.campaign.reading.columns import is_number, iso_moment, number, numbers
 
 from ..conftest import SmallCampaign
 
@@ -59,23 +59,6 @@ def test_decimal_commas_take_no_points() -> None:
 def test_every_float_comes_back(values: list[float], mark: str) -> None:
     cells = [repr(value).replace(".", mark) for value in values]
     assert numbers(cells, mark).tolist() == values
-
-
-@pytest.mark.parametrize(
-    ("groups", "separator", "mark"),
-    [
-        ([], ";", "."),
-        ([["1", "2"]], ";", "."),
-        ([["1,5", "2,5", "1.234"]], ";", ","),
-        ([["1.5", "2.5", "1,5"]], ";", "."),
-        ([["1,5", "1.5"]], ";", ","),
-        ([["1,5", "1.5"]], ",", "."),
-        ([["1", "2"], ["1,5"], ["1.5", "2.5"]], "\t", ","),
-        ([["ca. 5", "0,25"]], ",", ","),
-    ],
-)
-def test_decimal_mark(groups: list[list[str]], separator: str, mark: str) -> None:
-    assert decimal_mark(groups, separator=separator) == mark
 
 
 def test_a_long_cell_is_rejected_after_one_pass() -> None:

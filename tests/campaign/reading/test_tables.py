@@ -185,24 +185,6 @@ def records(data: bytes) -> list[tuple[int, list[str]]]:
 
 
 @pytest.mark.parametrize(
-    ("data", "text", "foreign"),
-    [
-        (b"", "", None),
-        ("Höhe".encode(), "Höhe", None),
-        ("Höhe".encode("utf-8-sig"), "Höhe", None),
-        ("\ufeffHöhe".encode("utf-8-sig"), "Höhe", None),  # two byte order marks
-        ("Höhe".encode("utf-16"), "Höhe", "UTF-16"),
-        (b"\xfe\xff" + "Höhe".encode("utf-16-be"), "Höhe", "UTF-16"),
-        ("Höhe 5–6 €".encode("cp1252"), "Höhe 5–6 €", "Windows-1252"),
-    ],
-)
-def test_decode(data: bytes, text: str, foreign: str | None) -> None:
-    decoded = decode(data)
-    assert decoded.text == text
-    assert decoded.foreign_encoding == foreign
-
-
-@pytest.mark.parametrize(
     "data",
     [
         b"PK\x03\x04\x14\x00\x06\x00\x08\x00",  # a workbook
@@ -221,25 +203,6 @@ def test_binary_is_rejected(data: bytes) -> None:
     with pytest.raises(UnreadableTextError) as caught:
         decode(data)
     assert "binary" in caught.value.action
-
-
-@pytest.mark.parametrize(
-    ("data", "separator"),
-    [
-        (b"a,b;c,d\n", ","),
-        (b"a;b;c\n1,5;2,5;3,5\n", ";"),
-        (b'"a,b,c,d";e\n', ";"),
-        (b'"a\nb,c,d";e\n', ";"),
-        (b"a\tb\n", "\t"),
-        (b"a\n", ","),
-        (b";;;\r\n\r\na,b\r\n", ","),
-        (b"sep=;\na,b,c;d\n", ";"),
-        (b'"sep=\t"\r\na,b\n', "\t"),
-        (b"SEP=,\na;b;c\n", ","),
-    ],
-)
-def test_separator(data: bytes, separator: str) -> None:
-    assert inspect_csv(data).separator == separator
 
 
 def test_separator_that_is_not_read() -> None:

@@ -25,13 +25,17 @@ from .test_store import write
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="the trials are forked")
 
-NURSERY = """
+FORKING = """
 import os, sys
 from pathlib import Path
 import skisnow.campaign.store.migrations, skisnow.campaign.reading.campaign
-from skisnow.campaign.store import Store
+from skisnow.campaign.store import Store, sync
 
-def child(place, folder, diary):
+try:
+    import psycopg
+except ImportError:
+    pass
+def adding(place, folder, diary):
     diary = os.open(diary, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
     def progress(done, total):
         os.write(diary, b"writing " if 2 * done >= total else b"reading ")
@@ -41,10 +45,17 @@ def child(place, folder, diary):
         os.write(diary, b"added ")
     os.write(diary, b"closed ")
 
+def syncing(here, there, diary):
+    diary = os.open(diary, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    with Store.open(Path(here)) as own, Store.open(there) as group:
+        os.write(diary, b"begun ")
+        sync(own, group)
+
 while line := sys.stdin.readline():
     pid = os.fork()
     if pid == 0:
-        child(*line.rstrip("\\n").split("\\t"))
+        work, *given = line.rstrip("\\n").split("\\t")
+        globals()[work](*given)
         os._exit(0)
     print(pid, flush=True)
     sys.stdin.readline()  # until then the number stays the child's, even if it has ended
@@ -68,13 +79,17 @@ class Nursery:
     asking: IO[str]
     answers: IO[str]
 
-    def trial(self, place: Path, folder: Path, diary: Path, delay_s: float | None) -> tuple[int, str, float]:
-        """Exit code, last word of the diary, duration in s."""
+    def trial(
+        self, work: str, first: Path, second: Path | str, diary: Path, delay_s: float | None
+    ) -> tuple[int, str, float]:
+        """Exit code, last word of the diary, duration in s; the delay counts from when a synchronisation begins."""
         diary.unlink(missing_ok=True)
-        self.asking.write(f"{place}\t{folder}\t{diary}\n")
+        self.asking.write(f"{work}\t{first}\t{second}\t{diary}\n")
         self.asking.flush()
         pid = int(self.answers.readline())
         start = time.perf_counter()
+        while work == "syncing" and not diary.exists():
+            time.sleep(0.001)
         if delay_s is not None:
             time.sleep(delay_s)
             os.kill(pid, signal.SIGKILL)
@@ -90,7 +105,7 @@ class Nursery:
 def nursery() -> Iterator[Nursery]:
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # a process with threads should not fork
     with subprocess.Popen(
-        [sys.executable, "-c", NURSERY], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
+        [sys.executable, "-c", FORKING], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
     ) as process:
         assert process.stdin is not None
         yield Nursery(process, process.stdin, present(process.stdout))
@@ -133,7 +148,7 @@ def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> C
         durations = []
         for _ in range(3):
             start_anew(index)
-            code, word, duration_s = nursery.trial(place, folder, diary, None)
+            code, word, duration_s = nursery.trial("adding", place, folder, diary, None)
             assert (code, word) == (0, "closed")
             durations.append(duration_s)
         return float(np.median(durations))
@@ -143,7 +158,7 @@ def kill_many(nursery: Nursery, folder: Path, tmp_path: Path, n_kills: int) -> C
     seen: Counter[tuple[str, bool]] = Counter()
     for index, moment in enumerate(generator.permutation(n_kills) + generator.uniform(size=n_kills)):
         start_anew(index)
-        code, word, _ = nursery.trial(place, folder, diary, span_s[index % 2] * moment / n_kills)
+        code, word, _ = nursery.trial("adding", place, folder, diary, span_s[index % 2] * moment / n_kills)
         assert code in (-signal.SIGKILL, 0)
         log = place.with_name(place.name + "-wal")
         log_bytes = log.stat().st_size if log.exists() else 0
@@ -185,66 +200,7 @@ def test_killed_at_very_many_moments(nursery: Nursery, folder: Path, tmp_path: P
     assert any(is_stored for _, is_stored in seen), seen
 
 
-SYNCING_NURSERY = """
-import os, sys
-from pathlib import Path
-import skisnow.campaign.store.migrations
-from skisnow.campaign.store import Store, sync
-
-try:
-    import psycopg
-except ImportError:
-    pass
-while line := sys.stdin.readline():
-    pid = os.fork()
-    if pid == 0:
-        here, there = line.rstrip("\\n").split("\\t")
-        with Store.open(Path(here)) as own, Store.open(there) as group:
-            os.write(1, b"begun\\n")
-            sync(own, group)
-        os._exit(0)
-    print(pid, flush=True)
-    sys.stdin.readline()  # until then the number stays the child's, even if it has ended
-    print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), flush=True)
-"""
 N_SERIES, N_CAMPAIGNS, SYNCED_BYTES = 3, 3, 300_000
-
-
-@dataclass
-class SyncingNursery:
-    """Forks a child for each trial and reports how it ended."""
-
-    process: subprocess.Popen[str]
-
-    def trial(self, here: Path, there: str, delay_s: float) -> int:
-        """The exit code of a synchronisation that is killed after a while."""
-        asking, answers = self.process.stdin, self.process.stdout
-        assert asking is not None
-        assert answers is not None
-        asking.write(f"{here}\t{there}\n")
-        asking.flush()
-        told = {answers.readline().strip() for _ in range(2)}  # the number, and that it has begun, in any order
-        pid = int(next(iter(told - {"begun"})))
-        time.sleep(delay_s)
-        os.kill(pid, signal.SIGKILL)
-        asking.write("how did it end?\n")
-        asking.flush()
-        return int(answers.readline())
-
-
-@pytest.fixture
-def syncing_nursery() -> Iterator[SyncingNursery]:
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # a process with threads should not fork
-    with subprocess.Popen(
-        [sys.executable, "-c", SYNCING_NURSERY],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        env=environment,
-    ) as process:
-        yield SyncingNursery(process)
-        present(process.stdin).close()
-        assert process.wait(timeout=300) == 0
 
 
 def entered_offline(place: Path, who: str, folder: Path, generator: np.random.Generator) -> None:
@@ -275,14 +231,15 @@ def state(store: Store) -> tuple[list[str], list[str], Counter[str]]:
 
 
 def synchronise_killed(
-    syncing_nursery: SyncingNursery, group: str, laptops: dict[str, Path], generator: np.random.Generator
+    nursery: Nursery, group: str, laptops: dict[str, Path], generator: np.random.Generator
 ) -> Counter[str]:
     """Synchronise each laptop, killed at random moments, until it came to its end twice; counts how it went."""
     seen: Counter[str] = Counter()
     for place in laptops.values():
         delay_s, ended = 0.02, 0
         while ended < 2:
-            code = syncing_nursery.trial(place, group, float(generator.uniform(0, delay_s)))
+            diary = place.with_suffix(".diary")
+            code, _, _ = nursery.trial("syncing", place, group, diary, float(generator.uniform(0, delay_s)))
             assert code in (-signal.SIGKILL, 0)
             ended += code == 0
             seen["ended" if code == 0 else "killed"] += 1
@@ -300,7 +257,7 @@ def synchronise_killed(
     ],
 )
 def test_nothing_is_lost_and_nothing_comes_twice(
-    syncing_nursery: SyncingNursery,
+    nursery: Nursery,
     where: str,
     seed: int,
     empty_file: Path,
@@ -316,7 +273,7 @@ def test_nothing_is_lost_and_nothing_comes_twice(
         group = server.emptied()
     else:
         group = str(shutil.copy(empty_file, tmp_path / "group.sqlite3"))
-    seen = synchronise_killed(syncing_nursery, group, laptops, generator)
+    seen = synchronise_killed(nursery, group, laptops, generator)
     assert seen["killed"] >= 2, seen
     with Store.open(laptops["Ada"]) as ada, Store.open(laptops["Bo"]) as bo, Store.open(group) as shared:
         for laptop in (ada, bo, ada):
