@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 from typing import TypeAlias
 
-import jsonschema
 import numpy as np
 import pytest
 
@@ -25,6 +24,7 @@ from ..replay.held import held_replay
 from ..report.runs import circle_run
 from ..report.test_run_report import summary_of
 from ..track.paths import NOISE, circle
+from .json_answer import json_answer
 
 Printed: TypeAlias = pytest.CaptureFixture[str]
 FALL_LINE = "--fall-line-azimuth-deg"
@@ -117,22 +117,6 @@ def test_a_track_in_latitude_and_longitude_needs_the_fall_line(folder: Path, tmp
         11.12 * np.cos(np.radians(10)) + 2 * np.sin(np.radians(10)), abs=0.05
     )
     assert abs(shown.track.place[1, 1]) < 1e-3
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["--starts-at-s", "2"], "--track"),
-        (["--exaggeration", "21"], "from 1 to 20"),
-        (["--moment-s", "x"], "x"),
-        (["other", "--ghost", "another"], "--ghost"),
-    ],
-)
-def test_wrong_words_are_rejected_before_anything_is_read(words: list[str], said: str, capsys: Printed) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["replay", "nowhere", *words])
-    assert ended.value.code == 2
-    assert said in capsys.readouterr().err
 
 
 def test_a_folder_without_a_run_is_named(tmp_path: Path, capsys: Printed) -> None:
@@ -260,9 +244,7 @@ def turn(tmp_path: Path) -> Path:
 
 
 def test_json_is_the_contract(turn: Path, capsys: Printed) -> None:
-    assert main(["track", str(turn), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
-    jsonschema.validate(found, SCHEMA)
+    found = json_answer(["track", str(turn)], SCHEMA, capsys)
     assert found["points"] == 51
     assert found["distance_m"] == pytest.approx(40.0, rel=0.01)
     assert len(found["runs"]) == len(found["turns"]) == 1

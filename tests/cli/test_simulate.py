@@ -22,6 +22,7 @@ from skisnow.cli.shell import json_schema
 from skisnow.simulation.run_tables import write_track
 
 from ..simulation.straight_run import STRAIGHT, straight_run
+from .json_answer import json_answer
 
 SCHEMA = json_schema("summary")
 ASKED = ["carved-46m", *(word for key, value in STRAIGHT.items() for word in ("--set", f"{key}={value}"))]
@@ -47,10 +48,7 @@ def interrupted(scenario: Scenario, *, progress: Callable[[float, float], None] 
 
 
 def answer(words: list[str], printed: Printed) -> Any:
-    assert main(["simulate", *words, "--json"]) == 0
-    found = json.loads(printed.readouterr().out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
-    jsonschema.validate(found, SCHEMA)
-    return found
+    return json_answer(["simulate", *words], SCHEMA, printed)
 
 
 def test_simulator_itself_answers_through_the_command(capsys: Printed) -> None:
@@ -352,10 +350,3 @@ def test_out_that_cannot_be_written_is_reported_before_the_work(
     (tmp_path / "file").write_text("", encoding="utf-8")
     assert main(["simulate", *ASKED, "--out", str(tmp_path / "file")]) == 1
     assert "cannot be written" in capsys.readouterr().err
-
-
-def test_scenario_is_needed(capsys: Printed) -> None:
-    with pytest.raises(SystemExit) as left:
-        main(["simulate"])
-    assert left.value.code == 2
-    assert "--list names them" in capsys.readouterr().err

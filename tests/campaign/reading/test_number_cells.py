@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
@@ -55,6 +55,7 @@ def test_decimal_commas_take_no_points() -> None:
     np.testing.assert_array_equal(numbers(["1,5", "1.5", "1,2,3", ""], ","), [1.5, np.nan, np.nan, np.nan])
 
 
+@settings(max_examples=40)
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1), st.sampled_from(".,"))
 def test_every_float_comes_back(values: list[float], mark: str) -> None:
     cells = [repr(value).replace(".", mark) for value in values]

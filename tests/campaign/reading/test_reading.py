@@ -2,7 +2,6 @@
 
 import dataclasses
 import hashlib
-import itertools
 import math
 import os
 import random
@@ -109,7 +108,12 @@ ENCODINGS = {"utf-8": None, "utf-8-sig": None, "utf-16": "UTF-16", "cp1252": "Wi
 def test_every_form_reads_the_same(small: SmallCampaign, encoding: str, separator: str) -> None:
     small.replace("penetration.csv", '"hard, wet"', "hard and wet")
     expected = plain(small.read())
-    for comma, line_end, stray in itertools.product((False, True), ("\n", "\r\n", "\r"), (False, True)):
+    for comma, line_end, stray in (
+        (False, "\r\n", True),
+        (True, "\n", True),
+        (True, "\r\n", False),
+        (True, "\r", True),
+    ):
         files = {
             name: rewritten(small[name], separator, comma, line_end, stray=stray).encode(encoding) for name in CSV_FILES
         }
@@ -266,7 +270,7 @@ def assert_told_and_not_raised(folder: Path) -> None:
 
 
 SHARED_FOLDER = settings(
-    max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 )
 BROKEN = st.one_of(
     st.binary(max_size=200),

@@ -75,21 +75,6 @@ def test_the_command_writes_a_replay_beside_the_report(tmp_path: Path, capsys: p
     assert 'href="replay.html"' in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_replay_needs_a_folder(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["simulate", "carved-46m", "--replay"])
-    assert ended.value.code == 2
-    assert "--out" in capsys.readouterr().err
-
-
-def test_a_file_is_not_taken_for_the_folder_of_a_replay(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["replay", str(tmp_path / "run"), "--out", str(tmp_path / "film.HTML")])
-    assert ended.value.code == 2
-    assert f"--out {tmp_path}" in capsys.readouterr().err
-    assert not (tmp_path / "film.HTML").exists()
-
-
 TOLD = """return [...document.querySelectorAll("#replay *")].flatMap((each) => [
     each.getAttribute("aria-label"), each.getAttribute("aria-valuetext"), each.children.length ? "" : each.textContent,
   ]).filter(Boolean)"""
