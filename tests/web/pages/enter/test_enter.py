@@ -11,7 +11,7 @@ from skisnow.geometry import SkiPiece
 from skisnow.report.formatting import significant
 from skisnow.web.entry.series import ON_BLUR, ON_ENTER
 
-from ..desk import Desk, values
+from ..desk import Desk, Sheet, values
 from .conftest import (
     DISCS_OFF,
     NAME,
@@ -112,6 +112,11 @@ def test_what_no_series_can_begin_with_is_reported_at_its_fields(entered: Entere
     assert page.refusals() == []
 
 
+def listed(page: Sheet) -> list[str]:
+    """Names of the series below the form."""
+    return [line.rpartition("=")[2] for line in page.outline() if line.startswith("link[small]")]
+
+
 def test_a_series_has_a_name_of_its_own(entered: Entered) -> None:
     entered.add_series("1", ("20", "1.5"))
     page = entered.open()
@@ -128,8 +133,21 @@ def test_the_next_series_has_what_it_shares_with_the_last_one(entered: Entered) 
     assert list(values(page.between("h2 New series", CHART)).values()) == ["8", "B", "ski piece", "45", ""]
     assert page.focused() is page.field("Edge angle (°)")
     assert selected(page) == [page.field("Edge angle (°)")]
-    listed = [line for line in page.outline() if line.startswith("link[small]")]
-    assert [line.rpartition("=")[2] for line in listed] == ["a", "7"]
+    assert listed(page) == ["a", "7"]
+
+
+def test_the_list_grows_with_each_series_of_a_page(entered: Entered) -> None:
+    page = entered.open()
+    page.fill("Site", "A")
+    page.fill("Edge angle (°)", "0")
+    names = []
+    for name in map(str, range(1, 9)):
+        page.press("Begin the series")
+        enter(page, "Depth under 20 N (mm)", f"1.{name}")
+        names.insert(0, name)
+        assert listed(page) == names
+        page.press("Next series")
+        assert listed(page) == names
 
 
 @pytest.mark.parametrize(
