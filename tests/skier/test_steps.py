@@ -243,6 +243,7 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
     leant = (aside / np.hypot(aside, HEIGHT)) ** 2
     turns = np.clip(-np.gradient(7.4 * side * leant, STEP) - 2.4 * np.tanh(planned.force / 2.0) - 40.0 * aside, -30, 30)
     damping = 0.5 * np.minimum(40.0, 0.245 * np.abs(75.0 * planned.force) / (7.0 * 0.2))
+    steps = _dynamics(75.0 * planned.force, turns, damping, 2.1)
     for k in range(n + 1):
         last = k == n
         i = min(k, n - 1)
@@ -263,9 +264,8 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
             own[2 * k + j] = 1.0 / scale
             rows.append(own)
             sides.append(0.0)
-        a, b = _dynamics(75.0 * planned.force[k], turns[k], damping[k], 2.1)
-        power, inputs = a @ power, a @ inputs
-        inputs[:, 2 * k : 2 * k + 2] += b
+        power, inputs = steps[k, :, :7] @ power, steps[k, :, :7] @ inputs
+        inputs[:, 2 * k : 2 * k + 2] += steps[k, :, 7:]
     best = np.linalg.lstsq(np.array(rows), np.array(sides), rcond=None)[0]
     assert -gain @ state == pytest.approx(best[:2], rel=1e-6, abs=1e-6)
 

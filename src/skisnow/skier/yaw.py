@@ -62,22 +62,14 @@ def yaw_gain(
     force = body.mass * planned.force
     damping = 0.5 * np.minimum(40.0, 0.245 * np.abs(force) / (max(speed, 2.0) * np.maximum(np.abs(slip), 0.15)))
     eager = np.minimum(1.0, np.abs(planned.force) / 1.962) + 0.1
-    cost, gain = np.zeros((7, 7)), np.zeros((2, 7))
+    step = _dynamics(force, turns, damping, body.yaw)
+    costs = _costs(eager / SLIP**2, heading, FACING * planned.course)
+    ahead, gain = 5.0 * costs[-1, :7, :7], np.zeros((2, 7))
     for k in range(len(force) - 1, -1, -1):
-        here = _cost(eager[k] / SLIP**2, heading[k], FACING * planned.course[k])
-        if k == len(force) - 1:
-            cost = 5.0 * here
-        a, b = _dynamics(force[k], turns[k], damping[k], body.yaw)
-        weighed = b.T @ cost
-        inputs = weighed @ b
-        inputs[0, 0] += 1.0 / TORQUE**2
-        inputs[1, 1] += 1.0 / SHIFT_ACCELERATION**2
-        towards = weighed @ a
-        determinant = inputs[0, 0] * inputs[1, 1] - inputs[0, 1] * inputs[1, 0]
-        inverse = np.array([[inputs[1, 1], -inputs[0, 1]], [-inputs[1, 0], inputs[0, 0]]]) / determinant
-        gain = inverse @ towards
-        cost = here + a.T @ cost @ a - towards.T @ gain
-        cost = 0.5 * (cost + cost.T)
+        both = costs[k] + step[k].T @ ahead @ step[k]
+        towards, (own, mixed, _, other) = both[7:, :7], both[7:, 7:].ravel().tolist()
+        gain = np.array([[other, -mixed], [-mixed, own]]) @ towards / (own * other - mixed**2)
+        ahead = both[:7, :7] - towards.T @ gain
     return gain
 
 
@@ -87,29 +79,26 @@ def yaw_state(seen: Seen, ahead: float, ahead_rate: float) -> FloatArray:
     return np.array([skis, seen.turn_rate, body, seen.body_rate, ahead, ahead_rate, 1.0])
 
 
-def _dynamics(force: float, turns: float, damping: float, inertia: float) -> tuple[FloatArray, FloatArray]:
-    """Matrices of one step: transition of the state, and effect of the inputs."""
-    a, b = np.eye(7), np.zeros((7, 2))
-    a[0, 1] = a[2, 3] = a[4, 5] = STEP
-    a[1, 4] = STEP * SHEAR_SHIFT * force / SKI_INERTIA
-    a[1, 1] -= min(1.0, STEP * damping / SKI_INERTIA)
-    a[3, 4], a[3, 6] = -STEP * force / inertia, STEP * turns / inertia
-    b[1, 0], b[3, 0], b[5, 1] = STEP / SKI_INERTIA, -STEP / inertia, STEP
-    for place in (0, 2, 4):
-        unit = np.zeros(7)
-        unit[place + 1] = 1.0
-        a[place] += 0.5 * STEP * (a[place + 1] - unit)
-        b[place] += 0.5 * STEP * b[place + 1]
-    return a, b
+def _dynamics(force: FloatArray, turns: FloatArray, damping: FloatArray, inertia: float) -> FloatArray:
+    """State after each step over state and inputs, (steps, 7, 9)."""
+    rates = np.zeros((len(force), 7, 9))
+    rates[:, [0, 2, 4], [1, 3, 5]] = 1.0
+    rates[:, 1, 4] = SHEAR_SHIFT * force / SKI_INERTIA
+    rates[:, 1, 1] = -np.minimum(1.0 / STEP, damping / SKI_INERTIA)
+    rates[:, 3, 4], rates[:, 3, 6] = -force / inertia, turns / inertia
+    rates[:, 1, 7], rates[:, 3, 7], rates[:, 5, 8] = 1.0 / SKI_INERTIA, -1.0 / inertia, 1.0
+    rates[:, [0, 2, 4]] += 0.5 * STEP * rates[:, [1, 3, 5]]
+    return np.eye(7, 9) + STEP * rates
 
 
-def _cost(slip: float, heading: float, facing: float) -> FloatArray:
-    """Cost matrix of a state, with the weight of the slip, for headings of skis and body (rad)."""
+def _costs(slip: FloatArray, heading: FloatArray, facing: FloatArray) -> FloatArray:
+    """Cost of state and inputs at each step, (steps, 9, 9): the weight of the slip, headings of skis and body (rad)."""
     hips, body = 1.0 / HIPS**2, 1.0 / BODY**2
-    q = np.zeros((7, 7))
-    q[0, 0], q[2, 2], q[0, 2], q[2, 0] = slip + hips, hips + body, -hips, -hips
-    q[0, 6] = q[6, 0] = -slip * heading
-    q[2, 6] = q[6, 2] = -body * facing
-    q[6, 6] = slip * heading**2 + body * facing**2
-    q[3, 3], q[4, 4] = 1.0 / BODY_RATE**2, 1.0 / SHIFT**2
+    q = np.zeros((len(slip), 9, 9))
+    q[:, 0, 0], q[:, 2, 2] = slip + hips, hips + body
+    q[:, 0, 2] = q[:, 2, 0] = -hips
+    q[:, 0, 6] = q[:, 6, 0] = -slip * heading
+    q[:, 2, 6] = q[:, 6, 2] = -body * facing
+    q[:, 6, 6] = slip * heading**2 + body * facing**2
+    q[:, [3, 4, 7, 8], [3, 4, 7, 8]] = [1.0 / each**2 for each in (BODY_RATE, SHIFT, TORQUE, SHIFT_ACCELERATION)]
     return q
