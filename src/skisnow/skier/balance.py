@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -30,8 +30,8 @@ HELD_AT_START = 1.3
 """Force that the edges of a side-slip hold at the start, over what the slope asks for (modelling assumption)."""
 LEVEL = np.array([0.0, 0.0, 1.0])
 """Normal of a plane slope in its own axes."""
-FLIES_FROM, TOUCHED = 0.05, 0.003
-"""Height of the feet over the snow (m) at which a flight begins, and at which it ends (modelling assumptions)."""
+TOUCHED: Final = 0.003
+"""Height of the feet over the snow (m) at which a flight ends (modelling assumption)."""
 GREATEST_PRESSED = 2.0
 """Greatest acceleration (m/s²) by the bend of the slope that the skier counts with (modelling assumption)."""
 
@@ -90,6 +90,7 @@ class BalancedSkier:
     records: list[BalanceRecord] = field(default_factory=list, repr=False)
     skier: Skier = field(init=False)
     posture: Posture = field(init=False, repr=False)
+    _flies_from: float = field(init=False, repr=False)  # height of the feet (m)
 
     def __post_init__(self) -> None:
         scenario = self.scenario
@@ -99,6 +100,8 @@ class BalancedSkier:
             )
         self.skier, sledge = scenario.skier, scenario.sledge
         half = float(scenario.ski.at(0.0).width) / 2.0
+        # the steepest ski that bears stands on the edges of its widest sections
+        self._flies_from = 0.5 * scenario.ski.tip_width * math.sin(self.skier.greatest_edge)
         self.posture = Posture(self.skier, sledge.centre_of_mass, sledge.stance_width, half)
         self.controller = self.controller or self._built_in()
 
@@ -184,7 +187,7 @@ class BalancedSkier:
             return seen
         feet = moment.position + moment.rotation @ moment.boots[:, 0].mean(axis=0)
         flies = flown and seen.load < sledge.mass * gravity  # edged skis bear with their boots some centimetres up
-        if feet[2] - heights_of(slope, *feet[:2]) < (TOUCHED if flies else FLIES_FROM):
+        if feet[2] - heights_of(slope, *feet[:2]) < (TOUCHED if flies else self._flies_from):
             return seen
         velocity, landing, fall = moment.rotation @ moment.velocity[:3], feet.copy(), 0.0
         for _ in range(5):

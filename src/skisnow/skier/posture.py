@@ -39,9 +39,9 @@ DAMPED_FROM: Final = math.radians(5.0)
 times the control's period over the damping is to stay below 1)."""
 SETTLING, FASTEST_RISE = 3.0, 0.5
 """Rate (1/s) at which the height goes back to its own, and its greatest speed (m/s) (modelling assumptions)."""
-APPROACH: Final = 0.25
-"""Share of their clearance by which the skis near the snow in a period (derived: below 6 - √32 = 0.34, from which on
-they overshoot, since half of a period's rate acts in the next)."""
+APPROACH: Final = 6.0 - math.sqrt(32.0)
+"""Share of their clearance by which the skis near the snow in a period (derived: the most without an overshoot, since
+half of a period's rate acts in the next)."""
 LANDED: Final = 0.05
 """How much shorter than usual legs are when a landing is over (m) (modelling assumption)."""
 ANKLES, LEVELS = math.radians(25.0), 25.0
