@@ -1,10 +1,9 @@
-"""Which layer of a scenario counts: 500 random combinations, compared with an earlier version's answers."""
+"""Layers of a scenario: random keys together, against rules that are written here."""
 
+import itertools
 import json
+import random
 import warnings
-from collections import Counter
-from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,158 +12,114 @@ import pytest
 from skisnow import Scenario, load_scenario
 from skisnow._support.errors import ParameterError, RangeWarning
 
-from .layers.combinations import Combination, answer, combinations, write_files
-
-ANSWERS = Path(__file__).parent / "layers" / "58cc12bf.json"
-CARVED_46M = {"snow.H_V_N_per_mm3": 0.2, "snow.S_f_N_per_mm2": 0.5, "ski.name": "giant-slalom", "slope.angle_deg": 10.0}
-NAMED = ("snow.results", "snow.published")
 H_V, S_F, RATIO = "snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.unloading_ratio"
-NEEDED = {
-    "shear.relative_decrease_per_rad": ("shear.law", "by-angle", "constant"),
-    "shear.snow_density_kg_per_m3": ("shear.law", "by-density", "constant"),
-    "slope.profile": ("slope.kind", "profile", "plane"),
+RESULTS = {
+    "penetration": {
+        "experiments": [{"used": True, "site": "A", "H_V_N_per_mm3": 0.151}],
+        "unloading": [{"site": "A", "unloading_ratio": 7.0, "unloading_ratio_interval": [6.0, 8.0]}],
+    },
+    "shear": {
+        "experiments": [{"used": True, "site": "A", "S_f_N_per_mm2": 0.351}],
+        "displacement": [{"site": "A", "shear_displacement_mm": 0.25, "shear_displacement_interval_mm": [0.2, 0.3]}],
+    },
 }
-"""Key, value that it needs, and default, of keys without effect otherwise."""
-
-REJECTED, ACCEPTED, CHANGED = "rejected", "accepted", "other values"
-COUNTS = {
-    "same values": 258,
-    "rejected as before": 169,
-    "a key without effect": 33,
-    "two keys of one layer for one quantity": 29,
-    "a number instead of a named snow's H_V or S_f": 9,
-    "k_u/H_V after elastic snow": 1,
-    "u_y that an earlier snow measured": 1,
-}
-
-Layer = dict[str, Any]
-
-
-def contradicts_itself(layer: Layer) -> bool:
-    """True if two keys of the layer give H_V, S_f, k_u/H_V or the ski."""
-    named = [name for name in NAMED if name in layer]
-    hardness = [*named, *({H_V} & layer.keys())]
-    stress = [*named, *({S_F} & layer.keys())]
-    maps = {"hardness.csv": (H_V,), "both.csv": (H_V, S_F)}.get(layer.get("snow.map_file", ""), ())
-    elastic = layer.get("snow.penetration") == "elastic" and layer.get(RATIO, 1.0) != 1.0
-    return (
-        len(hardness) > 1
-        or len(stress) > 1
-        or any(name in layer for name in maps)
-        or elastic
-        or ("ski.name" in layer and "ski.file" in layer)
-    )
-
-
-def has_no_effect(base: Layer, changes: Layer) -> bool:
-    """True if a key of a layer needs another value of a second key than that layer leaves it."""
-    below: Layer = {}
-    for layer in (base, changes):
-        below = below | layer
-        if any(name in layer and below.get(key, default) != value for name, (key, value, default) in NEEDED.items()):
-            return True
-    return False
-
-
-def replaces_one_number(base: Layer, changes: Layer) -> bool:
-    """True if the changes give H_V or S_f of a snow that the base names."""
-    named = any(name in base for name in NAMED) and not any(name in changes for name in NAMED)
-    return named and bool({H_V, S_F} & changes.keys())
-
-
-def number_after_elastic(base: Layer, changes: Layer) -> bool:
-    return base.get("snow.penetration") == "elastic" and RATIO in changes
-
-
-def measured_by_another_snow(base: Layer, changes: Layer) -> bool:
-    """True if the base names a snow with a measured u_y, and the changes one without."""
-    return base.get("snow.site") == "A" and "snow.published" in changes
-
-
-KINDS: dict[str, tuple[str, Callable[[Layer, Layer], bool]]] = {
-    "two keys of one layer for one quantity": (REJECTED, lambda *both: any(map(contradicts_itself, both))),
-    "a key without effect": (REJECTED, has_no_effect),
-    "a number instead of a named snow's H_V or S_f": (ACCEPTED, replaces_one_number),
-    "k_u/H_V after elastic snow": (ACCEPTED, number_after_elastic),
-    "u_y that an earlier snow measured": (CHANGED, measured_by_another_snow),
-}
-"""Kinds of differences from the earlier version, what changed, and when a combination is of that kind."""
-
-
-Resolved = list[tuple[Combination, Any]]
+SNOWS: tuple[dict[str, Any], ...] = (
+    {"snow.published": "race-piste"},
+    {"snow.results": "results.json", "snow.site": "A"},
+    {"snow.map_file": "both.csv"},
+    {"snow.penetration": "elastic"},
+)
+PARTS: tuple[dict[str, Any], ...] = (
+    *SNOWS,
+    {H_V: 0.2}, {S_F: 0.4}, {RATIO: 12.0}, {"snow.map_file": "hardness.csv"}, {"snow.shear_displacement_mm": 0.3},
+    {"ski.name": "carver"}, {"slope.kind": "plane", "slope.angle_deg": 10.0}, {"slope.profile": "profile.csv"},
+    {"shear.law": "by-angle"}, {"shear.law": "by-angle", "shear.relative_decrease_per_rad": 0.2},
+    {"shear.relative_decrease_per_rad": 0.3}, {"friction.mu_0": 0.05}, {"drag.drag_area_m2": 0.5},
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("layers")
-    write_files(folder)
+    (folder / "results.json").write_text(json.dumps(RESULTS), encoding="utf-8")
+    (folder / "hardness.csv").write_text("x_m,H_V_N_per_mm3\n-500,0.161\n500,0.161\n", encoding="utf-8")
+    (folder / "both.csv").write_text(
+        "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n-500,0.171,0.371\n500,0.171,0.371\n", encoding="utf-8"
+    )
+    (folder / "profile.csv").write_text(
+        "x,y\n" + "".join(f"{x},{-0.2 * x}\n" for x in range(-30, 90, 3)), encoding="utf-8"
+    )
     return folder
 
 
-def resolved(combination: Combination, folder: Path) -> Any:
+def scenario_of(layer: dict[str, Any], folder: Path) -> Scenario:
+    paths = {
+        name: str(folder / value) if str(value).endswith((".json", ".csv")) else value for name, value in layer.items()
+    }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
-        return answer(combination, folder, load_scenario, ParameterError)
+        return load_scenario("carved-46m", changes=paths)
 
 
-@pytest.fixture(scope="module")
-def answers(folder: Path) -> Resolved:
-    """Every combination with its values; None if it is rejected."""
-    return [(combination, resolved(combination, folder)) for combination in combinations()]
+def contradicts_itself(layer: dict[str, Any]) -> bool:
+    """True if two keys of the layer give H_V, S_f or k_u/H_V."""
+    named = [name for name in ("snow.results", "snow.published") if name in layer]
+    in_map = {"hardness.csv": {H_V}, "both.csv": {H_V, S_F}}.get(layer.get("snow.map_file", ""), set())
+    elastic = layer.get("snow.penetration") == "elastic" and RATIO in layer
+    return elastic or any(
+        len([*named, *({key} & layer.keys())]) > 1 or key in in_map & layer.keys() for key in (H_V, S_F)
+    )
 
 
-def difference(earlier: Any, today: Any) -> str:
-    if earlier is None or today is None:
-        return REJECTED if today is None else ACCEPTED
-    return CHANGED
+def has_no_effect(layer: dict[str, Any]) -> bool:
+    """True if a key of the layer needs another value of a second key."""
+    decrease = "shear.relative_decrease_per_rad" in layer and "shear.law" not in layer
+    return decrease or ("slope.profile" in layer)
 
 
-def test_answers_differ_from_the_earlier_version_only_by_the_rules(answers: Resolved) -> None:
-    """Every difference follows from a rule; docs/decisions.md has the counts."""
-    counts: Counter[str] = Counter()
-    for (combination, today), earlier in zip(answers, json.loads(ANSWERS.read_text()), strict=True):
-        if today == earlier:
-            counts["rejected as before" if today is None else "same values"] += 1
-            continue
-        base = combination.file or CARVED_46M
-        kinds = [
-            name
-            for name, (change, applies) in KINDS.items()
-            if change == difference(earlier, today) and applies(base, combination.changes)
-        ]
-        assert kinds, combination
-        counts[kinds[0]] += 1
-    assert counts == COUNTS
+def numbers(scenario: Scenario) -> dict[str, float | None]:
+    contact = scenario.contact
+    return {
+        H_V: contact.hardness_at(0.0, 0.0),
+        S_F: contact.snow.failure_shear_stress,
+        RATIO: contact.unloading_ratio,
+        "snow.shear_displacement_mm": contact.shear_displacement,
+        "waist": float(scenario.ski.width.min()),
+        "shear.relative_decrease_per_rad": scenario.shear.relative_decrease,
+        "friction.mu_0": contact.friction,
+        "drag.drag_area_m2": scenario.air.drag_area,
+    }
 
 
-def test_one_number_replaces_only_its_own_quantity(answers: Resolved, folder: Path) -> None:
-    """A change of H_V or S_f keeps all other numbers of the combination."""
-    checked = 0
-    for combination, with_number in answers:
-        for place, name in enumerate((H_V, S_F)):
-            if name not in combination.changes or with_number is None:
-                continue
-            changes = {key: value for key, value in combination.changes.items() if key != name}
-            without = resolved(replace(combination, changes=changes), folder)
-            if without is not None:
-                for index, (one, other) in enumerate(zip(with_number, without, strict=True)):
-                    assert index == place or one == other, combination
-                checked += 1
-    assert checked > 20
+def test_a_layer_whose_keys_contradict_each_other_or_have_no_effect_is_rejected(folder: Path) -> None:
+    draws, rejected = random.Random(20261128), 0
+    for _ in range(150):
+        layer = {name: value for part in draws.sample(PARTS, draws.randint(1, 3)) for name, value in part.items()}
+        try:
+            scenario_of(layer, folder)
+            accepted = True
+        except ParameterError:
+            accepted = False
+        assert accepted is not (contradicts_itself(layer) or has_no_effect(layer)), layer
+        rejected += not accepted
+    assert 30 < rejected < 120
 
 
-def test_changes_and_with_agree(answers: Resolved, folder: Path) -> None:
-    """Numbers as a layer of changes, and as arguments of `with_`."""
-    checked = 0
-    for combination, values in answers:
-        numbers = {name: value for name, value in combination.changes.items() if isinstance(value, float)}
-        base = replace(combination, changes={})
-        if len(numbers) < len(combination.changes) or resolved(base, folder) is None:
-            continue
+@pytest.mark.parametrize(("snow", "key"), itertools.product(SNOWS, (H_V, S_F, "friction.mu_0", "drag.drag_area_m2")))
+def test_one_number_replaces_only_its_own_quantity(snow: dict[str, Any], key: str, folder: Path) -> None:
+    """In a layer above that of the snow; the quantities of a map stay until it is removed."""
+    base = scenario_of(snow, folder)
+    if "snow.map_file" in snow and key in (H_V, S_F):
+        with pytest.raises(ParameterError, match="snow_map=None"):
+            base.with_(**{key: 0.33})
+        return
+    before, after = numbers(base), numbers(base.with_(**{key: 0.33}))
+    assert after[key] != before[key]
+    assert {name for name in before if before[name] != after[name]} == {key}
 
-        def load(place: str | Path, numbers: Layer = numbers, **_: Layer) -> Scenario:
-            return load_scenario(place).with_(**numbers)
 
-        assert answer(base, folder, load, ParameterError) == values, combination
-        checked += 1
-    assert checked > 20
+@pytest.mark.parametrize("key", [H_V, S_F, RATIO, "snow.shear_displacement_mm", "friction.mu_0", "drag.drag_area_m2"])
+def test_changes_and_with_agree(key: str, folder: Path) -> None:
+    changed = numbers(scenario_of({key: 0.7 if key != RATIO else 7.0}, folder))
+    assert changed == numbers(load_scenario("carved-46m").with_(**{key: 0.7 if key != RATIO else 7.0}))
+    assert changed != numbers(load_scenario("carved-46m"))
