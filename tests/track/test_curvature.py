@@ -137,7 +137,7 @@ def test_points_without_a_fix_in_a_gap_count_once() -> None:
 
 
 def test_at_rest_there_is_no_heading() -> None:
-    motion = track_motion(track(np.zeros((50, 2)), noise=NOISE))
+    motion = track_motion(track(np.zeros((30, 2)), noise=NOISE))
     assert np.isnan(motion.heading).all()
     assert np.isnan(motion.curvature).all()
 
@@ -184,11 +184,28 @@ def test_a_clean_run_has_no_flags() -> None:
     assert flagged(*run()) == {}
 
 
-def test_a_single_point_far_off_is_a_jump() -> None:
+@pytest.mark.parametrize(
+    ("aside", "flags"),
+    [
+        ({(17, 18): 20.0}, {"jump": [17]}),  # 200 m/s out and back
+        ({(17, 18): 500.0, (19, 20): 500.0}, {"jump": [17, 19]}),  # at the same place; the point between is good
+        ({(0, 1): 500.0}, {"jump": [0]}),
+        ({(N - 1, N): 500.0}, {"jump": [N - 1]}),
+        ({(17, N): 500.0}, {"impossible_step": [17]}),
+        # 140 m/s once; the way past the point is hardly shorter than the one over it
+        ({(17, N): 14.0}, {"impossible_step": [17]}),
+        # a point far off where the track steps aside explains nothing
+        ({(17, 18): 5000.0, (18, N): 500.0}, {"impossible_step": [17, 18]}),
+        ({(17, 19): 500.0}, {"impossible_step": [17, 19]}),
+    ],
+)
+def test_points_aside(aside: dict[tuple[int, int], float], flags: dict[str, list[int]]) -> None:
+    """From one point up to another, by so many metres: what comes back at once is a jump, all else a step."""
     time, place = run()
-    place[17, 0] += 20.0  # 200 m/s out and back
-    assert flagged(time, place) == {"jump": [17]}
-    assert flagged(time, place, fastest=210.0) == {}
+    for (first, last), metres in aside.items():
+        place[first:last, 0] += metres
+    assert flagged(time, place) == flags
+    assert flagged(time, place, fastest=1e5) == {}
 
 
 def test_limit_is_a_speed() -> None:
@@ -208,46 +225,6 @@ def test_out_and_back_count_together(ahead: float) -> None:
     assert flagged(time, place) == {"impossible_step": [17 if ahead > 0.0 else 18]}
     place[17, 1] += ahead / 7.0
     assert flagged(time, place) == {"jump": [17]}
-
-
-def test_jumps_side_by_side_at_the_same_place_leave_the_good_point_between() -> None:
-    time, place = run()
-    place[17, 0] += 500.0
-    place[19, 0] += 500.0
-    assert flagged(time, place) == {"jump": [17, 19]}
-
-
-@pytest.mark.parametrize("point", [0, N - 1])
-def test_an_end_far_from_all_others_is_a_jump(point: int) -> None:
-    time, place = run()
-    place[point, 0] += 500.0
-    assert flagged(time, place) == {"jump": [point]}
-
-
-def test_a_place_that_does_not_come_back_is_a_step() -> None:
-    time, place = run()
-    place[17:, 0] += 500.0
-    assert flagged(time, place) == {"impossible_step": [17]}
-
-
-def test_a_step_aside_is_no_jump() -> None:
-    """14 m aside for good: 140 m/s once; the way past the point is hardly shorter than the one over it."""
-    time, place = run()
-    place[17:, 0] += 14.0
-    assert flagged(time, place) == {"impossible_step": [17]}
-
-
-def test_a_point_far_off_where_the_track_steps_aside_explains_nothing() -> None:
-    time, place = run()
-    place[17, 0] += 5000.0
-    place[18:, 0] += 500.0
-    assert flagged(time, place) == {"impossible_step": [17, 18]}
-
-
-def test_two_points_off_are_steps_there_and_back() -> None:
-    time, place = run()
-    place[17:19, 0] += 500.0
-    assert flagged(time, place) == {"impossible_step": [17, 19]}
 
 
 def test_a_gap_is_marked_behind_it() -> None:

@@ -161,11 +161,6 @@ def test_level_has_only_its_ends(values: list[float]) -> None:
     assert turning_points(np.array(values), 10.0) == sorted({0, len(values) - 1})
 
 
-def test_upside_down_has_the_same_turning_points() -> None:
-    height = np.cumsum(np.random.default_rng(4).standard_normal(500))
-    assert turning_points(height, 3.0) == turning_points(-height, 3.0)
-
-
 def test_neighbours_differ_enough() -> None:
     height = np.cumsum(np.random.default_rng(5).standard_normal(2000))
     corners = turning_points(height, 4.0)
@@ -183,7 +178,7 @@ def sine(turns: int, *, length: float = 15.0, least_radius: float = 12.0) -> Flo
     return np.asarray(np.sin(np.pi * along / length) / least_radius)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
     """Each turn: ∫ sin(πs/15)/12 ds = 2·15/(12π) = 45.6°; switch points at 1.5, 3, 4.5 s.
 
@@ -205,7 +200,7 @@ def test_sine_has_its_turns_switch_points_angles_and_radii(seed: int) -> None:
 
 
 def test_straight_line_has_no_turn() -> None:
-    straight = np.stack([np.arange(200.0), np.zeros(200)], axis=1)
+    straight = np.stack([np.arange(100.0), np.zeros(100)], axis=1)
     for seed in range(2):
         assert find_turns(track_motion(track(straight, noise=NOISE, seed=seed))) == ()
 
@@ -248,7 +243,7 @@ def test_part_of_a_track() -> None:
 
 def test_wide_bend_is_straight() -> None:
     for radius, turns in ((600.0, 0), (400.0, 1)):
-        bend = along(np.full(20_001, 1.0 / radius), STEP)[::100]
+        bend = along(np.full(15_001, 1.0 / radius), STEP)[::100]
         assert len(find_turns(track_motion(track(bend)))) == turns
 
 
@@ -288,7 +283,7 @@ def test_recorded_day_has_the_devices_distance_and_top_speed(real_day: TrackSumm
 
 
 def test_points_by_carrier_phase_are_counted() -> None:
-    one = track(circle(12.0, 9.0))
+    one = track(circle(12.0, 9.0, duration=2.0))
     assert checked(track_summary(one))["solutions"] is None
     mixed = np.where(np.arange(len(one)) < 3, "float", "fixed")
     assert checked(track_summary(replace(one, solution=mixed)))["solutions"] == {"fixed": len(one) - 3, "float": 3}

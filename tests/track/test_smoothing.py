@@ -187,19 +187,12 @@ def test_dense_points_pass_what_the_projection_on_a_parabola_passes(period: floa
     assert found == pytest.approx(15.0 * spherical_jn(2, z) / z**2, abs=3e-3)  # 401 points instead of an integral
 
 
-def test_long_swings_lose_a_fourteenth_of_z_squared() -> None:
-    z = 2.0 * np.pi / 20.0 * 0.5
-    assert 1.0 - Resolution.of_window(1.0, 0.0005, 0.02, None).share_passed(20.0) == pytest.approx(
-        z**2 / 14.0, rel=0.02
-    )
-
-
 @pytest.mark.parametrize("share", [0.5, 0.9])
 def test_wave_of_the_stated_period_keeps_the_stated_share(share: float) -> None:
     """A path y = a sin(2πt/T), x = vt with a slope of at most 0.01: its curvature is y''/v² within 0.02 %."""
     speed, interval, window = 10.0, 0.02, 1.0
     period = Resolution.of_window(window, interval, 1.0, None).period_passed(share)
-    time = interval * np.arange(round(6.0 * period / interval))
+    time = interval * np.arange(round(4.0 * period / interval))
     angular = 2.0 * np.pi / period
     amplitude = 0.01 * speed / angular
     place = np.stack([speed * time, amplitude * np.sin(angular * time)], axis=1)
@@ -245,7 +238,7 @@ def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
 
 @pytest.mark.parametrize(
     ("period", "rate"),
-    [(4.0, 1.0), (6.0, 1.0), (17.0, 2.0), (4.0, 10.0)],
+    [(4.0, 1.0), (17.0, 2.0), (4.0, 10.0)],
 )
 def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
     """No maximum at an end, and no length below the polyline's."""
@@ -266,7 +259,7 @@ def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
 )
 def test_intervals_contain_the_truth(name: str) -> None:
     """A short form of the benchmark: of 10 tracks chance leaves out at most 3 in 987 of 1000 cases."""
-    found = estimates(replace(KINDS[name], duration=10.0), range(10))
+    found = estimates(replace(KINDS[name], duration=8.0), range(10))
     assert len(found) == 10
     for truths, intervals in (
         ([each.track.max_speed for each in found], [each.max_speed for each in found]),
@@ -298,14 +291,14 @@ def test_coverage_of_200_tracks(name: str) -> None:
 def test_more_noise_is_a_wider_interval() -> None:
     widths = []
     for noise in (0.05, 0.5, 2.0):
-        made = simulated_track(Kind(noise=noise, duration=10.0), 3)
+        made = simulated_track(Kind(noise=noise, duration=6.0), 3)
         length = estimate(made.place).length()
         widths.append(length.high - length.low)
     assert widths[0] < widths[1] < widths[2]
 
 
 def test_same_track_gives_the_same_numbers() -> None:
-    place = simulated_track(Kind(duration=6.0), 1).place
+    place = simulated_track(Kind(duration=3.0), 1).place
     assert estimate(place).max_speed() == estimate(place).max_speed()
 
 
@@ -324,10 +317,10 @@ def test_gap_is_straight_and_a_pause_is_nothing() -> None:
 
 
 def test_standing_still_is_hardly_a_path() -> None:
-    """30 s of noise; its polyline would have more than 25 m."""
-    place = np.column_stack([0.7 * np.random.default_rng(5).standard_normal((31, 2)), np.full(31, np.nan)])
-    assert float(np.sum(np.hypot(*np.diff(place[:, :2], axis=0).T))) > 25.0
-    assert estimate(place).length().value < 5.0
+    """15 s of noise; its polyline would have more than 12 m."""
+    place = np.column_stack([0.7 * np.random.default_rng(5).standard_normal((16, 2)), np.full(16, np.nan)])
+    assert float(np.sum(np.hypot(*np.diff(place[:, :2], axis=0).T))) > 12.0
+    assert estimate(place).length().value < 2.5
 
 
 @pytest.mark.parametrize("points", [0, 1, 2, 3, 6])
@@ -338,7 +331,7 @@ def test_few_points(points: int) -> None:
     assert (found is None) == (points < 2)
 
 
-@pytest.mark.parametrize(("interval", "count"), [(0.001, 400), (30.0, 100)])
+@pytest.mark.parametrize(("interval", "count"), [(0.001, 400), (30.0, 40)])
 def test_any_interval_between_points(interval: float, count: int) -> None:
     made: Track = track(circle(15.0, 8.0, duration=count * interval, interval=interval), interval=interval)
     summary = track_summary(made)

@@ -211,28 +211,19 @@ def test_a_scenario_lays_degrees_on_its_slope(tmp_path: Path) -> None:
     (tmp_path / "profile.csv").write_text(f"x,y\n{heights}", encoding="utf-8")
     place = {"latitude_deg": LATITUDE, "longitude_deg": LONGITUDE, "fall_line_azimuth_deg": 180.0}
     changes = {"course.file": file} | {f"course.{name}": value for name, value in place.items()}
+    incline = load_scenario("carved-46m", changes={"slope.angle_deg": 20.0})
     plane = load_scenario("carved-46m", changes={**changes, "slope.angle_deg": 20.0}).course
+    degrees = read_course(file, **place)  # type: ignore[arg-type]
     bent = {"slope.kind": "profile", "slope.profile": str(tmp_path / "profile.csv")}
     profile = load_scenario("carved-46m", changes={**changes, **bent}).course
-    for found, stretched in ((plane, 1.0 / math.cos(math.radians(20.0))), (profile, 1.0)):
+    stretch = 1.0 / math.cos(math.radians(20.0))
+    for found, stretched in ((plane, stretch), (incline.with_(course=degrees).course, stretch), (profile, 1.0)):
         assert found is not None
         np.testing.assert_allclose(
             [gate.turning for gate in found.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
         )
-
-
-def test_a_course_in_degrees_is_laid_on_the_slope_of_a_scenario_that_is_changed(tmp_path: Path) -> None:
-    file = str(written(tmp_path, gpx([(e, n, f"<desc>{side}</desc>") for e, n, side in POINTS]), "course.gpx"))
-    degrees = read_course(file, latitude_deg=LATITUDE, longitude_deg=LONGITUDE, fall_line_azimuth_deg=180.0)
-    plane = load_scenario("carved-46m", changes={"slope.angle_deg": 20.0})
-    changed = plane.with_(course=degrees).course
-    assert changed is not None
-    stretched = 1.0 / math.cos(math.radians(20.0))
-    np.testing.assert_allclose(
-        [gate.turning for gate in changed.gates], [(-n * stretched, e) for e, n, _ in POINTS], atol=1e-3
-    )
     with raises(ParameterError, "no_azimuth"):
-        plane.with_(course=replace(degrees, fall_line_azimuth_deg=None))
+        incline.with_(course=replace(degrees, fall_line_azimuth_deg=None))
 
 
 def test_a_track_and_a_course_in_degrees_with_their_own_origins_are_brought_together(tmp_path: Path) -> None:
