@@ -251,17 +251,10 @@ def test_names_are_text_and_never_markup(campaign: Campaign, tmp_path: Path) -> 
 
 @pytest.mark.usefixtures("undrawn")
 def test_what_is_not_stated_is_reported(campaign: Campaign, tmp_path: Path) -> None:
-    silent = replace(
-        campaign,
-        gauge_resolution=None,
-        load_uncertainty=None,
-        moment_uncertainty=None,
-        lever_arm_uncertainty=None,
-        density=None,
-        drop_cone=None,
-        penetration=first_series(campaign, 30),
-        shear=first_shear(campaign, 30),
-    )
+    unknown = ("gauge_resolution", "load_uncertainty", "moment_uncertainty", "lever_arm_uncertainty", "density")
+    changes: dict[str, Any] = dict.fromkeys(unknown)
+    changes |= {"drop_cone": None, "penetration": first_series(campaign, 30), "shear": first_shear(campaign, 30)}
+    silent = replace(campaign, **changes)
     text = " ".join(" ".join(_Reader(reported(silent, tmp_path).html).text).split())
     assert "no interval carries" in text
     for name in ("loads", "moments", "lever arms"):
@@ -406,17 +399,9 @@ def test_relations_stand_where_their_p_value_puts_them(reference: Reported) -> N
 
 
 FIGURES = {
-    "fig05_force_depth",
-    "fig06_hardness_density",
-    "fig07_shear_force_depth",
-    "fig08_stress_angle",
-    "fig09_machining",
-    "fig10_stress_density",
-    "fig11_stress_hardness",
-    "model_rmse",
-    "residuals",
-    "seating",
-}
+    "fig05_force_depth", "fig06_hardness_density", "fig07_shear_force_depth", "fig08_stress_angle", "fig09_machining",
+    "fig10_stress_density", "fig11_stress_hardness", "model_rmse", "residuals", "seating",
+}  # fmt: skip
 
 
 def _contents(folder: Path) -> dict[str, bytes]:

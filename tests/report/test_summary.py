@@ -15,7 +15,7 @@ from skisnow import Analysis
 from skisnow._support.errors import ParameterError
 from skisnow.campaign import Campaign, read_campaign
 from skisnow.campaign.reference import reference_campaign
-from skisnow.estimation.result_rows import experiment_hardness, experiment_results
+from skisnow.estimation.result_rows import experiment_hardness
 from skisnow.report.campaign.data import ReportData
 from skisnow.report.campaign.site_figures import sites
 from skisnow.report.campaign.summary import summary
@@ -24,6 +24,7 @@ from skisnow.report.charts import series_curves
 from skisnow.report.figures.drawing import Drawing, LeftOut
 from skisnow.report.figures.style import thinned
 from skisnow.report.formatting import interval, significant
+from tests.coded import raises
 
 from .conftest import Reported, analysis_of, first_series, results_of
 
@@ -54,25 +55,15 @@ def test_dataset_has_the_numbers_and_units_of_both_kinds(analysis: Analysis) -> 
     assert dataset["penetration_H_V_low_N_per_mm3"].units == "N/mm³"
 
 
-@pytest.mark.parametrize("what", ["model_rsme", "hardness_mean_force"])
-def test_unknown_figure(analysis: Analysis, what: str) -> None:
-    with pytest.raises(ParameterError) as caught:
-        analysis.plot(what)
-    assert caught.value.code == "unknown_figure"
-
-
-def test_figure_without_data() -> None:
-    campaign = replace(reference_campaign(1).campaign(), shear=None)
-    with pytest.raises(ParameterError) as caught:
-        skisnow.analyse(campaign, n_resamples=100).plot("stress_angle")
-    assert caught.value.code == "no_data"
-
-
-def test_unknown_kind_of_experiment(analysis: Analysis) -> None:
+def test_what_is_not_there_is_an_error(analysis: Analysis) -> None:
+    for unknown in ("model_rsme", "hardness_mean_force"):
+        with raises(ParameterError, "unknown_figure"):
+            analysis.plot(unknown)
+    with raises(ParameterError, "no_data"):
+        skisnow.analyse(replace(reference_campaign(1).campaign(), shear=None), n_resamples=100).plot("stress_angle")
     pytest.importorskip("pandas")
-    with pytest.raises(ParameterError) as caught:
+    with raises(ParameterError, "unknown_kind"):
         analysis.to_dataframe("shera")
-    assert caught.value.code == "unknown_kind"
 
 
 def test_notebook_table_has_values(analysis: Analysis) -> None:
@@ -82,22 +73,6 @@ def test_notebook_table_has_values(analysis: Analysis) -> None:
         name, _, text = row.strip().rstrip(">").partition(" ")
         assert f">{name}</th>" in html
         assert f">{text.strip()}</td>" in html
-
-
-def test_a_disc_by_hand(tmp_path: Path) -> None:
-    """A disc of 10 cm² 4 mm deep under 80 N: V = 4000 mm³, H_V = 0.02 N/mm³, and half the load at half the depth."""
-    diameter = float(2.0 * np.sqrt(1000.0 / np.pi))
-    (tmp_path / "campaign.toml").write_text(f'[[tool]]\nname = "d"\nshape = "disc"\ndiameter_mm = {diameter!r}\n')
-    rows = ["experiment,site,tool,edge_angle_deg,load_N,depth_mm", "1,A,d,0,20,1", "1,A,d,0,40,2", "1,A,d,0,80,4"]
-    (tmp_path / "penetration.csv").write_text("\n".join(rows) + "\n")
-    campaign = read_campaign(tmp_path)
-    found = experiment_results(campaign)["penetration"]["experiments"]
-    assert found[0]["H_V_N_per_mm3"] == pytest.approx(0.02, rel=1e-12)
-    (curve,) = series_curves(campaign, experiment_hardness(campaign))
-    assert curve.load_N == (20.0, 40.0, 80.0)
-    assert curve.depth_mm == pytest.approx((1.0, 2.0, 4.0), rel=1e-12)
-    assert (curve.law_depth_mm[-1], curve.law_load_N[-1]) == pytest.approx((4.0, 80.0), rel=1e-12)
-    assert np.interp(2.0, curve.law_depth_mm, curve.law_load_N) == pytest.approx(40.0, rel=1e-12)
 
 
 def test_each_series_has_the_law_of_its_own_tool_and_angle(tmp_path: Path) -> None:
@@ -113,6 +88,8 @@ def test_each_series_has_the_law_of_its_own_tool_and_angle(tmp_path: Path) -> No
     campaign = read_campaign(tmp_path)
     first, none, disc, last = series_curves(campaign, experiment_hardness(campaign))
     assert (none.experiment, none.law_depth_mm, none.law_load_N) == ("2", (), ())
+    assert disc.load_N == (20.0, 40.0)
+    assert disc.depth_mm == pytest.approx((1.0, 2.0), rel=1e-12)
     # each is on its law: the loads of the wedges go with the square of the depth, that of the disc with the depth
     for curve, loads in ((first, (20.0, 80.0)), (disc, (20.0, 40.0)), (last, (30.0, 120.0))):
         middle = len(curve.law_depth_mm) // 2
