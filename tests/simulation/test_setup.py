@@ -216,6 +216,7 @@ NUDGED = ["start.speed_m_per_s", "sledge.edge_angle_deg", "snow.H_V_N_per_mm3", 
 
 
 def test_each_repetition_refines_one_choice_from_what_was_in_force() -> None:
+    """A fixed step in place of the tolerance; the places of a delayed depth where there is one."""
     run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))  # in force: 40 elements, 18 mm, 4 mm
     plain = run.scenario.solver
     assert refined_solvers(run) == {
@@ -224,25 +225,21 @@ def test_each_repetition_refines_one_choice_from_what_was_in_force() -> None:
         LINE_SPACING: replace(plain, line_spacing=0.009),
         "solver.groove_tolerance": replace(plain, groove_tolerance=5e-5),
     }
-
-
-def test_a_fixed_step_is_halved_in_place_of_the_tolerance() -> None:
-    run = straight_run(load_scenario("carved-46m", changes={**STRAIGHT, "fixed": True, "step_ms": 0.4}))
-    found = refined_solvers(run)
-    assert list(found) == ["solver.step_ms", *KEYS[1:]]
+    changes = {"fixed": True, "step_ms": 0.4, "delayed_share": 0.2}
+    found = refined_solvers(straight_run(load_scenario("carved-46m", changes=STRAIGHT | changes)))
+    assert list(found) == ["solver.step_ms", *KEYS[1:], DELAYED_SPACING]
     assert found["solver.step_ms"].step == pytest.approx(0.2e-3, rel=1e-15)
-
-
-def test_the_places_of_a_delayed_depth_are_refined_where_there_is_one() -> None:
-    run = straight_run(load_scenario("carved-46m", changes={**STRAIGHT, "delayed_share": 0.2}))
-    found = refined_solvers(run)
-    assert list(found) == [*KEYS, DELAYED_SPACING]
     assert found[DELAYED_SPACING].delayed_spacing == pytest.approx(0.5e-3)
 
 
 def test_end_moves_by_what_the_choice_changes() -> None:
-    """The made-up run misses by 40 mm / elements: from 40 to 80 its end moves by 0.5 mm."""
-    found = verification_dict(verify(straight_run(load_scenario("carved-46m", changes=STRAIGHT)), straight_run))
+    """The made-up run misses by 40 mm / elements: from 40 to 80 its end moves by 0.5 mm.
+
+    A start that is 0.1 % faster than 5 m/s ends 0.005 m/s · 2 s = 1 cm farther; no other does.
+    """
+    run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))
+    repeated = verify(run, straight_run)
+    found = verification_dict(repeated)
     assert list(found) == [*KEYS, SHEAR_DISPLACEMENT, *NUDGED]
     moved = {key: each["end_moves_cm"] for key, each in found.items() if key in KEYS}
     assert moved == pytest.approx({**dict.fromkeys(KEYS, 0.0), "solver.elements": 0.05}, rel=1e-9, abs=1e-12)
@@ -253,21 +250,16 @@ def test_end_moves_by_what_the_choice_changes() -> None:
         "solver.groove_tolerance": pytest.approx((1e-4, 5e-5)),
     }
     assert {each["outcome"] for each in found.values()} == {"finished"}
-
-
-def test_half_of_the_shear_displacement_and_a_thousandth_of_the_inputs() -> None:
-    """In the made-up run a start that is 0.1 % faster than 5 m/s ends 0.005 m/s · 2 s = 1 cm farther; no other does."""
-    run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))
-    found = {each.key: each for each in verify(run, straight_run)}
+    by_key = {each.key: each for each in repeated}
     assert repetitions(run) == (*KEYS, SHEAR_DISPLACEMENT, *(key for key in NUDGED for _ in "+-"))
-    half = found["snow.shear_displacement_mm"]
+    half, speed = by_key["snow.shear_displacement_mm"], by_key["start.speed_m_per_s"]
     assert (half.was, half.now) == pytest.approx((0.02, 0.01), rel=1e-12)
-    assert found["start.speed_m_per_s"].end_moves == pytest.approx(0.01, rel=1e-9)
-    assert abs(found["start.speed_m_per_s"].now - 5.0) == pytest.approx(0.005, rel=1e-9)
+    assert speed.end_moves == pytest.approx(0.01, rel=1e-9)
+    assert abs(speed.now - 5.0) == pytest.approx(0.005, rel=1e-9)
     speeds = [each.start.speed for each in nudged_scenarios(run)["start.speed_m_per_s"]]
     assert speeds == pytest.approx([5.005, 4.995], rel=1e-12)
-    assert [found[key].end_moves for key in NUDGED[1:]] == pytest.approx([0.0] * 3, abs=1e-12)
-    assert limit_warnings(run, found.values()) == ()
+    assert [by_key[key].end_moves for key in NUDGED[1:]] == pytest.approx([0.0] * 3, abs=1e-12)
+    assert limit_warnings(run, repeated) == ()
 
 
 def test_none_finer_than_the_range_allows() -> None:

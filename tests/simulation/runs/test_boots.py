@@ -17,7 +17,6 @@ from skisnow.scenario.boots import read_boots
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_tables import boots_text, write_boots
 from tests.coded import raises
-from tests.key_names import EDGE_ANGLE
 
 
 def turn(**changes: object) -> Scenario:
@@ -29,27 +28,22 @@ def own() -> Run:
     return simulate(turn(run__duration_s=0.3, run__output_ms=1.0))
 
 
-@pytest.mark.parametrize("ending", [".csv", ".mot", ".sto"])
-def test_boots_driven_back_give_the_forces_of_the_run(own: Run, tmp_path: Path, ending: str) -> None:
+def test_boots_driven_back_give_the_forces_of_the_run(own: Run, tmp_path: Path) -> None:
     """Once the start is over within a tenth of the hundredth that is asked; the file is read and run as any."""
-    file = tmp_path / f"boots{ending}"
+    file = tmp_path / "boots.csv"
     write_boots(own, file)
-    duration = 0.3 if ending == ".csv" else 0.02
-    driven = simulate(turn(run__duration_s=duration, run__output_ms=1.0, boots__file=str(file)))
-    n = len(driven.time)
+    driven = simulate(turn(run__duration_s=0.3, run__output_ms=1.0, boots__file=str(file)))
     assert driven.outcome == "finished"
     assert own.boots is not None
     assert driven.boots is not None
-    assert driven.place == pytest.approx(own.place[:n], abs=1e-9)
-    if ending == ".csv":
-        size = np.linalg.norm(own.boots.own_force, axis=-1).mean()
-        apart = np.linalg.norm(driven.boots.own_force - own.boots.own_force, axis=-1) / size
-        assert apart[own.time > 0.1].max() < 0.01
-        assert np.sqrt(np.mean(apart**2)) < 0.02
-        assert driven.boots.force.mean(axis=0) == pytest.approx(own.boots.force.mean(axis=0), abs=0.01 * size)
-        given = driven.energies["boots"]
-        assert driven.energy_balance_error == pytest.approx(0.0, abs=1e-3)
-        assert abs(given[-1]) > 1.0
+    assert driven.place == pytest.approx(own.place, abs=1e-9)
+    size = np.linalg.norm(own.boots.own_force, axis=-1).mean()
+    apart = np.linalg.norm(driven.boots.own_force - own.boots.own_force, axis=-1) / size
+    assert apart[own.time > 0.1].max() < 0.01
+    assert np.sqrt(np.mean(apart**2)) < 0.02
+    assert driven.boots.force.mean(axis=0) == pytest.approx(own.boots.force.mean(axis=0), abs=0.01 * size)
+    assert driven.energy_balance_error == pytest.approx(0.0, abs=1e-3)
+    assert abs(driven.energies["boots"][-1]) > 1.0
 
 
 def test_forces_are_the_sledge_s_acceleration(own: Run) -> None:
@@ -118,7 +112,7 @@ def test_turning_the_boots_left_is_the_mirror_of_turning_them_right(tmp_path: Pa
 
 def test_what_is_written_is_read(own: Run, tmp_path: Path) -> None:
     assert own.boots is not None
-    for ending in (".csv", ".mot"):
+    for ending in (".csv", ".mot", ".sto"):
         file = tmp_path / f"boots{ending}"
         write_boots(own, file)
         read = read_boots(file)
@@ -259,7 +253,7 @@ SETTLED = slice(30, -5)
 
 @cache
 def simulated(**changes: object) -> Run:
-    return skisnow.simulate(skisnow.load_scenario(TURN, changes={"run.duration_s": 2.0} | changes))
+    return skisnow.simulate(skisnow.load_scenario(TURN, changes={"run.duration_s": 1.2} | changes))
 
 
 def force_by_inertia(run: Run) -> np.ndarray:
@@ -276,11 +270,10 @@ def force_by_inertia(run: Run) -> np.ndarray:
     "changes",
     [
         {},
-        {EDGE_ANGLE: -30.0, "start.heading_deg": 30.0},
         {"friction.mu_0": 0.1, "friction.acts_on": "base-normal"},
         {"snow.S_f_N_per_mm2": 0.1},
     ],
-    ids=["left", "right", "friction", "side-slip"],
+    ids=["left", "friction", "side-slip"],
 )
 def test_the_total_force_is_what_boot_and_inertia_take(changes: dict[str, object]) -> None:
     run = simulated(**changes)
@@ -312,7 +305,7 @@ def test_friction_is_along_the_ski_against_its_motion() -> None:
 
 def test_the_thrust_of_a_cut_is_part_of_the_normal_force() -> None:
     """Cutting lifts the ski: nearly all of its normal force is the thrust at the edge."""
-    run = simulated(**{"shear.law": "machining", "run.duration_s": 4.0})
+    run = simulated(**{"shear.law": "machining", "run.duration_s": 3.0})
     late = slice(len(run.time) // 2, -5)
     expected = force_by_inertia(run)[late]
     assert np.median(np.linalg.norm(run.skis.force[late] - expected, axis=2)) < 2.0  # of 600 N

@@ -43,14 +43,9 @@ def test_two_seconds(contact: str) -> None:
 def test_a_long_slip_sideways() -> None:
     """Straight down the slope across the skis, on the uphill edges: lines lie far from where they were laid."""
     changes = {
-        "start.heading_deg": 90.0,
-        "start.speed_m_per_s": 0.5,
-        "sledge.edge_angle_deg": 8.0,
-        "slope.angle_deg": 20.0,
-        "snow.H_V_N_per_mm3": 0.5,
-        "snow.S_f_N_per_mm2": 0.01,
-        "run.duration_s": 2.0,
-    }
+        "start.heading_deg": 90.0, "start.speed_m_per_s": 0.5, "sledge.edge_angle_deg": 8.0, "slope.angle_deg": 20.0,
+        "snow.H_V_N_per_mm3": 0.5, "snow.S_f_N_per_mm2": 0.01, "run.duration_s": 2.0,
+    }  # fmt: skip
     run = simulate(load_scenario("carved-46m", changes=changes))
     assert run.place[-1, 0] > 6.0
     closes(run, changes)
@@ -167,19 +162,13 @@ def moves(hardness: float, strength: float, **more: float) -> dict[str, Any]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("hardness", "strength"), CARVES)
-def test_carving(hardness: float, strength: float) -> None:
-    found = moves(hardness, strength)
+@pytest.mark.parametrize(("hardness", "strength"), CARVES + SKIDS)
+def test_the_end_hardly_moves(hardness: float, strength: float) -> None:
+    """The skids with edges that give way by half a millimetre; nearer to the limit they hang on the last decimetres."""
+    skids = (hardness, strength) in SKIDS
+    found = moves(hardness, strength, **({"shear_displacement_mm": 0.5} if skids else {}))
     assert max(found.values()) < MOST, found
-    assert min(found.values()) > 0.0  # the choice reached the solver
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("hardness", "strength"), SKIDS)
-def test_skidding(hardness: float, strength: float) -> None:
-    """An edge that gives way by half a millimetre; nearer to the limit a skid hangs on its last decimetres."""
-    found = moves(hardness, strength, shear_displacement_mm=0.5)
-    assert max(found.values()) < MOST, found
+    assert skids or min(found.values()) > 0.0  # the choice reached the solver
 
 
 @pytest.mark.slow

@@ -84,7 +84,7 @@ def test_radius_at_the_defaults() -> None:
     assert radius(coarse) == pytest.approx(radius(fine), rel=2.5e-3)
 
 
-@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("share", [0.2, 0.8])
 def test_holds_below_the_limit(share: float) -> None:
     """The radius stays near that of the arc, and hardly anything is lost to shear once the turn has begun.
 
@@ -117,7 +117,7 @@ def path_radius(run: Run) -> float:
     return float(np.sqrt(c + a**2 + b**2))
 
 
-@pytest.mark.parametrize("share", [1.1, 1.25, 2.0])
+@pytest.mark.parametrize("share", [1.1, 2.0])
 def test_slips_above_the_limit(share: float) -> None:
     """The snow cannot turn it tighter than m v²/R = S_f ∫ e ds; keeping it turning takes some, so R is larger.
 

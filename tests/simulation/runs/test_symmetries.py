@@ -61,7 +61,6 @@ ACROSS = {"snow.S_f_N_per_mm2": 0.05, "sledge.edge_angle_deg": 10.0, "start.head
     ("changes", "duration"),
     [
         ({**CARVES, **ICE}, 0.3),
-        ({**CARVES, **ICE}, 0.5e-3),
         ({**CARVES, "snow.S_f_N_per_mm2": 0.02}, 0.4),
         (ACROSS, 0.4),
     ],
@@ -79,7 +78,7 @@ def test_straight_down_stays_straight() -> None:
     A flat ski is nearly neutral. An edge angle of 1e-7 measures how far that carries it, hundreds of metres for each
     radian; the run may drift by that times 1e-16 m over half the width. An unstable run would swing by millimetres.
     """
-    changes = {"start.heading_deg": 0.0, "snow.H_V_N_per_mm3": 0.03, "run.duration_s": 1.0, **FIXED}
+    changes = {"start.heading_deg": 0.0, "snow.H_V_N_per_mm3": 0.03, "run.duration_s": 0.6, **FIXED}
     flat, tilted = (simulated(**changes, **{"sledge.edge_angle_deg": math.degrees(each)}) for each in (0.0, 1e-7))
     growth = np.abs(tilted.place[:, 1]).max() / 1e-7
     assert 100.0 < growth < 1e4
@@ -89,15 +88,15 @@ def test_straight_down_stays_straight() -> None:
 
 def test_start_elsewhere() -> None:
     """A plane is the same everywhere."""
-    one = simulated(**{"run.duration_s": 0.4}, **FIXED)
-    other = simulated(**{"run.duration_s": 0.4, "start.x_m": 13.7, "start.y_m": -8.2}, **FIXED)
+    one = simulated(**{"run.duration_s": 0.3}, **FIXED)
+    other = simulated(**{"run.duration_s": 0.3, "start.x_m": 13.7, "start.y_m": -8.2}, **FIXED)
     assert other.place == pytest.approx(one.place + np.array([13.7, -8.2, 0.0]), abs=1e-9)
     assert other.groove.depth == pytest.approx(one.groove.depth, abs=1e-8)
 
 
 def test_level_slope_knows_no_direction() -> None:
     """Turned by 70° at the start, the whole track is turned by 70°."""
-    level = {"slope.angle_deg": 0.0, "run.duration_s": 0.4}
+    level = {"slope.angle_deg": 0.0, "run.duration_s": 0.3}
     one = simulated(**level, **{"start.heading_deg": 0.0}, **FIXED)
     other = simulated(**level, **{"start.heading_deg": 70.0}, **FIXED)
     c, s = math.cos(math.radians(70.0)), math.sin(math.radians(70.0))
@@ -180,14 +179,13 @@ def first() -> tuple[float, Setup]:
     return lost, setup
 
 
-@pytest.mark.parametrize("heading", [0.7, 1.0])
-def test_on_virgin_snow_the_direction_does_not_matter(first: tuple[float, Setup], heading: float) -> None:
+def test_on_virgin_snow_the_direction_does_not_matter(first: tuple[float, Setup]) -> None:
     """But for rounding: it decides which of two knots that are alike a groove gives up."""
-    lost, _ = gone_over(sledge(heading))
+    lost, _ = gone_over(sledge(1.0))
     assert lost == pytest.approx(first[0], rel=2e-4)
 
 
-@pytest.mark.parametrize("angle_deg", [90.0, 60.0, 30.0, 15.0])
+@pytest.mark.parametrize("angle_deg", [90.0, 15.0])
 def test_a_groove_that_is_crossed(first: tuple[float, Setup], angle_deg: float) -> None:
     """Both skis cross both grooves. The shovels drop into them and press deeper behind: they save a part, never more.
 
@@ -229,7 +227,7 @@ def test_thin_tracks_between_the_lines_are_warned_of() -> None:
 SLOPE_DEG, LENGTH, HARDNESS, FRICTION = 10.0, 1.6, 0.2, 0.05
 
 
-def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_deg: float = 20.0) -> Run:
+def across(*, strength: float, duration: float) -> Run:
     """Facing left, the edges on the left, uphill, down."""
     solver = Solver(step=2e-3, fixed=True, output_interval=0.1)
     return simulate(
@@ -237,8 +235,8 @@ def across(*, strength: float, duration: float, heading_deg: float = 90.0, edge_
             ski=rigid_ski(length=LENGTH),
             hardness=HARDNESS,
             angle_deg=SLOPE_DEG,
-            edge_deg=edge_deg,
-            heading_deg=heading_deg,
+            edge_deg=20.0,
+            heading_deg=90.0,
             strength=strength,
             friction=FRICTION,
             centre_height=0.05,
@@ -257,7 +255,7 @@ def sufficient_strength() -> float:
     return float(demand / (LENGTH * run.skis.edge_depth[0].mean(axis=1).sum())) / 1e6
 
 
-@pytest.mark.parametrize("share", [0.5, 0.9, 0.97])
+@pytest.mark.parametrize("share", [0.5, 0.97])
 def test_holds_below_the_limit(share: float) -> None:
     """It gives way by some millimetres as the load comes on at once, and stands, swinging in its grip."""
     run = across(strength=sufficient_strength() / share, duration=3.0)
@@ -269,23 +267,14 @@ def test_holds_below_the_limit(share: float) -> None:
     assert np.abs(run.place[:, 1]).max() < 1e-6
 
 
-@pytest.mark.parametrize("share", [1.03, 1.1])
-def test_slips_above_the_limit(share: float) -> None:
+def test_slips_above_the_limit() -> None:
     """Downhill, ever faster, about as fast as what is lacking allows: (1 - 1/share) g (sin α - μ cos α) t²/2."""
-    slope = math.radians(SLOPE_DEG)
+    slope, share = math.radians(SLOPE_DEG), 1.03
     left = math.sin(slope) - FRICTION * math.cos(slope)
     run = across(strength=sufficient_strength() * left / math.sin(slope) / share, duration=3.0)
     free = (1.0 - 1.0 / share) * GRAVITY * left * 3.0**2 / 2.0
     assert np.all(np.diff(run.place[5:, 0]) > 0.0)
     assert 0.5 * free < run.place[-1, 0] < 2.5 * free
-
-
-def test_mirrored_it_holds_as_well() -> None:
-    """Facing right with the right edges down: the same, mirrored."""
-    strength = sufficient_strength() / 0.9
-    left = across(strength=strength, duration=1.0)
-    right = across(strength=strength, duration=1.0, heading_deg=-90.0, edge_deg=-20.0)
-    assert right.place == pytest.approx(left.place * [1.0, -1.0, 1.0], abs=1e-12)
 
 
 @pytest.mark.slow
@@ -306,33 +295,6 @@ def turned(degrees: float, **changes: object) -> Run:
     return simulate(load_scenario("carved-46m", changes=STRAIGHT | changes | {"sledge.edge_angle_deg": degrees}))
 
 
-@pytest.mark.parametrize(
-    ("degrees", "end"),
-    [
-        (0.5, (41.6075, 24.6194)),
-        pytest.param(1.0, (27.7411, 33.1881), marks=pytest.mark.slow),
-        pytest.param(3.0, (14.3869, 32.3952), marks=pytest.mark.slow),
-    ],
-)
-def test_it_ends_where_the_shear_moves_across_at_once(degrees: float, end: tuple[float, float]) -> None:
-    """The former rule moved the place of the shear across the base over ±2°. Over ±0.02° its ends are these.
-
-    It had friction along the ski, and pressed grooves only at the ends of steps: with 0.5 ms they differ by 27 mm at
-    0.5°, with 0.25 ms by 6 mm. From 3° on its blend had no effect.
-    """
-    fixed = {"solver.fixed": True, "solver.step_ms": 0.25}
-    run = turned(degrees, **fixed, **{"friction.direction": "along-ski"})
-    assert run.outcome == "finished"
-    assert float(np.hypot(*(run.place[-1, :2] - end))) < 0.015
-
-
-@pytest.mark.parametrize("degrees", [0.05, 1.0])
-def test_mirrored_runs_end_at_mirrored_places(degrees: float) -> None:
-    one, other = (turned(each, **{"run.duration_s": 1.0}) for each in (degrees, -degrees))
-    assert other.place[-1] == pytest.approx(one.place[-1] * [1.0, -1.0, 1.0], abs=1e-6)
-    assert one.place[-1, 1] > 0.02  # to the side of the edge
-
-
 @pytest.mark.parametrize("degrees", [0.0, 0.02, 1.0])
 @pytest.mark.parametrize("hardness", [0.01, 2.0])
 def test_a_start_is_found(degrees: float, hardness: float) -> None:
@@ -341,14 +303,14 @@ def test_a_start_is_found(degrees: float, hardness: float) -> None:
 
 
 def test_the_widening_tail_brakes() -> None:
-    """For a flat ski both edges push snow aside. The work is the shear's, 1.5 N in 52 m on this snow."""
-    run = turned(0.0)
+    """For a flat ski both edges push snow aside. The work is the shear's, 1.5 N on this snow."""
+    run = turned(0.0, **{"run.duration_s": 2.0})
     assert run.energies["shear"][-1] / run.run_length == pytest.approx(1.52, abs=0.02)
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-4)
 
 
 def test_half_the_step() -> None:
     """Steps of 1 ms and 0.5 ms end within the method's error."""
-    fixed = {"solver.fixed": True, "run.duration_s": 1.0}
+    fixed = {"solver.fixed": True, "run.duration_s": 0.5}
     one, other = (turned(1.0, **fixed, **{"solver.step_ms": step}) for step in (1.0, 0.5))
     assert other.place[-1] == pytest.approx(one.place[-1], abs=1e-3)
