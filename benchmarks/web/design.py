@@ -44,9 +44,7 @@ def on_server() -> FloatArray:
     evaluator, found = Evaluator(task), []
     for z in np.random.default_rng(1).uniform(0.4, 0.6, (STEPS, len(variables))):
         began = time.perf_counter()
-        (point,) = evaluator.points(z)
-        for output in OUTPUTS:
-            evaluator.output_growth(point, output, z)
+        evaluator.output_growths([(0, output) for output in OUTPUTS], z)
         found.append(1e3 * (time.perf_counter() - began))
     return np.array(found[1:])
 

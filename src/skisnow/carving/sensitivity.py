@@ -6,7 +6,7 @@ Equations: docs/methods/carved-turn.md.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -19,7 +19,7 @@ from ..parameters import nearest
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
 from .outputs import OUTPUTS, At, OutputGrowth, output_growth
-from .shape import Shape, ShapeGradient, beam_gradient, bent_by, curvature_and_turn, shape_growth
+from .shape import Shape, ShapeGradient, beam_gradients, bent_by, growth_by_tables, shape_growth, widest_station
 from .solve import Solution, refined, solved
 
 if TYPE_CHECKING:
@@ -121,17 +121,15 @@ class _Direction:
 class _Gradient:
     """An output, and its growth with the numbers of the equations.
 
-    With columns of the stations, the core's numbers, and EI and GJ at the Gauss points; `adjoint`: of the beam;
-    `by_tables`: with the tables of the ski, and with their stations or without.
+    With columns of the stations, and the core's numbers; `adjoint`: of the beam; `by_tables`: with the tables of the
+    ski, where they were computed.
     """
 
     output: OutputGrowth
     columns: FloatArray
     numbers: FloatArray
     adjoint: FloatArray
-    stiffness: FloatArray
     by_tables: FloatArray | None = None
-    with_stations: bool = False
 
 
 @dataclass(slots=True, eq=False)
@@ -149,7 +147,6 @@ class CarveDerivatives:
     at: At = field(init=False)
     _directions: dict[str, _Direction] = field(default_factory=dict)
     _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
-    _bent: tuple[FloatArray, FloatArray] | None = None
     _outputs: dict[str, OutputGrowth | None] = field(default_factory=dict)
     _gradients: dict[str, _Gradient] = field(default_factory=dict)
 
@@ -291,7 +288,7 @@ class CarveDerivatives:
         With width and base height (mm) at ``station_m``, and with EI and GJ (N m²) at ``beam_m``.
         """
         gradient, model = self._gradient(output), self.request.model
-        columns, (bending, torsion) = gradient.columns, gradient.stiffness
+        columns, (bending, torsion) = gradient.columns, self._by_stiffness(gradient)
         length = model.node[:-1] - model.node[1:]
         weight = model.stations.weight
         return {
@@ -313,17 +310,19 @@ class CarveDerivatives:
         return self._outputs[output]
 
     def _gradient(self, output: str) -> _Gradient:
-        growth, model, u = self._output(output), self.request.model, self.at.solution.u
+        growth, model = self._output(output), self.request.model
         if growth is None:
             raise ParameterError("the carve has no {output}, so it has no derivative.").tag("no_value", output=output)
         if output not in self._gradients:
             none = np.zeros(len(self.at.solution.edge_depth))
             depth, force = (none if part is None else part for part in (growth.depth, growth.force))
             columns, numbers, adjoint = self.point.gradient(growth.by_unknowns(model), depth, force)
-            self._bent = self._bent or curvature_and_turn(model, u)
-            stiffness = beam_gradient(model, self._bent, adjoint)
-            self._gradients[output] = _Gradient(growth, columns, numbers, adjoint, stiffness)
+            self._gradients[output] = _Gradient(growth, columns, numbers, adjoint)
         return self._gradients[output]
+
+    def _by_stiffness(self, gradient: _Gradient) -> FloatArray:
+        """Growth of an output with EI and GJ at the Gauss points (2, n, 4)."""
+        return beam_gradients(self.request.model, self.at.solution.u[None], gradient.adjoint[None])[0]
 
     def derivative(self, output: str, name: str) -> float:
         """Growth of an output with a parameter, in units of the output per unit of the parameter.
@@ -345,28 +344,23 @@ class CarveDerivatives:
                 by_state = growth.edge_angle * along.numbers[_ANGLE] + growth.load * along.numbers[_LOAD]
                 out[row] = gradient.numbers @ along.numbers + growth.strength * along.strength + by_state
         if of_ski:
-            tables, numbers, moving = table_growths(self.request.model.ski, of_ski)
-            by_tables = self._by_tables(gradient, moving=moving)
-            rows = [name not in CONDITIONS for name in names]
-            out[rows] = tables @ by_tables.ravel() + numbers @ gradient.numbers[_OF_SHAPE]
+            out[[name not in CONDITIONS for name in names]] = ski_derivatives([(self, output)], of_ski)[0]
         return out
 
-    def _by_tables(self, gradient: _Gradient, *, moving: bool) -> FloatArray:
-        """Growth of an output with the tables of the ski; that with their stations only where they move."""
-        model, u, elements = self.request.model, self.at.solution.u, self.request.elements
+    def by_tables(self, output: str) -> FloatArray:
+        """Growth of an output with the tables of the ski, as of `TableGrowth` (5, rows)."""
+        gradient, model, u = self._gradient(output), self.request.model, self.at.solution.u
         growth = gradient.output
-        if gradient.by_tables is None or moving > gradient.with_stations:
+        if gradient.by_tables is None:
             columns = gradient.columns.copy()
             for row, by in enumerate((growth.place, growth.weight)):
                 columns[row] += 0.0 if by is None else by
-            if moving:  # the shapes of slopes are as long as the element
-                columns[4] *= _slopes_at_stations(model, u)
-                columns[5] *= -_slopes_at_stations(model, gradient.adjoint)
-            shape = ShapeGradient(columns, gradient.stiffness, gradient.numbers[_WIDEST], growth.edge, growth.edge_by)
-            gradient.by_tables = shape.by_tables(model, elements)
-            if moving:
-                gradient.by_tables[0] = shape.by_stations(model, elements, u, gradient.adjoint)
-            gradient.with_stations = moving
+            # the shapes of slopes are as long as the element
+            columns[4] *= _slopes_at_stations(model, u)
+            columns[5] *= -_slopes_at_stations(model, gradient.adjoint)
+            stiffness, widest = self._by_stiffness(gradient), gradient.numbers[_WIDEST]
+            shape = ShapeGradient(columns, stiffness, widest, growth.edge, growth.edge_by)
+            gradient.by_tables = shape.by_tables(model, self.request.elements, u, gradient.adjoint)
         return gradient.by_tables
 
     def _growth(self, name: str) -> tuple[FloatArray, tuple[float, float, float], FloatArray, FloatArray, float]:
@@ -411,6 +405,28 @@ class CarveDerivatives:
         else:
             strength = N_PER_MM2
         return _Direction(numbers, strength)
+
+
+def ski_derivatives(asked: Sequence[tuple[CarveDerivatives, str]], names: tuple[str, ...]) -> FloatArray:
+    """Growth of outputs of carves with one ski, on one mesh, with parameters of that ski.
+
+    Shape (outputs, parameters). Outputs together take far fewer operations than each for itself.
+    """
+    request = asked[0][0].request
+    model, elements = request.model, request.elements
+    tables, numbers = table_growths(model.ski, names)
+    gradients = [point._gradient(output) for point, output in asked]
+    by_numbers = np.array([gradient.numbers for gradient in gradients])
+    out = by_numbers[:, _OF_SHAPE] @ numbers.T
+    if tables[:, 0].any():  # the stations move
+        by_tables = np.array([point.by_tables(output) for point, output in asked])
+        return np.asarray(out + np.tensordot(by_tables, tables, ((1, 2), (1, 2))))
+    columns = np.array([gradient.columns[2:4] for gradient in gradients])
+    columns[:, 0, widest_station(model.ski, model.clamp_length, elements)] += by_numbers[:, _WIDEST]
+    u = np.array([point.at.solution.u for point, _ in asked])
+    stiffness = beam_gradients(model, u, np.array([gradient.adjoint for gradient in gradients]))
+    edges = [(gradient.output.edge, gradient.output.edge_by) for gradient in gradients]
+    return np.asarray(out + growth_by_tables(model, elements, tables, columns, stiffness, edges))
 
 
 def _slopes_at_stations(model: ClampedSki, u: FloatArray) -> FloatArray:

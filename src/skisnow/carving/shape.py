@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,6 +25,10 @@ from ..ski.editing import TableGrowth, table_growth
 
 if TYPE_CHECKING:
     from ..ski.ski import Ski
+
+
+Edges: TypeAlias = Sequence[tuple[FloatArray, FloatArray]]
+"""For each output: places of the edge (m), and growth with width, height, deflection, twist there (4, places)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +70,8 @@ class _Lines(NamedTuple):
 
     def along(self, table: FloatArray) -> FloatArray:
         """Values of tables (…, rows) at the places."""
-        return np.asarray(table[..., self.row] + self.share * (table[..., self.row + 1] - table[..., self.row]))
+        here = table.take(self.row, axis=-1)
+        return np.asarray(here + self.share * (table.take(self.row + 1, axis=-1) - here))
 
     def moved(self, table: FloatArray, station: FloatArray, place: FloatArray) -> FloatArray:
         """Growth of these where the tables' stations and the places grow; the rows stay the same."""
@@ -117,7 +123,7 @@ def _lines_at(station: bytes, place: tuple[float, ...]) -> _Lines:
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
     """Growth of the shape with a parameter of the ski; elements and rows of the tables keep their numbers."""
     growth, station = table_growth(ski, name), ski.station.tobytes()
-    widest = _widest(ski, clamp_length, elements)
+    widest = widest_station(ski, clamp_length, elements)
     fixed = _fixed_shape(growth, station, clamp_length, elements, widest)
     by_station = growth.tables[0]
     if not by_station.any():
@@ -159,7 +165,7 @@ def _fixed_shape(growth: TableGrowth, station: bytes, clamp_length: float, eleme
 
 
 @functools.lru_cache(maxsize=64)
-def _widest(ski: Ski, clamp_length: float, elements: int) -> int:
+def widest_station(ski: Ski, clamp_length: float, elements: int) -> int:
     """Number of the widest station."""
     return int(np.argmax(_mesh(ski.station.tobytes(), clamp_length, elements).stations.along(ski.width)))
 
@@ -179,10 +185,11 @@ class ShapeGradient:
     edge: FloatArray
     by_edge: FloatArray
 
-    def by_tables(self, model: ClampedSki, elements: int) -> FloatArray:
-        """Growth with the ski's tables, as of `TableGrowth`, on stations that stay (5, rows)."""
+    def by_tables(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
+        """Growth with the ski's tables, as of `TableGrowth` (5, rows)."""
         station, rows = model.ski.station.tobytes(), len(model.ski.station)
         mesh, out = _mesh(station, model.clamp_length, elements), np.zeros((5, rows))
+        out[0] = self._by_stations(model, elements, u, adjoint)
         out[1:3] = mesh.stations.to_rows(self._sections(model, elements), rows)
         out[3:] = mesh.gauss.to_rows(self.stiffness.reshape(2, -1), rows)
         if len(self.edge):
@@ -191,10 +198,10 @@ class ShapeGradient:
 
     def _sections(self, model: ClampedSki, elements: int) -> FloatArray:
         out = self.stations[2:4].copy()
-        out[0, _widest(model.ski, model.clamp_length, elements)] += self.widest
+        out[0, widest_station(model.ski, model.clamp_length, elements)] += self.widest
         return out
 
-    def by_stations(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
+    def _by_stations(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
         """Growth with the stations of the ski's tables (rows,): places move, elements lengthen, lines shift."""
         ski, half = model.ski, model.clamp_length / 2.0
         mesh, rows = _mesh(ski.station.tobytes(), model.clamp_length, elements), len(ski.station)
@@ -248,10 +255,15 @@ def _by_stretch(model: ClampedSki, stiffness: FloatArray, u: FloatArray, adjoint
     return np.asarray(moment @ GAUSS_WEIGHTS * length)
 
 
-@functools.lru_cache(maxsize=32)
 def _curvature(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
     """Lengths of the elements, and their shapes of curvature at the Gauss points."""
-    length = _lengths(model)
+    return _curvature_between(model.node.tobytes())
+
+
+@functools.lru_cache(maxsize=16)
+def _curvature_between(nodes: bytes) -> tuple[FloatArray, FloatArray]:
+    node = np.frombuffer(nodes)
+    length = node[:-1] - node[1:]
     return length, curvature_shape(GAUSS_POINTS[None, :], length[:, None])
 
 
@@ -287,14 +299,43 @@ def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, Fl
     return np.einsum("ngi,ni->ng", curvature, value), (value[:, 5:] - value[:, 2:3]) / length[:, None]
 
 
-def beam_gradient(model: ClampedSki, bent: tuple[FloatArray, FloatArray], adjoint: FloatArray) -> FloatArray:
-    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist; (2, n, 4).
+def beam_gradients(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> FloatArray:
+    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist.
 
-    `bent`: curvature and rate of twist of u.
+    For k pairs of u and λ, each (k, size); shape (k, 2, n, 4).
     """
-    kappa, turn = curvature_and_turn(model, adjoint)
-    weight = GAUSS_WEIGHTS * _lengths(model)[:, None]
-    return np.array([weight * bent[0] * kappa, weight * (bent[1] * turn)])
+    (length, curvature), pairs = _curvature(model), len(u)
+    unknowns = np.zeros((2 * pairs, model.size + 1))  # -1: held
+    unknowns[:pairs, :-1], unknowns[pairs:, :-1] = u, adjoint
+    value = unknowns.take(model.dof, axis=1)
+    kappa = (value.swapaxes(0, 1) @ curvature.swapaxes(1, 2)).swapaxes(0, 1)
+    turn = (value[:, :, 5] - value[:, :, 2]) / length
+    weight, out = GAUSS_WEIGHTS * length[:, None], np.empty((pairs, 2, *curvature.shape[:2]))
+    out[:, 0] = weight * kappa[:pairs] * kappa[pairs:]
+    out[:, 1] = weight * (turn[:pairs] * turn[pairs:])[:, :, None]
+    return out
+
+
+def growth_by_tables(
+    model: ClampedSki, elements: int, tables: FloatArray, columns: FloatArray, stiffness: FloatArray, edges: Edges
+) -> FloatArray:
+    """Growth of k outputs with parameters of the ski whose tables (parameters, 5, rows) grow on stations that stay.
+
+    From the growth with width and height of the base at the stations (k, 2, 2 n), with EI and GJ at the Gauss points
+    (k, 2, n, 4), and for each output with the first two at places of the edge.
+    """
+    station, out = model.ski.station.tobytes(), np.zeros((len(columns), len(tables)))
+    mesh, grow = _mesh(station, model.clamp_length, elements), np.asarray(tables.any(axis=-1))
+    by_gauss = stiffness.reshape(*stiffness.shape[:2], -1)
+    for number in np.flatnonzero(grow.any(axis=0)).tolist():
+        which = grow[:, number]
+        table, lines = tables[which, number], mesh.stations if number < 3 else mesh.gauss
+        by = columns[:, number - 1] if number < 3 else by_gauss[:, number - 3]
+        out[:, which] += by @ lines.along(table).T
+        for row, (place, by_edge) in enumerate(edges if number < 3 else ()):
+            if len(place):
+                out[row, which] += _lines_at(station, tuple(place.tolist())).along(table) @ by_edge[number - 1]
+    return out
 
 
 def _values(model: ClampedSki, u: FloatArray) -> FloatArray:

@@ -13,10 +13,13 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
 from ..carving.answer import asked_snow
 from ..carving.equilibrium import differentiable_carve
+from ..carving.sensitivity import ski_derivatives
 from ..ski.ski_file import ski_of_keys
 from .variables import COMBINED, combined_names, designed_keys, start_value
 
 if TYPE_CHECKING:
+    from collections.abc import Collection, Sequence
+
     from ..carving.question import CarveQuestion
     from ..carving.sensitivity import CarveDerivatives
     from ..carving.solve import Solution
@@ -34,6 +37,7 @@ class Evaluator:
     snows: tuple[SnowProperties, ...] = ()
     names: tuple[str, ...] = ()
     _points: dict[bytes, tuple[CarveDerivatives, ...]] = field(default_factory=dict)
+    _growths: dict[bytes, dict[tuple[int, str], FloatArray]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         combined = (combined_names(variable.name) for variable in self.task.variables)
@@ -100,46 +104,69 @@ class Evaluator:
 
     def goal_growth(self, goal: Goal, z: FloatArray) -> FloatArray:
         """Growth of these with the variables, shape (values, variables)."""
-        values, place = self.goal_values(goal, z), None if goal.places_m is None else np.array(goal.places_m)
-        rows = np.vstack([self.output_growth(point, goal.output, z, place).T for point in self._chosen(goal, z)])
+        if goal.places_m is not None:
+            place, by_variables = np.array(goal.places_m), self._by_variables(z)
+            growths = [[point.force_growth_at(name, place) for name in self.names] for point in self._chosen(goal, z)]
+            return np.concatenate([(by_variables @ np.array(growth)).T for growth in growths])
+        rows = self.output_growths([(number, goal.output) for number in self._numbers(goal)], z)
         if goal.ratio:
-            second = _output(self._chosen(goal, z)[1], goal.output)
-            return np.asarray((rows[:1] - values[0] * rows[1:]) / second)
+            values = self.goal_values(goal, z)
+            return np.asarray((rows[:1] - values[0] * rows[1:]) / _output(self._chosen(goal, z)[1], goal.output))
         return rows
 
-    def output_growth(
-        self, point: CarveDerivatives, output: str, z: FloatArray, place: FloatArray | None = None
-    ) -> FloatArray:
-        """Growth of an output at a condition, or of the force at places (m), with each variable, counted as `points`.
+    def output_growths(self, asked: Sequence[tuple[int, str]], z: FloatArray) -> FloatArray:
+        """Growth of outputs, each at the condition with its number from 0, with each variable, counted as `points`.
 
-        Shape (variables, ...).
+        Shape (outputs, variables). Those of all goals are computed together.
         """
-        if place is None:
-            growths = point.derivatives(output, self.names)
-        else:
-            growths = np.array([point.force_growth_at(name, place) for name in self.names])
+        place = z.tobytes()
+        if place not in self._growths:
+            goals = (goal for goal in self.task.goals if goal.places_m is None)
+            of_goals = [(number, goal.output) for goal in goals for number in self._numbers(goal)]
+            self._growths = {place: self._computed_growths(dict.fromkeys([*of_goals, *asked]), z)}
+        known = self._growths[place]
+        if missing := [each for each in asked if each not in known]:
+            known |= self._computed_growths(missing, z)
+        return np.array([known[each] for each in asked])
+
+    def _computed_growths(self, asked: Collection[tuple[int, str]], z: FloatArray) -> dict[tuple[int, str], FloatArray]:
+        points, by_variables = self.points(z), self._by_variables(z)
+        out: dict[tuple[int, str], FloatArray] = {}
+        meshes = dict.fromkeys(points[number].request.model for number, _ in asked)
+        for mesh in meshes:
+            same = [each for each in asked if points[each[0]].request.model is mesh]
+            growths = ski_derivatives([(points[number], output) for number, output in same], self.names)
+            out |= dict(zip(same, growths @ by_variables.T, strict=True))
+        return out
+
+    def _by_variables(self, z: FloatArray) -> FloatArray:
+        """Growth of the ski's parameters with the variables, shape (variables, parameters)."""
         # factors of a list of stiffness multiply its rows
         values = zip(self.task.variables, self.values(z).tolist(), strict=True)
         factors = {COMBINED[variable.name][0]: value for variable, value in values if variable.name in COMBINED}
-        by_names = np.zeros((len(self.task.variables), len(self.names)))
+        out = np.zeros((len(self.task.variables), len(self.names)))
         for row, variable in enumerate(self.task.variables):
             key, _, number = variable.name.partition("[")
             growth = variable.width * factors.get(key, 1.0) if number else variable.width
             if variable.name in COMBINED and variable.name != "sidecut_mm":
                 growth /= factors[COMBINED[variable.name][0]]
             for name in combined_names(variable.name):
-                by_names[row, self.names.index(name)] = growth
-        return np.asarray(by_names @ growths)
+                out[row, self.names.index(name)] = growth
+        return out
 
     def value_count(self, goal: Goal) -> int:
         """Number of a goal's values."""
         conditions = 1 if goal.ratio else len(goal.conditions or self.task.conditions)
         return conditions * len(goal.factors)
 
+    def _numbers(self, goal: Goal) -> list[int]:
+        """Numbers, from 0, of the conditions of a goal (default: all)."""
+        return [int(number) - 1 for number in goal.conditions or range(1, len(self.snows) + 1)]
+
     def _chosen(self, goal: Goal, z: FloatArray) -> list[CarveDerivatives]:
-        """Equilibria at the conditions of a goal (default: all)."""
+        """Equilibria at the conditions of a goal."""
         points = self.points(z)
-        return [points[int(number) - 1] for number in goal.conditions] if goal.conditions else list(points)
+        return [points[number] for number in self._numbers(goal)]
 
 
 def _output(point: CarveDerivatives, name: str) -> float:

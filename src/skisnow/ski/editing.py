@@ -227,11 +227,6 @@ class TableGrowth:
     tables: FloatArray
     numbers: FloatArray
 
-    @property
-    def moves(self) -> bool:
-        """Whether the stations move: first and last station are its ends."""
-        return bool(self.tables[0].any())
-
 
 _PARTS: Final = ("width", "base_height", *STIFFNESSES)
 _LENGTHS: Final = ("length_mm", "running_length_mm", "sidecut_length_mm", "tail_overhang_mm", "boot_position_mm")
@@ -272,11 +267,10 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
 
 
 @functools.lru_cache(maxsize=64)
-def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray, bool]:
-    """Tables (n, 5 rows) and numbers (n, 3) of the growths with parameters; whether the stations move with one."""
+def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
+    """Tables (n, 5, rows) and numbers (n, 3) of the growths with parameters."""
     growths = [table_growth(ski, name) for name in names]
-    tables = np.array([growth.tables.ravel() for growth in growths])
-    return tables, np.array([growth.numbers for growth in growths]), any(growth.moves for growth in growths)
+    return np.array([growth.tables for growth in growths]), np.array([growth.numbers for growth in growths])
 
 
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
