@@ -140,7 +140,7 @@ def test_the_list_grows_with_each_series_of_a_page(entered: Entered) -> None:
     page = entered.open()
     page.fill("Site", "A")
     page.fill("Edge angle (°)", "0")
-    names = []
+    names: list[str] = []
     for name in map(str, range(1, 9)):
         page.press("Begin the series")
         enter(page, "Depth under 20 N (mm)", f"1.{name}")
