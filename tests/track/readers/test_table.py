@@ -181,6 +181,7 @@ def test_uncertainties_and_odometer(tmp_path: Path) -> None:
             ["unknown_unit", "column alt_m", "'Altitude [fathoms]'", "ft"],
         ),
         ("time_s,x_m,y_m,Speed\n0,1,2,3\n", ["unknown_unit", "column speed_m_per_s", "'Speed'"]),
+        ("time_s,x_m,y_m,Ground_Speed\n0,1,2,3\n", ["unknown_unit", "column speed_m_per_s", "'Ground_Speed'"]),
         ("time_s,x_m,y_m,speed_warp\n0,1,2,3\n", ["unknown_unit", "column speed_m_per_s", "'speed_warp'", "km/h"]),
         ("Zeit [Tage];x;y\n0;1,5;2\n", ["unknown_unit", "column time_s", "'Zeit [Tage]'", "ms"]),
         ("time,lat,lon,alt_m,Höhe [ft]\n0,46,7,9,9\n", ["column_twice", "column alt_m", "'alt_m, Höhe [ft]'"]),

@@ -414,6 +414,6 @@ def _meaning(heading: str, columns: Sequence[str]) -> tuple[str, float, bool] | 
     for name in names:
         if unit in _WORDS[name][1]:
             return name, _WORDS[name][1][unit], is_vague
-    if not names or (is_vague and match["bracketed"] is None):
+    if not names or (match["bracketed"] is None and is_vague and (unit or len(word) == 1)):
         return None
     return names[-1], 0.0, is_vague
