@@ -80,6 +80,17 @@ def test_over_midnight(tmp_path: Path) -> None:
     assert track.start == datetime(2022, 12, 31, 23, 59, 59, 500000, tzinfo=UTC)
 
 
+def test_a_leap_second_breaks_no_track(tmp_path: Path) -> None:
+    """A sentence of it is left out; other formats give it the time of the second that follows."""
+    data = b"".join(gga(time) for time in ("235959.00", "235960.00", "000000.00"))
+    assert read(tmp_path, data, "a.nmea").time.tolist() == [0.0, 1.0]
+    times = "2016-12-31T23:59:59.5Z", "2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z"
+    table = "".join(f"{time},46,7\n" for time in times)
+    points = "".join(f'<trkpt lat="46" lon="7"><time>{time}</time></trkpt>' for time in times)
+    for content in (f"time,lat,lon\n{table}", f"<gpx><trk><trkseg>{points}</trkseg></trk></gpx>"):
+        assert read(tmp_path, content, "a.track").time.tolist() == [0.0, 0.5, 0.5]
+
+
 def test_date_of_zda_comes_later(tmp_path: Path) -> None:
     data = gga("235959.00") + gga("000000.00") + sentence("GNZDA,000000.00,01,01,2023,00,00")
     assert read(tmp_path, data, "a.nmea").start == datetime(2022, 12, 31, 23, 59, 59, tzinfo=UTC)

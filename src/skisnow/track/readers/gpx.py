@@ -206,9 +206,10 @@ def _moment(text: str) -> datetime | None:
     match = _TIME.fullmatch(text)
     if match is None:
         return None
-    microsecond = int((match[7] or ".")[1:7].ljust(6, "0"))
+    *whole, second = map(int, match.groups()[:6])
+    since = timedelta(seconds=second, microseconds=int((match[7] or ".")[1:7].ljust(6, "0")))  # a leap second is 60
     try:
-        return datetime(*map(int, match.groups()[:6]), microsecond, tzinfo=_zone(match[8])).astimezone(UTC)  # type: ignore[misc, arg-type]
+        return (datetime(*whole, tzinfo=_zone(match[8])) + since).astimezone(UTC) if second <= 60 else None  # type: ignore[misc, arg-type]
     except (ValueError, OverflowError):
         return None
 

@@ -160,8 +160,9 @@ def moment(cell: str) -> datetime | None:
     """
     if len(cell) < len("2022-12-27T15:51") or not cell.isascii():
         return None
+    regular = re.sub(r"(:\d\d:)60", r"\g<1>59", cell, count=1)  # a leap second is second 60
     try:
-        time = datetime.fromisoformat(cell)
+        time = datetime.fromisoformat(regular) + timedelta(seconds=regular != cell)
         return time if time.tzinfo is None else time.astimezone(UTC)
     except (ValueError, OverflowError):
         return None
