@@ -72,8 +72,10 @@ void Base::cover(const GrooveLines& lines, const double* of) {
   wanted.assign(std::size_t(blocks), of == nullptr ? SECTIONS : NOTHING);
   for (int i = 0; of != nullptr && i < count(); i++) {
     if (of[lines.slot(line(i))] == 0.0) continue;
-    for (int block = std::max(i / BLOCK - 1, 0); block < std::min(i / BLOCK + 2, blocks); block++)
-      wanted[std::size_t(block)] = std::max(wanted[std::size_t(block)], block == i / BLOCK ? SECTIONS : STATIONS);
+    wanted[std::size_t(i / BLOCK)] = SECTIONS;
+    for (const int next : {i - 1, i + 1})  // the share of a line ends halfway to its neighbours
+      if (next >= 0 && next < count() && wanted[std::size_t(next / BLOCK)] == NOTHING)
+        wanted[std::size_t(next / BLOCK)] = STATIONS;
   }
 }
 

@@ -1,6 +1,8 @@
 // The snow's history under a runner that passes: line by line, along the way between two poses.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "contact/contact.hpp"
 
@@ -130,12 +132,14 @@ struct Touch {
     const double low = std::max(s[WET_FROM][i], std::min(place_of(0.0), place_of(1.0)));
     const double high = std::min(s[WET_TO][i], std::max(place_of(0.0), place_of(1.0)));
     if (!(high - low > THIN)) return false;
-    const alone::BasePieces<double> pieces(alone::Cut<double>::stored(s, i));
+    std::optional<alone::BasePieces<double>> pieces;
+    if (s.edge_shape.acts()) pieces.emplace(alone::Cut<double>::stored(s, i));
     Pressing out;
     for (; out.count < 5; out.count++) {
       const double x = 0.25 * (low * (4 - out.count) + high * out.count), share = at(u, x);
-      double depth = pieces.depth(0, x);  // of all pieces the least, since a base rises towards its edges
-      for (int piece = 1; piece < pieces.COUNT; piece++) depth = std::min(depth, pieces.depth(piece, x));
+      double depth = s[GRIP_DEPTH][i] + s[DEPTH_FALL][i] * x;
+      for (int piece = 0; pieces && piece < pieces->COUNT; piece++)  // the least, since a base rises towards its edges
+        depth = std::min(depth, pieces->depth(piece, x));
       out.place[out.count] = s[GRIP_PLACE][i] + x + share * at(aside, x);
       out.depth[out.count] = depth + share * share * bend;
     }
@@ -145,13 +149,15 @@ struct Touch {
   // How much higher the unbent base is at the mark than here beyond the mean of both slopes: 0 for a parabola.
   double rise_beside_mean() const {
     const double a = lines.values[MARK_STATION][slot], b = s[STATION][i];
-    const auto unbent = [&](double station, int column) {
+    const auto unbent = [&](double station) {
       const double place = std::clamp((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0);
-      const double whole = std::floor(std::min(place, runner.places - 2.0));
-      const double* row = runner.table.data() + ROW * std::size_t(whole) + column;
-      return row[0] + (place - whole) * (row[ROW] - row[0]);
+      const int whole = std::min(int(place), runner.places - 2);
+      const double *row = runner.table.data() + ROW * std::size_t(whole), *next = row + ROW, beyond = place - whole;
+      return std::pair(row[2] + beyond * (next[2] - row[2]), row[3] + beyond * (next[3] - row[3]));
     };
-    return unbent(a, 2) - unbent(b, 2) - 0.5 * (a - b) * (unbent(a, 3) + unbent(b, 3));
+    const auto [height_a, slope_a] = unbent(a);
+    const auto [height_b, slope_b] = unbent(b);
+    return height_a - height_b - 0.5 * (a - b) * (slope_a + slope_b);
   }
 
   // The wet base and the way of one of its edges in the snow since it was marked last.
@@ -261,45 +267,42 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
 // only its anchor depends on the way, unless all of the edge that comes to the line slips to the same side.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
-  const auto depth = [&](std::int64_t n) {
-    return std::max(v[LEFT_MARK_DEPTH][lines.slot(n)], v[RIGHT_MARK_DEPTH][lines.slot(n)]);
-  };
-  const auto marked = [&](std::int64_t n) {
-    return n >= lines.first && n < lines.end && v[MARKED][lines.slot(n)] > 0.5 && depth(n) > 0.0;
-  };
   const double most = snow_->shear_displacement - THIN;  // a slip leaves the anchor as far off, but for rounding
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
-  // 1 where an edge slips to the left, -1 to the right, 0 where it holds
-  const auto slip = [&](std::int64_t n, int k) {
-    const auto of = [&](LineField left) { return v[of_edge(left, k)][lines.slot(n)]; };
-    const double way = of(LEFT_MARK) - of(LEFT_ANCHOR);
-    const bool slips = marked(n) && of(LEFT_MARK_DEPTH) > 0.0 && std::fabs(way) > most;
-    return !slips ? 0 : way > 0.0 ? 1 : -1;
-  };
-  const auto drags = [&](std::int64_t n, int k) {
-    const int side = slip(n, k);
-    bool alike = true;
-    for (std::int64_t m = n - over - 1; m < n && side != 0; m++) alike = alike && slip(m, k) == side;
-    return !alike;
+  for (Column* each : {&slips_, &is_needed_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
+  Column& marked_depth = scratch_;  // by slot; 0 where the ski was not in the snow
+  int side[2] = {}, alike[2] = {};  // of each edge: whether it slips to the left, 1, or to the right, -1; lines before
+  for (std::int64_t n = lines.first; n < lines.end; n++) {
+    const auto slot = std::size_t(lines.slot(n));
+    const bool is_marked = v[MARKED][slot] > 0.5;
+    if (is_marked) marked_depth[slot] = std::max({v[LEFT_MARK_DEPTH][slot], v[RIGHT_MARK_DEPTH][slot], 0.0});
+    for (int k = 0; k < 2; k++) {
+      const double slipped = v[of_edge(LEFT_MARK, k)][slot] - v[of_edge(LEFT_ANCHOR, k)][slot];
+      const bool slips = is_marked && v[of_edge(LEFT_MARK_DEPTH, k)][slot] > 0.0 && std::fabs(slipped) > most;
+      const int here = !slips ? 0 : slipped > 0.0 ? 1 : -1;
+      alike[k] = here == side[k] ? alike[k] + 1 : 0, side[k] = here;
+      if (here != 0 && alike[k] <= over) slips_[slot] = 1.0;
+    }
+  }
+  const auto depth = [&](std::int64_t n) {
+    return n >= lines.first && n < lines.end ? marked_depth[std::size_t(lines.slot(n))] : 0.0;
   };
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
   needed_.clear();
-  for (Column* each : {&slips_, &is_needed_}) std::fill(each->begin(), each->end(), 0.0);
   drags_ = false;
   bool ahead = true;
   std::int64_t deepest = lines.end + over + 1;
   for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
-    const int slot = lines.slot(n);
-    if (marked(n - over) && marked(n - over - 1) && marked(n - over + 1) && depth(n - over) >= depth(n - over - 1) &&
-        depth(n - over) >= depth(n - over + 1))
-      deepest = n - over;
-    ahead = ahead && !marked(n);
+    const auto slot = std::size_t(lines.slot(n));
+    const double rear = depth(n - over - 1), here = depth(n - over), front = depth(n - over + 1);
+    if (std::min({rear, here, front}) > 0.0 && here >= std::max(rear, front)) deepest = n - over;
+    ahead = ahead && !(depth(n) > 0.0);
     if (ahead || (n >= deepest - over && n <= deepest + over)) {
+      slips_[slot] = 0.0;
       if (lines.station(n, to) > reach) continue;
-      needed_.push_back(n), is_needed_[std::size_t(slot)] = 1.0;
-    } else if (drags(n, 0) || drags(n, 1)) {
-      slips_[std::size_t(slot)] = 1.0, drags_ = true;
+      needed_.push_back(n), is_needed_[slot] = 1.0;
     }
+    drags_ = drags_ || slips_[slot] > 0.0;
   }
 }
 
