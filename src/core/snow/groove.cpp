@@ -63,6 +63,8 @@ class Merge {
   Merge(Ground& out, double y, double depth) : out_(out), y_(y), depth_(depth) {}
 
   bool changed() const { return changed_; }
+  bool is_deeper() const { return is_deeper_; }  // whether the polyline is deeper than the ground somewhere
+  bool is_above() const { return is_above_; }    // or less deep
 
   // Up to a place where either has a knot; whether the ground and the polyline have one at the place reached.
   void advance(double y, const Both& from, const Both& to, bool knot, bool pressed_knot) {
@@ -74,7 +76,7 @@ class Merge {
       const double apart = over - over_end;
       out_.append((y * over - y_ * over_end) / apart, (to.pressed * over - from.pressed * over_end) / apart);
     }
-    changed_ = changed_ || (any && y - y_ > THIN);
+    changed_ = changed_ || (any && y - y_ > THIN), is_deeper_ = is_deeper_ || any, is_above_ = is_above_ || !all;
     is_pressed_ = last;
     depth_ = last ? to.pressed : to.ground;
     y_ = y;
@@ -94,7 +96,7 @@ class Merge {
  private:
   Ground& out_;
   double y_, depth_;
-  bool is_pressed_ = false, changed_ = false;
+  bool is_pressed_ = false, changed_ = false, is_deeper_ = false, is_above_ = false;
 };
 
 double triangle(const Ground& ground, int i, int j, int k) {
@@ -131,21 +133,6 @@ bool Ground::press(double a, double depth_a, double b, double depth_b) {
   return press(at, deep, 2);
 }
 
-// Where a polyline is deeper than the ground, whose knot `kept` is the first at its beginning or behind.
-Ground::Deeper Ground::compare(const double* at, const double* deep, int knots, int kept) const {
-  Reader ground(place, depth, count, kept, at[0]), pressed(at, deep, knots, 0, at[0]);
-  bool deeper = false, above = false;
-  const auto compare = [&](double over) { deeper = deeper || over > THIN, above = above || over < -THIN; };
-  for (double y = at[0]; y < at[knots - 1] && !(deeper && above);) {
-    compare(pressed.right() - ground.right());
-    y = std::min(ground.next(), pressed.next());
-    ground.go_to(y), pressed.go_to(y);
-    compare(pressed.left() - ground.left());
-  }
-  if (!deeper) return Deeper::NOWHERE;
-  return above ? Deeper::SOMEWHERE : Deeper::EVERYWHERE;
-}
-
 // The ground with a polyline instead of everything between its ends.
 Ground Ground::replaced(const double* at, const double* deep, int knots, int kept) const {
   const double from = at[0], to = at[knots - 1];
@@ -168,12 +155,6 @@ bool Ground::press(const double* at, const double* deep, int knots) {
   if (!(to - from > THIN)) return false;
   int kept = 0;
   while (kept < count && place[kept] < from) kept++;
-  const Deeper where = compare(at, deep, knots, kept);
-  if (where == Deeper::NOWHERE) return false;
-  if (where == Deeper::EVERYWHERE) {
-    *this = replaced(at, deep, knots, kept);
-    return true;
-  }
   Ground out;
   for (int j = 0; j < kept; j++) out.place[j] = place[j], out.depth[j] = depth[j];
   out.count = kept;
@@ -186,6 +167,10 @@ bool Ground::press(const double* at, const double* deep, int knots) {
     y = std::min(ground.next(), pressed.next());
     ground.go_to(y), pressed.go_to(y);
     merge.advance(y, here, {ground.left(), pressed.left()}, knot, pressed_knot);
+  }
+  if (merge.is_deeper() && !merge.is_above()) {
+    *this = replaced(at, deep, knots, kept);
+    return true;
   }
   if (!merge.changed()) return false;
   const bool knot = ground.is_at_knot();
@@ -207,7 +192,9 @@ void Ground::simplify(double area, int most) {
   double size[ROOM];
   for (int j = 1; j + 1 < count; j++) size[j] = triangle(*this, j - 1, j, j + 1);
   while (count > 2) {
-    const double least = *std::min_element(size + 1, size + count - 1), alike = least * (1.0 + ALIKE) + TINY_AREA;
+    double least = size[1];
+    for (int j = 2; j + 1 < count; j++) least = std::min(least, size[j]);
+    const double alike = least * (1.0 + ALIKE) + TINY_AREA;
     if (least > area && count <= most) break;
     int first = 1, last = count - 2;
     while (size[first] > alike) first++;

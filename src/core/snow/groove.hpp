@@ -39,8 +39,6 @@ struct Ground {
   double squared() const;
 
  private:
-  enum class Deeper { NOWHERE, SOMEWHERE, EVERYWHERE };
-  Deeper compare(const double* at, const double* deep, int knots, int kept) const;
   Ground replaced(const double* at, const double* deep, int knots, int kept) const;
   void drop(int knot, double* size);
 };
