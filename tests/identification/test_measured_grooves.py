@@ -26,6 +26,11 @@ def residuals_of(measured: MeasuredGrooves | None = None) -> GrooveResiduals:
     )
 
 
+def mass_of(own: GrooveResiduals) -> float:
+    scenario = own.scenario.scenario
+    return scenario.sledge.mass + 2.0 * scenario.ski.mass
+
+
 def measured(
     depth: float, width: float, radius: float, *, share: float = 0.02, seed: int | None = None
 ) -> MeasuredGrooves:
@@ -75,9 +80,7 @@ def test_an_edge_that_holds_bounds_the_strength_from_below() -> None:
     found = identify("carved-46m", data, "H_V,S_f", changes=CHANGES)
     assert found.outcome == "not_identifiable"
     assert found["S_f"].value is None
-    scenario = own.scenario.scenario
-    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
-    needed = mass * 7.0**2 / groove.turn_radius / (2.0 * groove.grip_area) / 1e6
+    needed = mass_of(own) * 7.0**2 / groove.turn_radius / (2.0 * groove.grip_area) / 1e6
     low, high = found["S_f"].interval or (None, None)
     assert high is None
     assert low is not None
@@ -109,9 +112,7 @@ def test_an_edge_that_slides_gives_the_strength() -> None:
     own = residuals_of()
     groove = own.groove({"snow.H_V_N_per_mm3": 0.25})
     assert groove is not None
-    scenario = own.scenario.scenario
-    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
-    radius = mass * 7.0**2 / (2.0 * 0.03e6 * groove.grip_area)
+    radius = mass_of(own) * 7.0**2 / (2.0 * 0.03e6 * groove.grip_area)
     assert radius > 1.2 * groove.turn_radius
     found = identify("carved-46m", measured(groove.depth, 3.0 * groove.width, radius), "H_V,S_f", changes=CHANGES)
     assert found.outcome == "converged"
@@ -124,9 +125,7 @@ def test_side_of_the_slope_counts() -> None:
     """A turn to the left that heads left of the fall line is pulled outwards by g sin α sin χ."""
     own = residuals_of()
     across = own.demand({"start.heading_deg": 90.0}, math.inf)
-    scenario = own.scenario.scenario
-    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
-    assert across == pytest.approx(mass * 9.81 * math.sin(math.radians(10.0)), rel=1e-9)
+    assert across == pytest.approx(mass_of(own) * 9.81 * math.sin(math.radians(10.0)), rel=1e-9)
     assert own.demand({"start.heading_deg": -90.0}, math.inf) == pytest.approx(-across, rel=1e-9)
     right = {"start.heading_deg": 90.0, "sledge.edge_angle_deg": -30.0}
     assert own.demand(right, math.inf) == pytest.approx(-across, rel=1e-9)
@@ -152,8 +151,7 @@ def test_a_profile_is_as_steep_as_where_the_run_starts() -> None:
         scenario=SimpleNamespace(slope=slope, start=start, ski=scenario.ski), values=own.scenario.values
     )
     pulled = GrooveResiduals(own.measured, cast("Any", asked)).demand({"start.heading_deg": 90.0}, math.inf)
-    mass = scenario.sledge.mass + 2.0 * scenario.ski.mass
-    assert pulled == pytest.approx(mass * 9.81 * math.sin(math.radians(12.0)), rel=1e-9)
+    assert pulled == pytest.approx(mass_of(own) * 9.81 * math.sin(math.radians(12.0)), rel=1e-9)
 
 
 def test_elastic_snow_keeps_no_groove() -> None:
@@ -203,9 +201,8 @@ def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> Non
     assert found.correlation.shape == found.covariance.shape == (1, 1)
     low, high = found["S_f"].interval or (None, None)
     assert high is None
-    scenario = own.scenario.scenario
     radius = float(np.mean(data.turn_radius))
-    needed = (scenario.sledge.mass + 2.0 * scenario.ski.mass) * 7.0**2 / radius / (2.0 * groove.grip_area) / 1e6
+    needed = mass_of(own) * 7.0**2 / radius / (2.0 * groove.grip_area) / 1e6
     assert low == pytest.approx(needed * (1.0 - 1.645 * 0.02 / 2.0), rel=1e-3)  # four places, 1/R, one-sided
     assert low is not None
     assert f"the turn needed {needed:.3g} N/mm² (95 %: at least {low:.3g})" in found.warnings[0]

@@ -3,19 +3,16 @@
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from skisnow._support.errors import ParameterError
 from skisnow.identification import Identification, PhotoCellRun, PhotoCells, identify
-from skisnow.scenario import scenario_text
 from tests.coded import raises
 
 from . import glide_in_closed_form as exact
-from .test_photo_cell_times import ANGLE_DEG, AREA, CHANGES, MU, SD, SPEED, STATION, mass
+from .test_photo_cell_times import ANGLE_DEG, AREA, CHANGES, MU, SD, SPEED, STATION, mass, with_section
 
 SKIS = mass() - 80.0
 HEAVY, LARGE = 95.0, 0.7
@@ -27,12 +24,6 @@ def run(name: str, *, area: float = AREA, body: float = 80.0, sd: float = SD, no
     time = exact.passage_times(STATION, mu=MU, drag_area=area, speed=SPEED, mass=body + SKIS, angle=angle)
     time = time + (0.0 if noise is None else sd * np.random.default_rng(noise).standard_normal(len(STATION)))
     return PhotoCellRun(name, STATION, np.asarray(time), np.full(len(STATION), sd))
-
-
-def with_section(folder: Path, text: str) -> Path:
-    path = folder / "scenario.toml"
-    path.write_text(f"{scenario_text('carved-46m')}\n{text}", encoding="utf-8")
-    return path
 
 
 def found_from(scenario: str | Path, runs: tuple[PhotoCellRun, ...], free: str) -> Identification:
@@ -49,12 +40,6 @@ class TestSkiers:
         assert found["mu_0"].value == pytest.approx(MU, abs=1e-7)
         assert found["drag_area@first"].value == pytest.approx(AREA, abs=1e-6)
         assert found["drag_area@second"].value == pytest.approx(LARGE, abs=1e-6)
-
-    def test_a_skier_of_another_mass_is_not_taken_for_the_first(self, tmp_path: Path) -> None:
-        """Only C_dA/m acts: with the mass of the first the second's drag area comes out smaller by that share."""
-        found = found_from(with_section(tmp_path, ""), self.RUNS, "mu_0,drag_area@each")
-        wanted = LARGE * (80.0 + SKIS) / (HEAVY + SKIS)
-        assert found["drag_area@second"].value == pytest.approx(wanted, abs=1e-6)
 
     def test_one_run_may_differ(self, tmp_path: Path) -> None:
         path = with_section(tmp_path, self.SECTION + f"drag_area_m2 = {LARGE}\n")
@@ -117,52 +102,6 @@ class TestWeights:
     def test_runs_that_state_nothing_beside_runs_that_do_are_rejected(self) -> None:
         with raises(ParameterError, "partial_accuracy"):
             found_from("carved-46m", (run("one"), replace(run("other"), time_sd=None)), "mu_0")
-
-
-class TestChangingInclination:
-    """From 22° to 6° on 300 m, half of the change within 20 m about the middle."""
-
-    STEEP, LEVEL, END = math.radians(22.0), math.radians(6.0), 300.0
-
-    def inclination(self, way: Any) -> Any:
-        return 0.5 * (self.STEEP + self.LEVEL) - 0.5 * (self.STEEP - self.LEVEL) * np.tanh((way - 150.0) / 20.0)
-
-    def curvature(self, way: Any) -> Any:
-        """-dα/ds: a hollow."""
-        return 0.5 * (self.STEEP - self.LEVEL) / 20.0 / np.cosh((way - 150.0) / 20.0) ** 2
-
-    def times(self, station: np.ndarray) -> np.ndarray:
-        """∫ ds/v, dw/ds = 2 g sin α - 2 μ (g cos α + κ w) - ρ C_dA w/m, w = v²."""
-        drag = 1.2 * AREA / mass()
-
-        def slopes(way: float, state: Any) -> list[float]:
-            alpha, w = self.inclination(way), state[0]
-            pressed = 9.81 * math.cos(alpha) + self.curvature(way) * w
-            return [2.0 * 9.81 * math.sin(alpha) - 2.0 * MU * pressed - drag * w, w**-0.5]
-
-        solve = solve_ivp(slopes, (0.0, station[-1]), [SPEED**2, 0.0], t_eval=station, rtol=1e-11, atol=1e-13)
-        return np.asarray(solve.y[1])
-
-    def profile(self, folder: Path) -> Path:
-        way = np.linspace(0.0, self.END + 20.0, 3201)
-        middle = self.inclination(0.5 * (way[1:] + way[:-1]))
-        x, height = (
-            np.concatenate([[0.0], np.cumsum(part * np.diff(way))]) for part in (np.cos(middle), -np.sin(middle))
-        )
-        path = folder / "profile.csv"
-        rows = "\n".join(f"{a:.9f},{b:.9f}" for a, b in zip(x[::20], height[::20], strict=True))
-        path.write_text(f"x,y\n{rows}\n", encoding="utf-8")
-        return path
-
-    def test_friction_and_drag_are_found(self, tmp_path: Path) -> None:
-        """The profile's cubics leave 10⁻⁴ of the times: 2 ms of 20 s, against which 0.002 and 0.01 m² are allowed."""
-        station = np.arange(10.0, self.END, 15.0)
-        bent = PhotoCells("bent", (PhotoCellRun("1", station, self.times(station), np.full(len(station), SD)),))
-        changes = {key: value for key, value in CHANGES.items() if key != "slope.angle_deg"}
-        changes |= {"slope.kind": "profile", "slope.profile": str(self.profile(tmp_path))}
-        found = identify("carved-46m", bent, "mu_0,drag_area", changes=changes)
-        assert found["mu_0"].value == pytest.approx(MU, abs=0.002)
-        assert found["drag_area"].value == pytest.approx(AREA, abs=0.01)
 
 
 class TestTwoSlopes:

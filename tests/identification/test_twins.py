@@ -11,28 +11,11 @@ from benchmarks.page_tables import stale_tables, table_path
 from skisnow.scenario import Solver, load_scenario
 from skisnow.simulation.simulated_run import simulate
 
-from .twins import grooves, shears, tables
+from .twins import grooves, tables
 from .twins.__main__ import DOCS, KINDS, PAGE, main
-from .twins.glides import one_glide
 from .twins.kept import KeptTwins, Row
 from .twins.pool import run_twins
-from .twins.shears import truth_of_shear
-from .twins.truth import DRIFT, ERRORS, FREE, NOISE, SCENARIOS, Truth, finer, track_of, truth_of
-from .twins.turns import track_as
-
-
-def test_half_of_the_seeds_have_a_model_error_of_each_kind_in_turn() -> None:
-    errors = [truth_of(SCENARIOS[0], seed).error for seed in range(12)]
-    assert errors[::2] == [""] * 6
-    assert errors[1::2] == [*ERRORS, *ERRORS]
-
-
-def test_a_seed_is_the_same_truth_for_ever() -> None:
-    """As first drawn: another order of the draws would make other twins under the same numbers."""
-    first = truth_of("giant-slalom-67m", 0).values
-    assert [first[key] for key in FREE] == pytest.approx([0.0454784675, 0.257914686, -92.7541589], rel=1e-8)
-    other = truth_of("carver-42m", 1).values
-    assert [other[key] for key in FREE] == pytest.approx([0.0332748957, 0.394758389, -89.954204], rel=1e-8)
+from .twins.truth import DRIFT, FREE, NOISE, Truth, finer, track_of, truth_of
 
 
 def test_the_truth_has_finer_numbers_than_the_identification() -> None:
@@ -111,27 +94,6 @@ def test_binomial_interval_by_hand() -> None:
     assert tables.binomial(0, 4) == pytest.approx((0.0, 1.0 - 0.005 ** (1 / 4)))
 
 
-def test_intervals_that_hold_the_truth_are_counted() -> None:
-    ends = [("1", "3"), ("2.1", "3"), ("1", "1.9"), ("", "3"), ("1", "")]
-    twins = [{"k true": "2", "k low": low, "k high": high} for low, high in ends]
-    assert tables.covered(twins, "k") == (3, 5)
-
-
-def test_an_error_of_half_an_interval_is_1_96_standard_errors() -> None:
-    row = {"k true": "1", "k found": "3", "k low": "1", "k high": "5"}
-    assert tables.in_standard_errors(row, "k") == pytest.approx(1.959964)
-
-
-def test_a_twin_of_photo_cells_has_the_standard_errors_of_the_closed_form() -> None:
-    """As in test_photo_cell_times, 10⁻⁴ leaves room for the step of integration."""
-    ((case, row),) = one_glide("photo cells, three free", 4)
-    assert "photo cells" in case
-    assert row["outcome"] == "converged"
-    for key in ("friction.mu_0", "drag.drag_area_m2", "start.speed_m_per_s"):
-        assert float(row[f"{key} error over Fisher"]) == pytest.approx(1.0, abs=1e-4)
-        assert float(row[f"{key} low"]) < float(row[f"{key} found"]) < float(row[f"{key} high"])
-
-
 def test_a_sliding_groove_balances_and_a_holding_one_carves() -> None:
     """At the radius of a sliding edge, m v²/R over the same grip is S_f again; fast slides, slow holds."""
     fast, slow = (
@@ -142,26 +104,6 @@ def test_a_sliding_groove_balances_and_a_holding_one_carves() -> None:
     assert fast.turn_radius / slow.turn_radius == pytest.approx(fast.needed / 0.1e6, rel=1e-9)
     assert fast.needed / slow.needed == pytest.approx(9.0, rel=1e-9)
     assert slow.depth / 0.9 / slow.width == pytest.approx(math.tan(math.radians(30.0)), rel=0.1)  # the ski twists
-
-
-def test_a_seed_of_the_shear_is_the_same_truth_for_ever() -> None:
-    found = [truth_of_shear(seed) for seed in range(200)]
-    assert found[0] == pytest.approx(truth_of_shear(0))
-    strength, displacement = (np.array([each[key] for each in found]) for key in shears.FREE)
-    assert 0.08 < strength.min() < 0.085
-    assert 0.45 < displacement.max() < 0.5
-
-
-def test_the_shear_is_reported_by_whether_the_edge_slips(tmp_path: Path) -> None:
-    kept = KeptTwins.opened(tmp_path / "shears.csv")
-    row = {"outcome": "converged", "correlation": "-0.5", "near the limit": "0"}
-    for seed, slips in enumerate("011"):
-        ends = {f"{key} {name}": text for key in shears.FREE for name, text in zip(
-            ("true", "found", "low", "high"), ("1", "1.1", "0.9", "1.2"), strict=True)}  # fmt: skip
-        kept.add(shears.CASE, seed, {**row, **ends, "slips": slips})
-    lines = tables.shear_of_tracks(kept).splitlines()
-    assert lines[2] == "| holds | 1 | 1 of 1 | 10 | 1 of 1 | 10 | 1 of 1 | 0.50 | 0 of 1 |"
-    assert lines[3] == "| slips | 2 | 2 of 2 | 10 | 2 of 2 | 10 | 2 of 2 | 0.50 | 0 of 2 |"
 
 
 def test_places_below_the_surface_are_not_written_down() -> None:
@@ -195,9 +137,3 @@ def test_kept_turns_are_twins_of_their_seeds() -> None:
             assert [float(row[f"{key} true"]) for key in FREE] == pytest.approx(
                 [truth.values[key] for key in FREE], rel=1e-8
             )
-
-
-def test_a_track_without_noise_has_no_marks() -> None:
-    track = track_as(np.array([0.0, 1.0]), np.zeros((2, 3)))
-    assert track.usable.all()
-    assert track.axes == "slope"
