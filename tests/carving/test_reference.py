@@ -77,13 +77,11 @@ def compare(case: Case) -> None:
     assert at_ours(theirs.twist) == pytest.approx(ours.twist, abs=2.0 * AGREE * math.radians(3.0))
 
 
-def base(ski: Ski | None = None) -> Case:
-    return Case(ski=ski or read_ski("slalom"), hardness=0.2e9, edge_angle=math.radians(45.0), load=800.0)
-
-
-@pytest.mark.slow
-def test_hypoplastic_with_twist_and_side_force() -> None:
-    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3))
+def base() -> Case:
+    return Case(
+        ski=read_ski("slalom"), hardness=0.2e9, edge_angle=math.radians(45.0), load=800.0,
+        unloading_ratio=10.0, clamp_length=0.3,
+    )  # fmt: skip
 
 
 @pytest.mark.slow
@@ -104,61 +102,33 @@ def test_all_choices(ratio: float, angle_deg: float, clamp: float, twist: bool, 
     )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("hardness", [0.04e9, 1e9])
-@pytest.mark.parametrize("moment", [-30.0, 30.0])
-def test_other_snow_and_a_moment(hardness: float, moment: float) -> None:
-    compare(replace(base(), hardness=hardness, moment=moment, unloading_ratio=5.0, clamp_length=0.3))
+PLAIN = plain_ski(width=circular_sidecut(13.0), base_height=shovel(1.4, 0.05, 1.6), running_length=1.4)
+CASES: dict[str, dict[str, Any]] = {
+    **{
+        f"{hardness:g} N/m³ and {moment:g} N m": {"hardness": hardness, "moment": moment, "unloading_ratio": 5.0}
+        for hardness in (0.04e9, 1e9)
+        for moment in (-30.0, 30.0)
+    },
+    "a plain ski with a shovel": {"ski": PLAIN},
+    "a boot that takes no moment of the side force": {"boot_is_free": True},
+    "such a boot and a moment": {"boot_is_free": True, "moment": 40.0},
+    "a side force that goes as the force on the base": {"by_reaction": True},
+    "such a side force and such a boot": {"by_reaction": True, "boot_is_free": True},
+    # p = 2 A ε + B beyond the ramp, which bends where the groove does, too
+    "Federolf's law": {"hardness": 0.15e9, "penetration": MeanPressurePoint(0.034e9, 0.35e6, 10.0)},
+    "a pressure as the 0.6th power": {"penetration": Power(1e6 / 5e-3**0.6, 0.6, unloading_ratio=8.0)},
+    "a pressure as the 1.7th power": {"penetration": Power(1e6 / 5e-3**1.7, 1.7, unloading_ratio=8.0)},
+    "a hardness that grows with the edge angle": {"penetration": VolumeWithAnglePoint(0.2e9, 10.0)},
+    # where the ski twists, and where it is deeper, it draws as much more or less of the side force
+    "a strength by the angle": {"shear": AngleShear(0.35e6, 0.6)},
+    "a strength by the depth": {"shear": Deepening(0.1e6, 1e-3)},
+}
 
 
 @pytest.mark.slow
-def test_a_plain_ski_with_a_shovel() -> None:
-    ski = plain_ski(width=circular_sidecut(13.0), base_height=shovel(1.4, 0.05, 1.6), running_length=1.4)
-    compare(replace(base(ski), unloading_ratio=10.0, clamp_length=0.3))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("moment", [0.0, 40.0])
-def test_a_boot_that_takes_no_moment_of_the_side_force(moment: float) -> None:
-    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, boot_is_free=True, moment=moment))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("boot_is_free", [False, True])
-def test_a_side_force_that_goes_as_the_force_on_the_base(boot_is_free: bool) -> None:
-    compare(replace(base(), unloading_ratio=10.0, clamp_length=0.3, by_reaction=True, boot_is_free=boot_is_free))
-
-
-@pytest.mark.slow
-def test_federolfs_law() -> None:
-    """p = 2 A ε + B beyond the ramp, which bends where the groove does, too."""
-    law = MeanPressurePoint(pressure_slope=0.034e9, pressure_offset=0.35e6, unloading_ratio=10.0)
-    compare(replace(base(), hardness=0.15e9, unloading_ratio=5.0, penetration=law, clamp_length=0.3))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("exponent", [0.6, 1.7])
-def test_another_exponent(exponent: float) -> None:
-    law = Power(1e6 / 5e-3**exponent, exponent, unloading_ratio=8.0)
-    compare(replace(base(), unloading_ratio=5.0, penetration=law, clamp_length=0.3))
-
-
-@pytest.mark.slow
-def test_a_hardness_that_grows_with_the_edge_angle() -> None:
-    law = VolumeWithAnglePoint(snow_hardness=0.2e9, unloading_ratio=10.0)
-    compare(replace(base(), unloading_ratio=10.0, penetration=law, clamp_length=0.3))
-
-
-@pytest.mark.parametrize(
-    "law",
-    [
-        pytest.param(AngleShear(0.35e6, 0.6), id="angle", marks=pytest.mark.slow),
-        pytest.param(Deepening(0.1e6, 1e-3), marks=pytest.mark.slow, id="depth"),
-    ],
-)
-def test_a_strength_that_is_not_the_same_along_the_edge(law: AngleShear | Deepening) -> None:
-    """Where the ski twists, and where it is deeper, it draws as much more or less of the side force."""
-    compare(replace(base(), unloading_ratio=10.0, shear=law, clamp_length=0.3))
+@pytest.mark.parametrize("changes", CASES.values(), ids=CASES)
+def test_other_snow_skis_boots_and_laws(changes: dict[str, Any]) -> None:
+    compare(replace(base(), **changes))
 
 
 FORMER: list[dict[str, Any]] = json.loads((Path(__file__).parent / "former_solver.json").read_text("utf-8"))
