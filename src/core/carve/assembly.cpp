@@ -105,19 +105,17 @@ CarveSection Pass::section(const CarveStation& s) const {
   return out;
 }
 
-// [load] The snow's force along its normal turns the section about its middle, with the lever W/2 cos at the edge and
-// less inwards. The shear τ e turns it by W/2 sin. Of a base that is in the snow with both edges the other edge holds
-// its own depth e' of it, on the other side: the moment is that of e - 2 e'.
+// The load of `section_load`, and its growth.
 Load Pass::load(const CarveSection& section, const StripSums& sums, const Strength& strength) const {
   const double stress = at_.border[2], lever = section.half * section.cosine;
   const double square = 1.0 + section.tangent * section.tangent;
   const double by_depth = sums.by_depth[0];
   const double by_twist = lever * sums.by_depth[0] - square * sums.by_depth[1] + sums.by_angle[0];
-  const double moment = sums.moment - lever * sums.force, moment_by_depth = sums.by_depth[1] - lever * by_depth;
+  const double moment_by_depth = sums.by_depth[1] - lever * by_depth;
   const double moment_by_twist = lever * sums.by_depth[1] - square * sums.by_depth[2] + sums.by_angle[1] -
                                  lever * by_twist + section.half * section.sine * sums.force;
   const bool reacts = conditions_.by_reaction;
-  const double held = section.depth > 0.0 ? section.depth : 0.0, bite = reacts ? sums.force : strength.share * held;
+  const double held = section.depth > 0.0 ? section.depth : 0.0;
   const double growth = section.depth > 0.0 ? strength.share + strength.by_depth * held : 0.0;
   const double bite_by_depth = reacts ? by_depth : growth;
   const double bite_by_twist = reacts ? by_twist : growth * section.edge_by_angle() + strength.by_angle * held;
@@ -127,11 +125,14 @@ Load Pass::load(const CarveSection& section, const StripSums& sums, const Streng
   const double other_by_twist = other > 0.0 ? strength.by_depth * other * section.edge_by_angle() +
                                                   strength.by_angle * other - strength.share * lever
                                             : 0.0;
-  const double turned = bite - 2.0 * strength.share * other, turned_by_depth = bite_by_depth - 2.0 * other_by_depth;
+  const double turned_by_depth = bite_by_depth - 2.0 * other_by_depth;
   const double turned_by_twist = bite_by_twist - 2.0 * other_by_twist;
   const double up = shears * sine_, turn = -shears * section.half * section.sine, turn_by_twist = -shears * lever;
-  return {.normal = cosine_ * sums.force + up * stress * bite,
-          .moment = moment + turn * stress * turned,
+  const auto [bite, turned, normal, moment] =
+      section_load(sums.force, sums.moment, reacts, strength.share * held, strength.share * other, shears * stress,
+                   {sine_, cosine_}, {section.half * section.sine, lever});
+  return {.normal = normal,
+          .moment = moment,
           .normal_by_depth = cosine_ * by_depth + up * stress * bite_by_depth,
           .normal_by_twist = cosine_ * by_twist + up * stress * bite_by_twist,
           .normal_by_stress = up * bite,

@@ -13,6 +13,25 @@ namespace skisnow {
 
 constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};  // an element's unknowns of deflection and of twist
 
+// Load on a section, per length of ski, on any kind of number. The side force is τ times `bite`: depth of the edge
+// where it is below the surface, or the snow's force.
+template <class T>
+struct SectionLoad {
+  T bite, turned, normal, moment;  // `normal` to the base; `moment`: growth of the edge angle
+};
+
+// [load] The snow's force along its normal turns the section about its middle, with the lever W/2 cos at the edge and
+// less inwards. The shear τ e turns it by W/2 sin. Of a base that is in the snow with both edges the other edge holds
+// its own depth e' of it, on the other side: the moment is that of e - 2 e'. `held`, `other`: depths of both edges,
+// with their strength; `stress`: τ, as far as it bends; `boot`: sine and cosine; `lever`: W/2 sin, W/2 cos.
+template <class T>
+SectionLoad<T> section_load(const T& force, const T& about_edge, bool reacts, const T& held, const T& other,
+                            const T& stress, const T (&boot)[2], const T (&lever)[2]) {
+  const T bite = reacts ? force : held, turned = reacts ? bite : bite - T(2.0) * other;
+  return {bite, turned, boot[1] * force + boot[0] * stress * bite,
+          about_edge - lever[1] * force - lever[0] * stress * turned};
+}
+
 // Row that links depth and twist of one station to beam and boot.
 struct CarveLinkRow {
   int first;                          // unknown of its element

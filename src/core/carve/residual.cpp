@@ -92,11 +92,9 @@ class Residual {
     }
     const T edge = section.edge_depth(), other = section.other_depth(), held = edge > zero ? edge : zero;
     event(edge);
-    const T bite = given_.by_reaction ? sums.force : held;
-    const T turned = given_.by_reaction || !(other > zero) ? bite : bite - T(2.0) * other;
-    const T sheared = given_.shears ? at_[2] : zero;
-    const T normal = cosine * sums.force + sine * sheared * bite;
-    const T moment = sums.moment - s.half * (section.cosine * sums.force + section.sine * sheared * turned);
+    const auto [bite, turned, normal, moment] = section_load<T>(
+        sums.force, sums.moment, given_.by_reaction, held, other > zero ? other : zero, given_.shears ? at_[2] : zero,
+        {sine, cosine}, {s.half * section.sine, s.half * section.cosine});
     border[0] += s.weight * sums.force;
     border[1] += s.weight * (given_.pitch_of_force * sums.force + given_.pitch_of_shear * at_[2] * bite) * s.place;
     if (!given_.by_reaction) border[2] += s.weight * at_[2] * bite;

@@ -66,6 +66,12 @@ struct Slopes {
   friend Slopes cos(const Slopes& a) { return a.mapped(std::cos(a.value), -std::sin(a.value)); }
 };
 
+// Each is one number for `pressed_part`.
+template <int N>
+inline constexpr int WIDTH<Slopes<N>> = 1;
+template <>
+inline constexpr int WIDTH<long double> = 1;
+
 // One section in the snow; see `CarveSection`.
 template <class T>
 struct SectionIn {
@@ -102,55 +108,11 @@ struct SectionIn {
   }
 };
 
-// ∫p and ∫p ξ across a section, in closed form; see `StripSums`.
+// [across] Over all places; `groove`: depth at each.
 template <class T>
-struct StripIn {
-  T force = 0.0, moment = 0.0;
-
-  // from `start`, over `length`, on which depth and lift (groove less depth) are straight lines
-  void add(const T& start, const T& length, const T (&depth)[2], const T (&lift)[2], const T& hardness,
-           const T& excess) {
-    const T zero(0.0);
-    const T depths = (depth[1] - depth[0]) / length, lifts = (lift[1] - lift[0]) / length;
-    const auto virgin = [&](const T& a, const T& b) {
-      if (b > a) add_linear(start + a, b - a, hardness * (depth[0] + depths * a), hardness * (depth[0] + depths * b));
-    };
-    if (!(lift[0] > zero) && !(lift[1] > zero)) return virgin(zero, length);
-    T from = zero, to = length;  // where the ground was pressed deeper before
-    if (!(lift[0] > zero)) from = -lift[0] / lifts;
-    if (!(lift[1] > zero)) to = -lift[0] / lifts;
-    virgin(zero, from);
-    virgin(to, length);
-    const auto pressure = [&](const T& x) {
-      return hardness * (depth[0] + depths * x) - excess * (lift[0] + lifts * x);
-    };
-    if (to > from) add_linear(start + from, to - from, pressure(from), pressure(to));
-  }
-
- private:
-  // a linear pressure as far as it is above zero
-  void add_linear(const T& start, const T& length, T p0, T p1) {
-    const T zero(0.0);
-    if (!(p0 > zero) && !(p1 > zero)) return;
-    T low = zero, high = length;
-    if (p0 < zero) {
-      low = length * p0 / (p0 - p1);
-      p0 = zero;
-    } else if (p1 < zero) {
-      high = length * p0 / (p0 - p1);
-      p1 = zero;
-    }
-    const T x = start + low, h = high - low, part = T(0.5) * h * (p0 + p1);
-    force += part;
-    moment += x * part + h * h * (p0 + T(2.0) * p1) * T(1.0 / 6.0);
-  }
-};
-
-// [across] The same over all places; `groove`: depth at each.
-template <class T>
-StripIn<T> strip_across(const SectionIn<T>& section, const std::vector<T>& place, const std::vector<T>& groove,
-                        const T& hardness, const T& excess) {
-  StripIn<T> out;
+Strip<T, WithoutGrowth> strip_across(const SectionIn<T>& section, const std::vector<T>& place,
+                                     const std::vector<T>& groove, const T& hardness, const T& excess) {
+  Strip<T, WithoutGrowth> out;
   const T zero(0.0), reach = section.reach();
   for (std::size_t k = 0; k + 1 < place.size(); k++) {
     const T start = place[k], length = (place[k + 1] < reach ? place[k + 1] : reach) - start;
@@ -158,8 +120,7 @@ StripIn<T> strip_across(const SectionIn<T>& section, const std::vector<T>& place
     const T depth[2] = {section.base_depth(start), section.base_depth(start + length)};
     if (!(depth[0] > zero) && !(depth[1] > zero)) continue;
     const T end = groove[k] + length / (place[k + 1] - start) * (groove[k + 1] - groove[k]);
-    const T lift[2] = {groove[k] - depth[0], end - depth[1]};
-    out.add(start, length, depth, lift, hardness, excess);
+    out.add_interval(start, length, depth[0], depth[1], groove[k], end, hardness, excess);
   }
   return out;
 }
