@@ -20,13 +20,11 @@ from tests.key_names import DELAYED_SPACING, EDGE_ANGLE
 SCHEMA = scenario_schema()
 
 
-def test_switches_and_words_have_pythons_defaults() -> None:
+def test_defaults_are_in_the_unit_of_their_key() -> None:
+    """Those of Python are the same."""
     told = {key: SCENARIO_KEYS[key].default for key in ("solver.method", "solver.fixed", "snow.compaction_resistance")}
     assert told == {"solver.method": "default", "solver.fixed": False, "snow.compaction_resistance": True}
     assert (Solver().method, Solver().fixed) == ("default", False)
-
-
-def test_defaults_are_in_the_unit_of_their_key() -> None:
     told = {key: SCENARIO_KEYS[key].default for key in ("solver.step_ms", "solver.tolerance_mm", "run.output_ms")}
     assert told == pytest.approx({"solver.step_ms": 0.5, "solver.tolerance_mm": 0.001, "run.output_ms": 10.0})
     assert (Solver().step, Solver().tolerance, Solver().output_interval) == (0.5e-3, 1e-6, 0.01)
@@ -35,20 +33,9 @@ def test_defaults_are_in_the_unit_of_their_key() -> None:
 def test_what_must_be_given() -> None:
     """Slope, snow, ski and the end of the run have further rules."""
     assert {name for name, key in SCENARIO_KEYS.items() if key.needed} == {
-        "friction.mu_0",
-        "drag.drag_area_m2",
-        "sledge.mass_kg",
-        "sledge.inertia_kg_m2",
-        "sledge.centre_of_mass_height_m",
-        "sledge.stance_width_m",
-        EDGE_ANGLE,
-        "start.speed_m_per_s",
-    }
-
-
-def test_what_makes_a_scenario_has_no_default() -> None:
-    without = {name for name, key in SCENARIO_KEYS.items() if key.default is None}
-    assert {"snow.H_V_N_per_mm3", "snow.S_f_N_per_mm2", "snow.unloading_ratio", "slope.angle_deg"} <= without
+        "friction.mu_0", "drag.drag_area_m2", "sledge.mass_kg", "sledge.inertia_kg_m2",
+        "sledge.centre_of_mass_height_m", "sledge.stance_width_m", EDGE_ANGLE, "start.speed_m_per_s",
+    }  # fmt: skip
 
 
 def test_units_come_from_the_names() -> None:
@@ -64,21 +51,10 @@ def test_units_come_from_the_names() -> None:
     assert (found["step_ms"], found["delayed_spacing_mm"], found["heading_deg"], found["x_m"]) == ("ms", "mm", "°", "m")
     numbers = {name.rpartition(".")[2] for name, key in SCENARIO_KEYS.items() if key.kind == "number"}
     assert {name for name in numbers if not found[name]} == {
-        "unloading_ratio",
-        "delayed_share",
-        "mu_0",
-        "liquid_water_percent",
-        "damping_ratio",
-        "groove_tolerance",
-        "transverse_friction",
-        "residual_ratio",
-        "stiffness_factor",
-        "turns",
-        "leg_gain",
-        "leg_load",
-        "edge_gain",
+        "unloading_ratio", "delayed_share", "mu_0", "liquid_water_percent", "damping_ratio", "groove_tolerance",
+        "transverse_friction", "residual_ratio", "stiffness_factor", "turns", "leg_gain", "leg_load", "edge_gain",
         "outer_share",
-    }
+    }  # fmt: skip
 
 
 def test_factors_lead_to_si() -> None:

@@ -78,19 +78,8 @@ def test_every_value_of_a_built_in_scenario_says_where_it_is_from(name: str) -> 
     absent = ("course.",) if "\n[skier]\n" in scenario_text(name) else ("course.", "skier.")
     no_course = {full for full in SCENARIO_KEYS if not full.startswith(absent)}
     every = {full.split(".")[1] for full in no_course} - left_out
-    other_ways = {
-        "profile",
-        "profile_gap",
-        "grid",
-        "smooth_m",
-        "origin_x_m",
-        "origin_y_m",
-        "results",
-        "site",
-        "map_file",
-        "layers_file",
-    }
-    other_ways |= {"file"}
+    other_ways = {"profile", "profile_gap", "grid", "smooth_m", "origin_x_m", "origin_y_m"}
+    other_ways |= {"results", "site", "map_file", "layers_file", "file"}
     values = scenario_values(load_scenario(name))
     other_ways |= {key.split(".")[1] for key, needed in CONDITIONS.items() if not needed.holds(values.get(needed.key))}
     snow = {"published"} if "H_V_N_per_mm3" in given else {"H_V_N_per_mm3", "S_f_N_per_mm2"}
@@ -129,9 +118,7 @@ def test_a_word_without_an_equals_sign_changes_nothing() -> None:
 
 
 def test_a_first_turn_that_never_comes_is_rejected() -> None:
-    with raises(
-        ParameterError, "out_of_range", low=0.0, name="skier.first_turn_s", value="inf", allowed="0 or more", unit="s"
-    ):
+    with raises(ParameterError, "out_of_range", low=0.0, name="skier.first_turn_s", value="inf", unit="s"):
         Skier(first_turn=math.inf)
 
 
@@ -241,13 +228,7 @@ def test_scenario_tells_its_values_back(name: str) -> None:
         ({"edge_angel_deg": 1}, coded("unknown_name", similar=EDGE_ANGLE)),
         (
             {"slope.profile": "a.csv"},
-            coded(
-                "contradiction",
-                key="slope.kind",
-                value="profile",
-                name="slope.profile",
-                condition='slope.kind = "profile"',
-            ),
+            coded("contradiction", key="slope.kind", name="slope.profile", condition='slope.kind = "profile"'),
         ),
         ({"slope.kind": "profile"}, coded("missing", name="slope.profile")),
         ({"site": "A"}, coded("contradiction", name="snow.site", condition="snow.results")),
@@ -351,11 +332,6 @@ def test_likely_slips_are_warned_of(changes: dict[str, object], told: str) -> No
 
 def test_nothing_is_warned_of_where_friction_and_drag_are_off() -> None:
     assert scenario_file("carved-46m", changes={"mu_0": 0, "drag_area_m2": 0}).warnings == ()
-
-
-def test_angles_are_not_radians() -> None:
-    """An edge angle of 90 degrees is refused, not one of 1.57."""
-    assert load_scenario("carved-46m", changes={"edge_angle_deg": 85}).sledge.edge_angle == math.radians(85.0)
 
 
 @pytest.mark.parametrize("name", scenario_names())

@@ -105,10 +105,3 @@ def test_two_keys_of_one_layer_contradict_each_other(changes: dict[str, object],
     with pytest.raises(ContradictionError) as error:
         load_scenario("carved-46m", changes=changes)
     assert error.value.keys == keys
-
-
-def test_numbers_after_results_replace_only_their_own_quantity(measured: tuple[Analysis, Path]) -> None:
-    given = load_input("carved-46m").changed({"snow.results": str(measured[1] / "results.json")})
-    contact = build_input(given.changed({"H_V_N_per_mm3": 0.3, "S_f_N_per_mm2": 0.4})).scenario.contact
-    assert [contact.snow.snow_hardness, contact.snow.failure_shear_stress] == pytest.approx([0.3e9, 0.4e6], rel=1e-12)
-    assert contact.shear_displacement == pytest.approx(2.5e-4, rel=1e-12)  # measured by the campaign
