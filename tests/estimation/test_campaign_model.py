@@ -247,9 +247,9 @@ def test_series_of_one_scatter_stay_one_group(count: int) -> None:
 
 
 def test_b_is_corrected_for_its_dilution() -> None:
-    """Sixty reference campaigns with a scatter of 8 %: least squares give 0.95, the correction 1."""
+    """Thirty reference campaigns with a scatter of 8 %: least squares give 0.95, the correction 1."""
     raw, expected, corrected, covered = [], [], [], []
-    for seed in range(60):
+    for seed in range(30):
         drawn = reference_campaign(
             seed + 2000, noise=ReferenceNoise(depth_scatter=0.08, layering_sd=0.15, depths_grow=False)
         )
