@@ -47,11 +47,6 @@ def test_numbers_are_those_of_the_run(left: bool) -> None:
     assert replay.skis.half_width[30] == pytest.approx(0.5 * np.interp(0.05, ski.station[::-1], ski.width[::-1]))
 
 
-def test_a_straight_path_has_no_curvature() -> None:
-    run = circle_run(count=5)
-    assert replay_of_run(replace(run, turn_radius=np.full(5, np.inf))).curvature.tolist() == [0.0] * 5
-
-
 def test_pieces_of_groove_have_the_time_when_the_boot_passed() -> None:
     """Piece j of the circle is at the boot's place at every second output, left ski first."""
     run = circle_run()
