@@ -158,13 +158,17 @@ def table(path: Path) -> list[dict[str, str]]:
 
 def test_a_search_is_reported_and_written(tmp_path: Path, capsys: Printed) -> None:
     pytest.importorskip("cmaes")
-    assert race(tmp_path / "a", "--evaluations", "25", "--seed", "3") == 0
+    drawn = ("--snows", "2", "--snow-spread", "0.2")
+    assert race(tmp_path / "a", "--evaluations", "25", "--seed", "3", *drawn) == 0
     out, _ = capsys.readouterr()
     assert "2 gates in" in out
     found = json.loads((tmp_path / "a" / "race.json").read_text(encoding="utf-8"))
     assert found["gained_s"] == pytest.approx(found["began_from_s"] - found["time_s"])
     assert found["gained_s"] > 0.0
     assert found["evaluations"] >= 25
+    (margin,) = found["worth"]  # of the line that it began from: a point knows nothing of the snow
+    assert margin["interval_s"] == pytest.approx([found["gained_s"]] * 2)
+    assert margin["verdict"] == "slower"
     rows = table(tmp_path / "a" / "line.csv")
     assert [row["gate"] for row in rows] == ["1", "2"]
     assert [float(row["aside_m"]) for row in rows] == [turn["aside_m"] for turn in found["turns"]]

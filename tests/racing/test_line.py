@@ -18,7 +18,7 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, PointRacer, RacingLine, follower_line, read_line, write_line
-from skisnow.racing.line import first_gates, with_numbers
+from skisnow.racing.line import NUMBERS, first_gates, with_numbers
 from skisnow.racing.point import LinePoint, turns_in
 from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
@@ -35,8 +35,8 @@ def other(*turns: LineTurn) -> RacingLine:
 
 CURVED = other(
     LineTurn(aside=0.5, along=0.1, turning=0.6),
-    LineTurn(aside=1.2, along=-0.2, turning=1.0),
-    LineTurn(aside=0.4, along=0.0, turning=0.4),
+    LineTurn(aside=1.2, along=-0.2, turning=1.0, speed=1.25),
+    LineTurn(aside=0.4, along=0.0, turning=0.4, speed=0.9),
 )
 
 
@@ -72,8 +72,14 @@ def test_the_greatest_curvature_is_at_an_apex() -> None:
 
 
 def test_numbers_from_a_gate_on() -> None:
-    line = with_numbers(CURVED, [0.7, 0.05, 0.5], 1)
-    assert line.turns == (CURVED.turns[0], LineTurn(aside=0.7, along=0.05, turning=0.5), CURVED.turns[2])
+    line = with_numbers(CURVED, [[0.7, 0.05, 0.5]], 1)
+    assert line.turns == (CURVED.turns[0], LineTurn(aside=0.7, along=0.05, turning=0.5, speed=1.25), CURVED.turns[2])
+
+
+def test_the_wanted_speed_is_that_of_the_next_apex() -> None:
+    apexes = [x for x, _ in CURVED.apexes]
+    places = (-5.0, apexes[0], apexes[1] - 0.1, apexes[1] + 0.1, apexes[2] + 0.1, apexes[3], 99.0)
+    assert [CURVED.speed_at(x) for x in places] == [1.0, 1.0, 1.0, 1.25, 0.9, 0.9, 0.9]
 
 
 @pytest.mark.parametrize(
@@ -81,6 +87,7 @@ def test_numbers_from_a_gate_on() -> None:
     [
         ((LineTurn(aside=0.5),), "1 turns"),
         ((LineTurn(aside=0.5, turning=0.1), LineTurn(aside=0.5)), "gate 1: turning is 0.1"),
+        ((LineTurn(aside=0.5, speed=0.0), LineTurn(aside=0.5)), "gate 1: speed is 0"),
         ((LineTurn(aside=0.5, along=0.6), LineTurn(aside=0.5, along=-0.6)), "gate 2: its apex"),
     ],
 )
@@ -216,7 +223,7 @@ def made_race(point: LinePoint) -> dict[str, Any]:
         "words": "",
         "gates": [["passed" if i < passed else "missed", sum(aside[: i + 1])] for i in range(len(aside))],
         "margins": margins,
-        "turns": [[turn.aside, turn.along, turn.turning] for turn in point.line.turns],
+        "turns": [[getattr(turn, name) for name in NUMBERS] for turn in point.line.turns],
     }
 
 
@@ -233,7 +240,7 @@ class Searched:
         how = How(search, evaluations, None, 0.15, 0.0, 1, self.told.append)
         with Pool(self.race, 1, advice="") as pool:
             made = Evaluations(pool, KeptRows(), self.done)
-            return Windows(made, how, window, 2, ahead).search_line(begun)
+            return Windows(made, how, window, 2, ahead, 3).search_line(begun)
 
     @property
     def order(self) -> list[str]:

@@ -27,7 +27,7 @@ from skisnow.racing import (
 from skisnow.racing.line import first_gates
 from skisnow.racing.point import Racer
 from skisnow.racing.quickest import _fingerprint
-from skisnow.racing.worth import AS_IT_IS, wider
+from skisnow.racing.worth import AS_IT_IS, _on, wider
 from skisnow.track.course.gates_table import GateGap
 
 from .test_point import WAY, glide, straight_course
@@ -163,8 +163,26 @@ def test_differences_are_rated_by_their_noise() -> None:
     two = Worth(name="wax", scores=(score(9.0), score(8.0)), base=(score(9.0), score(9.0)))
     assert two.faster == 1
     assert two.deviation == pytest.approx(math.sqrt(0.5))
+    half = 12.7062 * math.sqrt(0.5) * math.sqrt(1.5)  # Student's t of one degree of freedom
+    assert two.interval == pytest.approx((-0.5 - half, -0.5 + half), rel=1e-5)
     one = Worth(name="wax", scores=(score(9.0),), base=(score(9.5),))
-    assert (one.deviation, one.mean) == (None, -0.5)
+    assert (one.deviation, one.mean, one.interval, one.verdict) == (None, -0.5, None, "undecided")
+
+
+@pytest.mark.parametrize(
+    ("gaps", "verdict"), [((-0.2, -0.21), "faster"), ((0.2, 0.21), "slower"), ((-0.2, -0.3), "undecided")]
+)
+def test_a_ski_is_faster_only_where_the_whole_interval_says_so(gaps: tuple[float, ...], verdict: str) -> None:
+    found = Worth(name="ski", scores=tuple(score(9.0 + gap) for gap in gaps), base=(score(9.0),) * 2)
+    assert found.verdict == verdict
+
+
+def test_on_a_drawn_snow_a_skier_assumes_the_scenarios_own() -> None:
+    snow = replace(STRAIGHT.contact.snow, snow_hardness=9e8)
+    assumed = _on(STRAIGHT, STRAIGHT, snow).skier
+    assert assumed is not None
+    assert assumed.assumed_hardness == STRAIGHT.contact.snow.snow_hardness
+    assert assumed.assumed_strength == STRAIGHT.contact.snow.failure_shear_stress
     assert Worth(name="", scores=(score(None),), base=(score(1.0),)).on_own_snow is None
     assert Worth(name="", scores=(score(1.0),), base=(score(None),)).on_own_snow is None
 

@@ -15,7 +15,7 @@ from skisnow import QuickestLine, Scenario, load_scenario, race, simulate
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
-from skisnow.racing import follower_line
+from skisnow.racing import compare_variants, drawn_for_race, follower_line
 from skisnow.racing.line import first_gates
 from skisnow.racing.point import run_score, ski_line
 from skisnow.racing.search import Batches, Evaluated, Evaluations, least_of
@@ -254,6 +254,29 @@ def test_on_the_followers_line_it_does_what_the_follower_does() -> None:
     own, lines = simulate(short), ski_line(short, follower_line(short))
     assert lines.place[-1] == pytest.approx(own.place[-1], abs=1e-9)
     assert lines.boots_by == "moved by LineSkier"
+
+
+SKIDDED = load_scenario("slalom-15deg").with_(method="fast")
+
+
+def test_a_skier_in_skidded_turns_brakes_to_the_speed_of_the_line() -> None:
+    line = follower_line(SKIDDED)
+    faster = replace(line, turns=tuple(replace(turn, speed=1.5) for turn in line.turns))
+    ends = [ski_line(SKIDDED.with_(duration_s=1.0), each).speed[-1] for each in (line, faster)]
+    assert ends[1] > ends[0] + 1.0
+
+
+@pytest.mark.slow
+def test_in_skidded_turns_line_and_speed_are_searched_and_skis_compared() -> None:
+    pytest.importorskip("cmaes")
+    found = race(SKIDDED, gates=3, evaluations=24, seed=0)
+    assert {turn.speed for turn in found.line.turns} != {1.0}
+    snows = drawn_for_race(SKIDDED.contact.snow, 4, spread=0.2, seed=0)
+    others = {"giant-slalom": SKIDDED.with_(ski="giant-slalom")}
+    margin, ski = compare_variants(found.scenario, others, found.line, snows, start=found.start)
+    assert margin.verdict == "slower"
+    assert margin.on_own_snow == pytest.approx(found.gained)
+    assert ski.verdict == "faster"
 
 
 def test_a_run_that_ends_early_counts_by_what_is_missing() -> None:

@@ -104,7 +104,8 @@ def _add_worth(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--worth", action="store_true", help=worth)
     parser.add_argument(
         "--snows", type=whole_number(0, MOST_SNOWS), default=0, metavar="N",
-        help="compare also on N snows drawn from the intervals of H_V and S_f, the same for all",
+        help="compare also on N snows drawn from the intervals of H_V and S_f, the same for all; also with the line "
+        "where the search began",
     )  # fmt: skip
     parser.add_argument(
         "--snow-spread", type=number("", lowest=0.0, highest=10.0, above=True), metavar="SHARE",
@@ -141,22 +142,23 @@ def _raced(options: argparse.Namespace) -> _Raced:
         scenario, variants = _asked(options)
         snow = scenario.contact.snow
         snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
-        start = _start(options, scenario)
+        begin = _start(options, scenario)
     prepare_output(options.out)
     computing: dict[str, Any] = {"workers": options.workers, "executor": scheduler_of(options)}
     with Progress() as progress:
         fastest = quickest_line(
-            scenario.with_(method="fast"), gates=options.gates, model=options.model, start=start,
+            scenario.with_(method="fast"), gates=options.gates, model=options.model, start=begin,
             evaluations=options.evaluations, search=options.search, settled=options.settled,
             window=options.window, step=options.step, ahead=options.ahead, room=options.room, seed=options.seed,
             checkpoint=options.out / KEPT, progress=progress, **computing,
         )  # fmt: skip
         checked, run = _checked(fastest, scenario, progress)
         worth: tuple[Worth, ...] = ()
-        if variants:
+        start = fastest.start if options.snows and options.evaluations > 1 else None
+        if variants or start:
             fast = {name: variant.with_(method="fast") for name, variant in variants.items()}
             worth = compare_variants(
-                fastest.scenario, fast, fastest.line, snows,
+                fastest.scenario, fast, fastest.line, snows, start=start,
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
     return _Raced(fastest, checked, run, worth)

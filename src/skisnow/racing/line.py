@@ -1,4 +1,4 @@
-"""A line through gates, three numbers for each turn: lateral offset, offset along the course, length of the turn."""
+"""A line through gates, by numbers of each turn: offsets aside and along the course, length, and wanted speed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ from ..track.course import Course
 
 LEAST_TURNING: Final = 0.2
 """Least share of the way over which a turn may last: below, its curvature grows beyond any ski's."""
-COLUMNS: Final = ("gate", "aside_m", "along", "turning", "apex_x_m", "apex_y_m", "edging_from_x_m", "edging_to_x_m")
+COLUMNS: Final = (
+    "gate", "aside_m", "along", "turning", "speed", "apex_x_m", "apex_y_m", "edging_from_x_m", "edging_to_x_m",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -37,11 +39,17 @@ class LineTurn(ShownFields):
     turning
         Share of half the way to the apexes before and behind over which the edges turn, 0.2 to 1: edging starts so far
         before the apex and ends so far behind it; the rest is straight. 1: half waves.
+    speed
+        Speed to which a skier in skidded turns brakes before the apex, over `brakes_to` of the scenario.
     """
 
     aside: float
     along: float = 0.0
     turning: float = 1.0
+    speed: float = 1.0
+
+
+NUMBERS: Final = tuple(number.name for number in fields(LineTurn))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -94,6 +102,10 @@ class RacingLine(Shown):
                 raise ParameterError("gate {name}: turning is {turning:g}; it must be from 0.2 to 1").tag(
                     "out_of_range", name=gate.name, turning=turn.turning
                 )
+            if not 0.0 < turn.speed < math.inf:
+                raise ParameterError("gate {name}: speed is {speed:g}; it must be above 0").tag(
+                    "out_of_range", name=gate.name, speed=turn.speed
+                )
             x.append(gate.turning[0] + turn.along * reach)
             y.append(gate.turning[1] + (turn.aside if gate.side == "left" else -turn.aside))
             share.append(0.5 * turn.turning)
@@ -136,6 +148,10 @@ class RacingLine(Shown):
             aside, slope, bend = _wave(1.0 - u, last, steepest, way)
             return self._y[i + 1] - aside, slope, -bend
         return self._y[i] + way * steepest * (2.0 * first / math.pi + u - first), steepest, 0.0
+
+    def speed_at(self, x: float) -> float:
+        """Speed of the turn whose apex is next at a place down the slope (m), over the wanted one."""
+        return self.turns[min(bisect_right(self._x, x, lo=1), len(self.turns)) - 1].speed
 
     def greatest_curvature(self) -> float:
         """At any apex (1/m)."""
@@ -187,10 +203,12 @@ def follower_line(scenario: Scenario) -> RacingLine:
     return RacingLine(course, start, tuple(LineTurn(aside=aside) for aside in asides))
 
 
-def with_numbers(line: RacingLine, numbers: Sequence[float], first: int) -> RacingLine:
-    """The same line with other numbers, three a turn, from a gate on."""
-    size = len(fields(LineTurn))
-    new = [LineTurn(aside=a, along=b, turning=c) for a, b, c in zip(*(iter(numbers),) * size, strict=True)]
+def with_numbers(line: RacingLine, numbers: Sequence[Sequence[float]], first: int) -> RacingLine:
+    """The same line with other numbers from a gate on: a row for each turn, in the order of `LineTurn`."""
+    new = [
+        replace(turn, **dict(zip(NUMBERS, row, strict=False)))
+        for turn, row in zip(line.turns[first:], numbers, strict=False)
+    ]
     turns = (*line.turns[:first], *new, *line.turns[first + len(new) :])
     return RacingLine(line.course, line.start, turns)
 
@@ -208,8 +226,8 @@ def line_rows(line: RacingLine) -> list[list[str]]:
         x, y = line.apexes[i + 1]
         begins = breaks[3 * i + 2]
         ends = breaks[3 * i + 4] if 3 * i + 4 < len(breaks) else x
-        numbers = (turn.aside, turn.along, turn.turning, x, y, begins, ends)
-        rows.append([gate.name, *(f"{number:.6g}" if j > 2 else repr(number) for j, number in enumerate(numbers))])
+        numbers = [repr(getattr(turn, name)) for name in NUMBERS]
+        rows.append([gate.name, *numbers, *(f"{number:.6g}" for number in (x, y, begins, ends))])
     return rows
 
 
@@ -227,7 +245,7 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
     Parameters
     ----------
     path
-        CSV with gate, aside_m, along, turning; other columns are not read.
+        CSV with gate, aside_m, along, turning, speed; other columns are not read.
     course
         Has these gates, in this order, and perhaps more behind them.
     start
@@ -239,7 +257,7 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
         It cannot be read, a column is missing, a cell is not a number, or its gates are not the course's.
     """
     most = len(course.gates)
-    table = csv_rows(path, COLUMNS[:4], action=Message("Write the line with `skisnow race` again."))
+    table = csv_rows(path, COLUMNS[: 1 + len(NUMBERS)], action=Message("Write the line with `skisnow race` again."))
     rows = list(islice(table, most + 1))
     if not 0 < len(rows) <= most:
         raise ParameterError("{path}: it has no rows or too many. Allowed: 1 to {n_gates}, a row for each gate").tag(
@@ -251,6 +269,7 @@ def read_line(path: Path, course: Course, start: tuple[float, float]) -> RacingL
                 "gate", Message("The course has the gate {gate!r} there.", gate=gate.name), code="another_gate"
             )
     turns = tuple(
-        LineTurn(aside=row.number("aside_m"), along=row.number("along"), turning=row.number("turning")) for row in rows
+        LineTurn(**{name: row.number(column) for name, column in zip(NUMBERS, COLUMNS[1:], strict=False)})
+        for row in rows
     )
     return RacingLine(replace(course, gates=course.gates[: len(turns)]), start, turns)

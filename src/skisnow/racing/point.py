@@ -17,10 +17,11 @@ from ..simulation.run import Run
 from ..simulation.run_summary import run_gates
 from ..simulation.simulated_run import Progress, simulate
 from ..skier import BalancedSkier
+from ..skier.control import SkidControl
 from ..skier.plan import Line
 from ..skier.seen import Moment
 from ..track.course import CourseResult, MovingPoint, passages
-from .line import LineTurn, RacingLine, skier_of
+from .line import NUMBERS, LineTurn, RacingLine, skier_of
 from .score import NOT_PASSED, Score, score_of, with_room
 
 STEP: Final = 0.5
@@ -172,7 +173,7 @@ class LineSkier:
     """
 
     def __init__(self, scenario: Scenario, line: RacingLine) -> None:
-        self.skier = BalancedSkier(scenario)
+        self.skier, self.line = BalancedSkier(scenario), line
         self.skier.controller = self.skier.follow(line, line.apexes)
 
     @property
@@ -182,6 +183,9 @@ class LineSkier:
 
     def __call__(self, moment: Moment) -> Any:
         """Target of the boots at the end of the moment."""
+        control, usual = self.skier.controller, self.skier.skier
+        if isinstance(control, SkidControl):
+            control.skier = replace(usual, brakes_to=usual.brakes_to * self.line.speed_at(float(moment.position[0])))
         return self.skier(moment)
 
 
@@ -250,7 +254,7 @@ class ScoredLine:
             "words": result.words,
             "gates": [list(gate) for gate in result.gates],
             "margins": list(result.margins),
-            "turns": [[turn.aside, turn.along, turn.turning] for turn in point.line.turns],
+            "turns": [[getattr(turn, name) for name in NUMBERS] for turn in point.line.turns],
         }
 
 
@@ -265,4 +269,4 @@ def score_in(row: dict[str, Any]) -> Score:
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:
     """The turns of a row."""
-    return tuple(LineTurn(aside=a, along=b, turning=c) for a, b, c in row["turns"])
+    return tuple(LineTurn(**dict(zip(NUMBERS, numbers, strict=True))) for numbers in row["turns"])

@@ -15,7 +15,7 @@ from .._support.processes.batch import ExecutorLike, Pool, require_executor, wor
 from .._support.processes.kept_rows import KeptRows
 from .._support.units import Facts, Shown, amount
 from ..scenario import Scenario
-from .line import RacingLine, course_of, first_gates, follower_line
+from .line import RacingLine, course_of, first_gates, follower_line, skier_of
 from .point import Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, require_cmaes
@@ -93,7 +93,7 @@ def quickest_line(
     checkpoint: Path | None = None,
     progress: Progress | None = None,
 ) -> QuickestLine:
-    """Search the quickest line through a course: three numbers a turn.
+    """Search the quickest line through a course: three numbers a turn, in skidded turns also the wanted speed.
 
     Parameters
     ----------
@@ -186,7 +186,8 @@ def quickest_line(
         with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, rows, [])
             how = How(search, evaluations, population, spread, settled, seed, tell)
-            searched = Windows(made, how, window, step, ahead).search_line(begun)
+            kinds = len(RANGES) - (model == "point" or not skier_of(scenario).brakes_to)
+            searched = Windows(made, how, window, step, ahead, kinds).search_line(begun)
     finally:
         rows.close()
     return QuickestLine(

@@ -18,8 +18,8 @@ from .surrogate import SurrogateSearch
 Progress: TypeAlias = Callable[[str], None]
 Search: TypeAlias = Literal["surrogate", "cma"]
 
-RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0)}
-"""Bounds of aside (m), along and turning in the search; nearer to a pole than half a
+RANGES: Final = {"aside": (0.25, 1.75), "along": (-0.25, 0.25), "turning": (0.35, 1.0), "speed": (0.8, 1.6)}
+"""Bounds of aside (m), along, turning and speed in the search; nearer to a pole than half a
 stance the skier does not pass."""
 _WIDTH: Final = np.array([high - low for low, high in RANGES.values()])
 _LOW: Final = np.array([low for low, _ in RANGES.values()])
@@ -44,6 +44,7 @@ class Windows:
 
     how: each window is searched.
     window, step, ahead: see `quickest_line`.
+    kinds: numbers of each turn that are searched, the first ones of `RANGES`.
     """
 
     made: Evaluations
@@ -51,6 +52,7 @@ class Windows:
     window: int
     step: int
     ahead: int
+    kinds: int
 
     def search_line(self, begun: RacingLine) -> Evaluated:
         """The best line through all gates, the first evaluation at where it begins."""
@@ -78,7 +80,7 @@ class Windows:
     def _whole(self, begun: RacingLine) -> Evaluated:
         """Candidates for the whole course: all turns alike if the start has that, else the start."""
         batches = self._batches(begun, 0, len(begun.turns), len(begun.turns))
-        search, place = self._surrogate(batches, 0), _place(begun, 0, len(begun.turns))
+        search, place = self._surrogate(batches, 0), self._place(begun, 0, len(begun.turns))
         if self.how.search == "surrogate" and search.begins_alike(place):
             return search.least_alike(place, self.how.evaluations)
         batches.evaluate([place])
@@ -86,7 +88,7 @@ class Windows:
 
     def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
         """Minimum over the turns from one gate to before another; the race ends at `end`."""
-        batches, place = self._batches(line, first, last, end), _place(line, first, last)
+        batches, place = self._batches(line, first, last, end), self._place(line, first, last)
         how = self.how
         if how.search == "cma" or how.evaluations == 1:
             return least_of(
@@ -99,7 +101,7 @@ class Windows:
         """Search with a surrogate of the turns from gate ``first``, whose number also varies the seed."""
         how = self.how
         return SurrogateSearch(
-            batches=batches, count=how.evaluations, kinds=len(_LOW), spread=how.spread, seed=(how.seed, first),
+            batches=batches, count=how.evaluations, kinds=self.kinds, spread=how.spread, seed=(how.seed, first),
             settled=how.settled,
         )  # fmt: skip
 
@@ -107,7 +109,7 @@ class Windows:
         part, how = first_gates(line, end), self.how
 
         def point_of(place: FloatArray) -> LinePoint:
-            numbers = (_LOW + place.reshape(-1, len(_LOW)) * _WIDTH).ravel().tolist()
+            numbers = (_LOW[: self.kinds] + place.reshape(-1, self.kinds) * _WIDTH[: self.kinds]).tolist()
             return LinePoint(with_numbers(part, numbers, first), tuple(place.tolist()))
 
         def told(done: int, least: float) -> None:
@@ -116,14 +118,13 @@ class Windows:
 
         return Batches(evaluations=self.made, point_of=point_of, told=told, first=len(self.made.done))
 
+    def _place(self, line: RacingLine, first: int, last: int) -> FloatArray:
+        """Point in the unit cube of the turns of a line from one gate to before another."""
+        numbers = np.array([[getattr(turn, name) for name in RANGES] for turn in line.turns[first:last]])
+        return np.clip((numbers - _LOW) / _WIDTH, 0.0, 1.0)[:, : self.kinds].ravel()
+
 
 def _as_found(line: RacingLine, evaluation: Evaluated) -> RacingLine:
     """The line with its first turns replaced by those of an evaluated point of the search."""
     turns = turns_in(evaluation.row)
     return RacingLine(line.course, line.start, (*turns, *line.turns[len(turns) :]))
-
-
-def _place(line: RacingLine, first: int, last: int) -> FloatArray:
-    """Point in the unit cube of the turns of a line from one gate to before another."""
-    numbers = [[turn.aside, turn.along, turn.turning] for turn in line.turns[first:last]]
-    return np.clip((np.array(numbers) - _LOW) / _WIDTH, 0.0, 1.0).ravel()

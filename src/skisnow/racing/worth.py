@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
@@ -9,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final, get_args
 
 import numpy as np
+from scipy.special import stdtrit
 from scipy.stats import qmc
 
 from .._support.arrays import FloatArray, content_hash
@@ -21,12 +23,13 @@ from ..ski import Ski
 from ..snow import SnowProperties
 from ..snow.mean_snow import drawn_snows
 from ..track.course.gates_table import GateGap, compare_gates
-from .line import RacingLine
+from .line import RacingLine, skier_of
 from .point import LinePoint, Racer, RacerModel, ScoredLine, score_in
 from .score import Score
 
 AS_IT_IS: Final = "as it is"
 """The name of the scenario itself."""
+START: Final = "line where the search began"
 WIDER: Final = 1e-3
 """What is added to the waist (m)."""
 
@@ -72,6 +75,21 @@ class Worth(Shown):
         return float(differences.std(ddof=1)) if len(differences) > 1 else None
 
     @property
+    def interval(self) -> tuple[float, float] | None:
+        """95 % interval (s) of the difference on one more snow, if normal (Student); None of fewer than two."""
+        if self.mean is None or self.deviation is None:
+            return None
+        count = len(self.differences)
+        half = float(stdtrit(count - 1, 0.975)) * self.deviation * math.sqrt(1.0 + 1.0 / count)
+        return self.mean - half, self.mean + half
+
+    @property
+    def verdict(self) -> str:
+        """Whether it is faster here: only where the whole interval is on one side of 0."""
+        low, high = self.interval or (-math.inf, math.inf)
+        return "faster" if high < 0.0 else "slower" if low > 0.0 else "undecided"
+
+    @property
     def faster(self) -> int:
         """On how many snows it is faster."""
         return int(np.sum(self.differences < 0.0))
@@ -91,6 +109,7 @@ class Worth(Shown):
         rows = (
             ("over the snows", f"{amount(self.mean, 's')} ± {amount(self.deviation, 's')}"),
             ("faster on", f"{self.faster} of {len(self.differences)} snows"),
+            ("verdict", self.verdict),
         )
         return Facts(f"{self.name}: {amount(self.on_own_snow, 's')}", rows)
 
@@ -101,6 +120,7 @@ def compare_variants(
     line: RacingLine,
     snows: Sequence[SnowProperties],
     *,
+    start: RacingLine | None = None,
     model: RacerModel = "skier",
     workers: int | None = None,
     executor: ExecutorLike | None = None,
@@ -118,7 +138,9 @@ def compare_variants(
     line
         That all of them take.
     snows
-        The scenario's own first, as `drawn_for_race` gives them.
+        The scenario's own first, as `drawn_for_race` gives them. The skier assumes the scenario's own in skidded turns.
+    start
+        Line that the scenario as it is races on too, as the first of the results.
     model, workers, executor, checkpoint, progress
         As of `quickest_line`.
 
@@ -132,17 +154,20 @@ def compare_variants(
         raise ParameterError(
             "others has the name {as_it_is!r}, which the scenario itself has. Rename the variant."
         ).tag("repeated", as_it_is=AS_IT_IS)
-    if not snows or not others:
+    if not snows or not (others or start):
         raise ParameterError("a comparison needs one snow or more, and one variant or more").tag("missing")
-    named = {AS_IT_IS: scenario, **others}
-    points = [_on(variant, scenario, snow) for variant in named.values() for snow in snows]
+    raced = {AS_IT_IS: (scenario, line)}
+    if start is not None:
+        raced[START] = scenario, start
+    raced |= {name: (variant, line) for name, variant in others.items()}
+    points = [(_on(variant, scenario, snow), along) for variant, along in raced.values() for snow in snows]
     finished_rows = None
     if checkpoint is not None:
-        finished_rows = KeptRows.opened(checkpoint, _fingerprint(points, line, model))
+        finished_rows = KeptRows.opened(checkpoint, _fingerprint(points, model))
     tell = progress or (lambda _: None)
     try:
         rows = run_batch(
-            points, ScoredScenario(line, model), kept=finished_rows, workers=workers, executor=executor,
+            points, ScoredScenario(model), kept=finished_rows, workers=workers, executor=executor,
             progress=lambda done, total: tell(f"race {done} of {total}"),
         )  # fmt: skip
     finally:
@@ -152,20 +177,20 @@ def compare_variants(
     base = scores[0]
     return tuple(
         Worth(name=name, scores=variant_scores, base=base)
-        for name, variant_scores in zip(others, scores[1:], strict=True)
+        for name, variant_scores in zip(list(raced)[1:], scores[1:], strict=True)
     )
 
 
 @dataclass(frozen=True, slots=True)
 class ScoredScenario:
-    """From a scenario to the row of its race on a line; for worker processes."""
+    """From a scenario and a line to the row of its race; for worker processes."""
 
-    line: RacingLine
     model: RacerModel
 
-    def __call__(self, scenario: Scenario) -> dict[str, Any]:
+    def __call__(self, point: tuple[Scenario, RacingLine]) -> dict[str, Any]:
         """The score."""
-        return ScoredLine(Racer(scenario, self.model))(LinePoint(self.line, ()))
+        scenario, line = point
+        return ScoredLine(Racer(scenario, self.model))(LinePoint(line, ()))
 
 
 def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, seed: int) -> list[SnowProperties]:
@@ -234,7 +259,13 @@ def _on(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
         snow, snow_hardness=snow.snow_hardness * share, failure_shear_stress=stress, snow_hardness_interval=None,
         failure_shear_stress_interval=None,
     )  # fmt: skip
-    return replace(variant, contact=replace(variant.contact, snow=changed))
+    skier = skier_of(variant)
+    skier = replace(
+        skier,
+        assumed_hardness=skier.assumed_hardness or own.snow_hardness,
+        assumed_strength=skier.assumed_strength or own.failure_shear_stress or 0.0,
+    )
+    return replace(variant, contact=replace(variant.contact, snow=changed), skier=skier)
 
 
 def _about(value: float, spread: float) -> tuple[float, float]:
@@ -242,5 +273,6 @@ def _about(value: float, spread: float) -> tuple[float, float]:
     return value / (1.0 + spread), value * (1.0 + spread)
 
 
-def _fingerprint(points: Sequence[Scenario], line: RacingLine, model: RacerModel) -> str:
-    return content_hash(f"with gates {version('skisnow')} {model} {line.apexes}", tuple(points), line.turns)
+def _fingerprint(points: Sequence[tuple[Scenario, RacingLine]], model: RacerModel) -> str:
+    lines = tuple((along.apexes, along.turns) for _, along in points)
+    return content_hash(f"with gates {version('skisnow')} {model}", tuple(scenario for scenario, _ in points), lines)

@@ -169,22 +169,27 @@ def race_summary(result: QuickestLine, checked: Sequence[tuple[str, Score]]) -> 
     gained = "" if result.gained is None else f", {result.gained:.3f} s less than where the search began"
     lines = [f"{gates} gates in {_time_text(result.score)}{gained}; {len(result.history)} evaluations"]
     lines += [f"{name}: {_time_text(score)}" for name, score in checked]
-    lines.append(f"{'gate':>6} {'aside (m)':>10} {'along':>7} {'turning':>8}")
+    lines.append(f"{'gate':>6} {'aside (m)':>10} {'along':>7} {'turning':>8} {'speed':>6}")
     for gate, turn in zip(result.line.course.gates, result.line.turns, strict=True):
-        lines.append(f"{gate.name:>6} {turn.aside:10.2f} {turn.along:7.3f} {turn.turning:8.2f}")
+        lines.append(f"{gate.name:>6} {turn.aside:10.2f} {turn.along:7.3f} {turn.turning:8.2f} {turn.speed:6.2f}")
     return "\n".join(lines)
 
 
 def worth_summary(variants: Sequence[Worth]) -> str:
     """Table of variants for a terminal."""
     width = max(len(variant.name) for variant in variants)
-    lines = [f"{'time more than as it is (s)':{width}}  {'own snow':>9} {'mean':>8} {'± s.d.':>8}  faster on"]
+    lines = [
+        f"{'time more than as it is (s)':{width}}  {'own snow':>9} {'mean':>8} {'± s.d.':>8} {'95 % of snows':>16}  "
+        "faster on"
+    ]
     for variant in variants:
         through = len(variant.differences)
         deviation = "-" if variant.deviation is None else f"{variant.deviation:.3f}"
+        interval = ", ".join(map(_signed, variant.interval or ())) or "-"
         lines.append(
             f"{variant.name:{width}}  {_signed(variant.on_own_snow):>9} {_signed(variant.mean):>8} "
-            f"{deviation:>8}  {variant.faster} of {through} snows"
+            f"{deviation:>8} {interval:>16}  {variant.faster} of {through} snows"
+            + (f": {variant.verdict}" if variant.interval else "")
             + ("" if through == len(variant.scores) else f", {len(variant.scores) - through} not through all gates")
         )
     return "\n".join(lines)
@@ -204,7 +209,13 @@ def race_dict(
         "outcome": result.score.words,
         "checked": {name: {"time_s": score.time, "outcome": score.words} for name, score in checked},
         "turns": [
-            {"gate": gate.name, "aside_m": turn.aside, "along": turn.along, "turning": turn.turning}
+            {
+                "gate": gate.name,
+                "aside_m": turn.aside,
+                "along": turn.along,
+                "turning": turn.turning,
+                "speed": turn.speed,
+            }
             for gate, turn in zip(result.line.course.gates, result.line.turns, strict=True)
         ],
         "worth": [
@@ -213,6 +224,8 @@ def race_dict(
                 "on_own_snow_s": variant.on_own_snow,
                 "mean_s": variant.mean,
                 "deviation_s": variant.deviation,
+                "interval_s": variant.interval,
+                "verdict": variant.verdict,
                 "faster_on": variant.faster,
                 "snows": len(variant.scores),
                 "compared": len(variant.differences),
