@@ -171,6 +171,40 @@ def peak_forces(run: Run) -> FloatArray:
     return np.array(turns) / weight
 
 
+def turn_time(run: Run) -> float:
+    """Median time from lean to lean on the other side (s)."""
+    steps = np.diff(run.time[np.flatnonzero(np.diff(np.sign(run.balance.lean)))])
+    return float(np.median(steps[steps > 0.3]))
+
+
+def forces_from_motion(run: Run) -> tuple[FloatArray, FloatArray]:
+    """Total of the boots and its part against the motion (N), (2, n): from the motion at 50 Hz, and recorded.
+
+    Both are averaged over 0.2 s. Gravity and the drag of the scenario are taken from mass times acceleration.
+    """
+    assert run.boots is not None
+    scenario, rate = run.scenario, 50.0
+    time = np.arange(run.time[0], run.time[-1], 1.0 / rate)
+    sampled = [
+        np.stack([np.interp(time, run.time, rows[:, axis]) for axis in range(3)], axis=1)
+        for rows in (run.boots.centre_of_mass, run.boots.force.sum(axis=1))
+    ]
+    velocity = np.gradient(sampled[0], 1.0 / rate, axis=0)
+    speed = np.linalg.norm(velocity, axis=1, keepdims=True)
+    angle, air = scenario.slope.angle, scenario.air  # type: ignore[union-attr]
+    gravity = scenario.gravity * np.array([math.sin(angle), 0.0, -math.cos(angle)])
+    drag = 0.5 * air.density * air.drag_area * speed * velocity
+    found = scenario.sledge.mass * (np.gradient(velocity, 1.0 / rate, axis=0) - gravity) + drag
+    even, ends = np.ones(10) / 10.0, slice(20, -20)
+    forces = [
+        np.stack([np.convolve(each[:, axis], even, "same") for axis in range(3)], axis=1)
+        for each in (found, sampled[1])
+    ]
+    totals = [np.linalg.norm(force, axis=1)[ends] for force in forces]
+    brakes = [-np.sum(force * velocity / speed, axis=1)[ends] for force in forces]
+    return np.array(totals), np.array(brakes)
+
+
 def outer_share(run: Run) -> float:
     """Median share of the outer ski where the body leans by more than 12°."""
     lean, load = run.balance.lean, run.balance.load

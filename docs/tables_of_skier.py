@@ -15,6 +15,7 @@ import numpy as np
 from measures_of_skier import (
     FloatArray,
     edges,
+    forces_from_motion,
     in_a_long_turn,
     muscles,
     off_balance,
@@ -29,6 +30,7 @@ from measures_of_skier import (
     smallest_radius,
     spaced,
     swing,
+    turn_time,
     turning_of,
     weights,
 )
@@ -237,7 +239,7 @@ STEEP = (
 
 def steep() -> Iterator[str]:
     """Skidded turns on 19° beside measured racers."""
-    heads = ("gates on 19°", "passed", "speed (m/s)", "edge angle (°), smallest radius (m)", "measured")
+    heads = ("gates on 19°", "passed", "speed (m/s), turn (s)", "edge angle (°), smallest radius (m)", "measured")
     forces = ("peak force of a turn, median and most (weights)", "published", "outer ski", "slip (°)")
     yield f"| {' | '.join((*heads, *forces))} |"
     yield "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
@@ -250,9 +252,29 @@ def steep() -> Iterator[str]:
         force = f"{np.median(peaks):.1f}, {peaks.max():.1f}"
         slip = np.quantile(np.abs(slip_of(run)), 0.95)
         yield (
-            f"| {name} | {passed} of 8 | {run.speed.mean():.1f} | {own} | {measured} | {force} | {published} "
-            f"| {outer_share(run):.0%} | {slip:.0f} |"
+            f"| {name} | {passed} of 8 | {run.speed.mean():.1f}, {turn_time(run):.1f} | {own} | {measured} | {force} "
+            f"| {published} | {outer_share(run):.0%} | {slip:.0f} |"
         )
+
+
+def terms() -> Iterator[str]:
+    """Forces from the motion of the body less recorded ones, in the terms of two papers."""
+    yield "| | correlation | total (weights) | total (N) | against the motion (N) |"
+    yield "| --- | ---: | ---: | ---: | ---: |"
+    yield "| Gao and others, model − insoles | 0.94 | −0.022 ± 0.186 | | |"
+    yield "| Gilgien and others, GNSS − reference | | | −26 ± 152 | 1 ± 96 |"
+    for name, down, across, speed, ski, *_ in STEEP:
+        run = skidded_through(down, across, speed, ski)
+        totals, brakes = forces_from_motion(run)
+        weight = run.scenario.sledge.mass * run.scenario.gravity
+        apart = [_apart(totals / weight, 3), _apart(totals, 0), _apart(brakes, 0)]
+        yield f"| {name}, from the motion − recorded | {np.corrcoef(totals)[0, 1]:.3f} | {' | '.join(apart)} |"
+
+
+def _apart(forces: FloatArray, digits: int) -> str:
+    difference = forces[0] - forces[1]
+    mean = round(float(difference.mean()), digits) + 0.0  # no negative zero
+    return f"{mean:.{digits}f} ± {difference.std():.{digits}f}".replace("-", "−")
 
 
 def sensitivity() -> Iterator[str]:
@@ -300,6 +322,7 @@ TABLES: dict[str, Callable[[], Iterator[str]]] = {
     "watched": watched,
     "racers": racers,
     "steep": steep,
+    "terms": terms,
     "sensitivity": sensitivity,
 }
 
