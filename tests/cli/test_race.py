@@ -126,11 +126,13 @@ def test_a_folder_without_a_run_is_named(tmp_path: Path, capsys: Printed) -> Non
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_models_of_an_earlier_run_do_not_stay_beside_a_new_one(folder: Path) -> None:
+def test_models_of_an_earlier_run_do_not_stay_beside_a_new_one(tmp_path: Path) -> None:
     from skisnow.report.run.folder import write_run
 
+    run, folder = circle_run(count=21), tmp_path / "turn"
+    write_run(run, folder)
     assert main(["replay", str(folder), "--model", "--moment-s", "1"]) == 0
-    write_run(circle_run(count=21), folder)
+    write_run(run, folder)
     assert not [each.name for each in folder.iterdir() if each.suffix == ".glb" or each.name == "replay.html"]
 
 

@@ -191,6 +191,14 @@ def test_new_files_take_the_place_of_old_ones(tmp_path: Path) -> None:
     assert prepare_folder(tmp_path) == []
 
 
+@pytest.mark.parametrize("name", ["track", "figures/b"])
+def test_a_file_that_no_earlier_run_wrote_is_kept(tmp_path: Path, name: str) -> None:
+    write(tmp_path, {name: "own"})
+    with raises(OutputError, "file_kept"):
+        replace_old_by_new(tmp_path)
+    assert seen(tmp_path) == {name: "own"}
+
+
 def test_an_error_before_the_end_leaves_the_old_ones(tmp_path: Path) -> None:
     write(tmp_path, OLD)
     with pytest.raises(ZeroDivisionError), staged(tmp_path, last="summary") as stage:

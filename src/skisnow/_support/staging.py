@@ -48,6 +48,7 @@ class Stage:
 def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     """Stage whose files are moved into a folder at the end of the block; an error before changes nothing.
 
+    Files of an earlier run are replaced, others are not.
     last: file whose presence shows that all others are complete: removed first, moved last.
     """
     try:
@@ -57,6 +58,7 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     stage = Stage(hidden / _FILES)
     try:
         yield stage
+        _require_own(folder, last, [*stage.stale, *_files(stage.path)])
         write_file(hidden / _PLAN, "\n".join((last, *stage.stale)))
         try:
             _carry_out(hidden)
@@ -117,7 +119,7 @@ def _carry_out(hidden: Path) -> None:
         _require_inside((last, *stale))
     except ValueError as error:
         raise OSError(f"the plan of a killed process is damaged; remove {hidden} and write again") from error
-    new = sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
+    new = _files(stage)
     if not (hidden / _CLEARED).exists():
         for name in (Path(last), *map(Path, stale), *new):
             (folder / name).unlink(missing_ok=True)
@@ -127,6 +129,19 @@ def _carry_out(hidden: Path) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         (stage / name).replace(target)
     (hidden / _PLAN).unlink()
+
+
+def _files(stage: Path) -> list[Path]:
+    return sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
+
+
+def _require_own(folder: Path, last: str, names: Iterable[str | Path]) -> None:
+    """Reject a folder with files of these names but without the file that an earlier run wrote last."""
+    others = [folder / name for name in names if (folder / name).exists()]
+    if others and not (folder / last).exists():
+        raise OutputError("{path} is not from an earlier run and is kept. Choose another folder or move the file.").tag(
+            "file_kept", path=others[0]
+        )
 
 
 def _require_inside(names: Sequence[str]) -> None:

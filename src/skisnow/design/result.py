@@ -13,7 +13,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.messages import Message
-from .._support.staging import write_file
+from .._support.staging import prepare_folder, staged, write_file
 from .._support.units import Facts, Shown
 from ..carving.outputs import OUTPUTS
 from ..ski import Ski
@@ -139,18 +139,18 @@ class Design(Shown):
         OutputError
             A file cannot be written.
         """
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        paths = [folder / name for name in ("ski.toml", "ski-rounded.toml", "table.csv", "design.json")]
-        write_file(paths[0], keys_text(self.keys))
-        write_file(paths[1], keys_text(self.rounded_keys))
+        folder, names = Path(folder), ("ski.toml", "ski-rounded.toml", "table.csv", "design.json")
+        prepare_folder(folder)
         text = io.StringIO()
         table = csv.DictWriter(text, DesignRow.__slots__, lineterminator="\n")
         table.writeheader()
         table.writerows({k: "" if v is None else v for k, v in asdict(row).items()} for row in self.rows)
-        write_file(paths[2], text.getvalue())
-        write_file(paths[3], json.dumps(self.as_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n")
-        return tuple(paths)
+        values = json.dumps(self.as_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+        contents = (keys_text(self.keys), keys_text(self.rounded_keys), text.getvalue(), values)
+        with staged(folder, last=names[-1]) as stage:
+            for name, content in zip(names, contents, strict=True):
+                write_file(stage.path / name, content)
+        return tuple(folder / name for name in names)
 
 
 def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Design:

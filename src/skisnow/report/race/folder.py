@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from ..._support.messages import ENGLISH, Message, local_number, outcome_words
 from ..._support.spreadsheet_text import csv_text
-from ..._support.staging import write_file
+from ..._support.staging import prepare_folder, staged, write_file
 from ...racing import QuickestLine, Score, Worth, write_line
 from ...simulation.run import Run
 from ...track.course.gates_table import GAP_COLUMNS, GateGap, gap_rows, gaps_csv
@@ -46,19 +46,22 @@ def write_race(
     Raises OutputError: a file cannot be written.
     """
     folder = Path(folder)
-    write_line(result.line, folder / "line.csv")
-    write_file(folder / "evaluations.csv", evaluations_csv(result))
-    write_figure(folder / "lines.png", lambda: race_lines(result))
-    if worth:
-        write_file(folder / "worth.csv", worth_csv(worth))
-        write_figure(folder / "worth.png", lambda: race_worth(worth))
-    if run is not None and len(run.time) > 1:
-        write_figure(folder / "course.png", lambda: run_course(run))
-    gates = [gate.name for gate in result.line.course.gates]
-    for variant in worth:
-        if variant.name in against and variant.scores[0].gates and variant.base[0].gates:
-            _write_gaps(variant, gates, folder, result.scenario.ski.name)
-    write_file(folder / SUMMARY, f"{json_text(race_dict(result, checked, worth))}\n")
+    prepare_folder(folder)
+    with staged(folder, last=SUMMARY) as stage:
+        out = stage.path
+        write_line(result.line, out / "line.csv")
+        write_file(out / "evaluations.csv", evaluations_csv(result))
+        write_figure(out / "lines.png", lambda: race_lines(result))
+        if worth:
+            write_file(out / "worth.csv", worth_csv(worth))
+            write_figure(out / "worth.png", lambda: race_worth(worth))
+        if run is not None and len(run.time) > 1:
+            write_figure(out / "course.png", lambda: run_course(run))
+        gates = [gate.name for gate in result.line.course.gates]
+        for variant in worth:
+            if variant.name in against and variant.scores[0].gates and variant.base[0].gates:
+                _write_gaps(variant, gates, out, result.scenario.ski.name)
+        write_file(out / SUMMARY, f"{json_text(race_dict(result, checked, worth))}\n")
     return folder / SUMMARY
 
 

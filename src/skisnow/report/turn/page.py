@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from ..._support.errors import ParameterError, require_language
 from ..._support.messages import ENGLISH, Message, in_language, outcome_words
-from ..._support.staging import require_writable, write_file
+from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.units import DEGREE, MM, N_PER_MM2, N_PER_MM3
 from ...scenario.keys import scenario_values
 from ...simulation.run import Run
@@ -57,10 +57,11 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
         ).tag("too_few_runs", contacts=len(chain.runs), runs=len(chain.ensemble), fewest=FEWEST)
     require_language(language)
     folder = Path(folder)
-    require_writable(folder)
-    pictures = write_pictures(_drawings(chain), folder / "figures", every=FIGURES, language=language)
-    write_file(folder / "turn.json", f"{json_text(turn_dict(chain))}\n")
-    write_file(folder / "report.html", turn_page(chain, pictures, language=language))
+    prepare_folder(folder)
+    with staged(folder, last="report.html") as stage:
+        pictures = write_pictures(_drawings(chain), stage.path / "figures", every=FIGURES, language=language)
+        write_file(stage.path / "turn.json", f"{json_text(turn_dict(chain))}\n")
+        write_file(stage.path / "report.html", turn_page(chain, pictures, language=language))
     return folder / "report.html"
 
 
