@@ -84,27 +84,31 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
     assert study(tmp_path, text).fingerprint() != first
 
 
+AXES, SAMPLED = f"{OUT}{FIXED}[grid]\n", f"{OUT}{FIXED}[latin_hypercube]\n"
+ANGLES = f"{AXES}edge_angle_deg = "
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
         (OUT + FIXED, "contradiction"),
         (OUT + FIXED + GRID + "[latin_hypercube]\nn = 3\nseed = 1\nload_N = { from = 1, to = 2 }", "contradiction"),
-        (OUT + FIXED + "[grid]\n", "missing"),
+        (AXES, "missing"),
         (OUT + FIXED + "[gird]\nload_N = [1]\n", coded("unknown_name", similar="grid", key="gird")),
         (
-            OUT + FIXED + "[grid]\nedge_angel_deg = [30]\n",
+            AXES + "edge_angel_deg = [30]\n",
             coded("unknown_name", similar="edge_angle_deg", table="grid", name="edge_angel_deg"),
         ),
         (OUT + FIXED + "laod_N = 3\n" + GRID, coded("unknown_name", similar="load_N", table="fixed", name="laod_N")),
-        (OUT + FIXED + "[grid]\nload_N = [400]\n", coded("contradiction", name="load_N", form="grid")),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = []\n", "out_of_range"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = [30, 30.0]\n", coded("repeated", repeated=30.0)),
+        (AXES + "load_N = [400]\n", coded("contradiction", name="load_N", form="grid")),
+        (ANGLES + "[]\n", "out_of_range"),
+        (ANGLES + "[30, 30.0]\n", coded("repeated", repeated=30.0)),
         (OUT + FIXED + '[grid]\nedge_angle_deg = [30, "forty"]\n', coded("wrong_kind", value="'forty'")),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = [true]\n", "wrong_kind"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60 }\n", "missing"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, till = 60 }\n", coded("unknown_name", name="till")),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, n = 60 }\n", coded("missing", name="to")),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 60, to = 3, n = 6 }\n", "wrong_kind"),
+        (ANGLES + "[true]\n", "wrong_kind"),
+        (ANGLES + "{ from = 3, to = 60 }\n", "missing"),
+        (ANGLES + "{ from = 3, till = 60 }\n", coded("unknown_name", name="till")),
+        (ANGLES + "{ from = 3, n = 60 }\n", coded("missing", name="to")),
+        (ANGLES + "{ from = 60, to = 3, n = 6 }\n", "wrong_kind"),
         (OUT + FIXED.replace("race-piste", "race-pist") + GRID, coded("unknown_name", similar="race-piste")),
         (OUT + FIXED.replace("slalom", "slalon") + GRID, coded("unknown_name", similar="slalom", name="slalon")),
         (OUT + FIXED.replace("slalom", "mine.toml") + GRID, "cannot_read"),
@@ -121,42 +125,21 @@ def test_fingerprint_follows_points_and_files_but_not_the_place_of_the_table(tmp
             coded("out_of_range", clamp_length=0.3, name="paper-tool"),
         ),
         (OUT + FIXED + "clamp_length_m = 300\n" + GRID, coded("out_of_range", in_metres=0.3)),
-        (OUT + FIXED + 'results = "nowhere.json"\n' + GRID.replace("[grid]", "[grid]"), "contradiction"),
+        (OUT + FIXED + 'results = "nowhere.json"\n' + GRID, "contradiction"),
         (OUT + FIXED.replace("published", "results") + GRID, "wrong_kind"),
         (OUT + FIXED + GRID + "S_f_N_per_mm2 = [0.2]\n", "contradiction"),
-        (OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 3, n = 6 }\n", "out_of_range"),
-        (
-            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = nan, n = 6 }\n",
-            coded("out_of_range", name="to", value="nan"),
-        ),
-        (
-            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 0, to = 3, n = 6, log = true }\n",
-            coded("out_of_range", low=0.0),
-        ),
-        (
-            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 1 }\n",
-            coded("out_of_range", low=2, name="n", value="1"),
-        ),
+        (ANGLES + "{ from = 3, to = 3, n = 6 }\n", "out_of_range"),
+        (ANGLES + "{ from = 3, to = nan, n = 6 }\n", coded("out_of_range", name="to", value="nan")),
+        (ANGLES + "{ from = 0, to = 3, n = 6, log = true }\n", coded("out_of_range", low=0.0)),
+        (ANGLES + "{ from = 3, to = 60, n = 1 }\n", coded("out_of_range", low=2, name="n", value="1")),
         (OUT + FIXED + '[grid]\nedge_angle_deg = { from = 3, to = 60, n = 6, log = "yes" }\n', "wrong_kind"),
-        (
-            OUT + FIXED + "[grid]\nedge_angle_deg = { from = 3, to = 60, n = 2000000 }\n",
-            coded("out_of_range", n=2000000),
-        ),
-        (OUT + FIXED + "[grid]\ntwist = { from = 0, to = 1, n = 2 }\n", coded("no_data", name="twist")),
-        (OUT + FIXED + "[grid]\nelements = [80, 80.5]\n", coded("wrong_kind", value="80.5")),
+        (ANGLES + "{ from = 3, to = 60, n = 2000000 }\n", coded("out_of_range", n=2000000)),
+        (AXES + "twist = { from = 0, to = 1, n = 2 }\n", coded("no_data", name="twist")),
+        (AXES + "elements = [80, 80.5]\n", coded("wrong_kind", value="80.5")),
         (OUT + FIXED + "edge_angle_deg = [3]\n[grid]\nelements = [80]\n", "wrong_kind"),
-        (
-            OUT + FIXED + "[latin_hypercube]\nn = 5\nedge_angle_deg = { from = 3, to = 60 }\n",
-            coded("missing", name="seed"),
-        ),
-        (
-            OUT + FIXED + "[latin_hypercube]\nn = 0\nseed = 1\nelements = [80]\n",
-            coded("out_of_range", low=1, name="n", value="0"),
-        ),
-        (
-            OUT + FIXED + "[latin_hypercube]\nn = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n",
-            "contradiction",
-        ),
+        (SAMPLED + "n = 5\nedge_angle_deg = { from = 3, to = 60 }\n", coded("missing", name="seed")),
+        (SAMPLED + "n = 0\nseed = 1\nelements = [80]\n", coded("out_of_range", low=1, name="n", value="0")),
+        (SAMPLED + "n = 5\nseed = 1\nedge_angle_deg = { from = 3, to = 60, n = 3 }\n", "contradiction"),
         (FIXED + GRID, "wrong_kind"),
         ('out = "table.xlsx"\n' + FIXED + GRID, "wrong_ending"),
         (OUT + GRID, coded("missing", name="ski")),

@@ -101,16 +101,11 @@ def test_a_first_line_that_names_the_separator(head: str, separator: str | None)
 @pytest.mark.parametrize(
     ("head", "separator"),
     [
-        ("a;b;c,d\n", ";"),
-        ("a,b;c", ","),
-        ("a\tb\n1,2,3,4", "\t"),
-        (";;\n,\na,b", ","),
-        ('"a;b;c"\td', "\t"),
-        ("", ","),
-        ('"a\nb,c,d";e\n', ";"),
-        ("a\n", ","),
+        ("a;b;c,d\n", ";"), ("a,b;c", ","), ("a\tb\n1,2,3,4", "\t"), (";;\n,\na,b", ","),
+        ('"a;b;c"\td', "\t"), ("", ","),
+        ('"a\nb,c,d";e\n', ";"), ("a\n", ","),
     ],
-)
+)  # fmt: skip
 def test_the_separator_of_the_first_line_that_says_something(head: str, separator: str) -> None:
     assert most_frequent_separator(head) == separator
 

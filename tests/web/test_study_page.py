@@ -105,22 +105,6 @@ def test_a_scheduler_computes_the_studies_of_the_lab(
     assert "Client-skisnow" in log
 
 
-@pytest.mark.slow
-def test_a_run_that_the_server_was_killed_in_is_restarted(page: Page, served: Served) -> None:
-    page.goto(f"{served.address}simulate")
-    page.get_by_label("Ends after (s)", exact=True).fill("0.2")
-    page.get_by_role("button", name="Simulate").click()
-    page.get_by_text("is in the queue.").wait_for()
-    page.get_by_text("running").first.wait_for()
-    killed_and_started_again(page, served)
-    page.get_by_text("finished: ").wait_for(timeout=LONG_MS)
-    page.get_by_role("link", name="Watch").wait_for()
-    (place,) = (served.store.parent / "lab").glob("*/summary.json")
-    summary = json.loads(place.read_text(encoding="utf-8"))
-    assert summary["outcome"] == "finished"
-    assert summary["scenario"]["run"]["duration_s"] == 0.2
-
-
 def choose(page: Page, label: str, option: str) -> None:
     page.get_by_label(label, exact=True).click()
     page.get_by_role("option", name=option).click()
