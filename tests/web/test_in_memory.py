@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 import skisnow
-from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
 from skisnow.campaign.store import Journals, NewEntry, Store, export_corrected
 from skisnow.estimation import analyse
@@ -17,8 +16,7 @@ from skisnow.web.campaign_analysis import CampaignSource, Choice, Numbers, analy
 from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
-from skisnow.web.transfer import entry_files, kept_files, write_entry
-from tests.coded import raises
+from skisnow.web.transfer import kept_files
 from tests.present import present
 
 from ..campaign.recordings import plain_snow
@@ -68,14 +66,6 @@ def correct(lab: Lab, id_: str) -> None:
 
 def experiments(results: dict[str, Any]) -> Any:
     return results["penetration"]["experiments"]
-
-
-def test_a_campaign_being_entered_is_analysed_as_its_export(lab: Lab, tmp_path: Path) -> None:
-    id_ = entered(lab)
-    write_entry(lab, id_, tmp_path / "export")
-    found = analyse_files(entry_files(lab, id_), Choice())
-    assert isinstance(found, Numbers)
-    assert experiments(found.results) == experiments(analyse(read_campaign(tmp_path / "export")).results)
 
 
 def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: Lab, tmp_path: Path) -> None:
@@ -148,14 +138,6 @@ def test_what_is_downloaded_is_the_campaign_that_was_analysed(lab: Lab, tmp_path
     export_corrected(lab.store, id_, tmp_path / "export")
     exported = (tmp_path / "export" / "corrections.csv").read_bytes()
     assert (tmp_path / "second" / "corrections.csv").read_bytes() == exported
-
-
-def test_a_damaged_file_is_not_analysed(lab: Lab, tmp_path: Path) -> None:
-    id_ = kept_id(lab, tmp_path / "kept")
-    with lab.store.engine.begin() as connection:
-        connection.exec_driver_sql("UPDATE chunk SET data = CAST(replace(CAST(data AS TEXT), '2.6', '9.9') AS BLOB)")
-    with raises(StoreError, "damaged"):
-        kept_files(lab, id_)
 
 
 @pytest.mark.usefixtures("svg_alone")

@@ -193,21 +193,6 @@ def test_what_a_test_has_once_is_corrected_in_every_row(desk: Desk, id_: str) ->
     assert page.field("Measurement point").value == ""
 
 
-def test_what_no_cell_can_hold_is_rejected(desk: Desk, id_: str) -> None:
-    page = opened(desk, id_)
-    page.fill("Site", " ")
-    page.fill("Depth (mm), row 3", "two")
-    page.fill("Depth (mm), row 4", "2.7")
-    assert not page.sends("Correct", 1)
-    assert page.outcome() == "bad"
-    assert page.refusals() == page.faults("Site", "Depth (mm), row 3")
-    assert not any("field Why" in line for line in page.outline())
-    page.fill("Site", "A")
-    page.fill("Depth (mm), row 3", "2,1")
-    page.press("Correct")
-    assert "Depth (mm): 2,6 becomes 2.7." in page.outline()
-
-
 def test_a_correction_after_another_persons_is_rejected(desk: Desk, id_: str) -> None:
     page = opened(desk, id_)
     page.fill("Depth (mm), row 3", "2.15")
@@ -216,17 +201,6 @@ def test_a_correction_after_another_persons_is_rejected(desk: Desk, id_: str) ->
     assert not page.sends("Correct it", 1)
     assert page.outcome() == "bad"
     assert len(history(desk, id_)) == 2
-
-
-def test_a_test_is_cancelled_and_stays_in_its_file(desk: Desk, id_: str) -> None:
-    page = opened(desk, id_)
-    page.press(CANCEL)
-    page.fill("Why", "the tool slipped")
-    page.press("Cancel the test")
-    assert "the tool slipped" in page.between("h2 Test 1")[1]
-    assert history(desk, id_)[-1].action == "cancel"
-    page.press(undo_button(page))
-    assert page.between("h2 Test 1")[1] == "field Site = 'A'"
 
 
 # A kept campaign as a page sees it

@@ -441,16 +441,6 @@ def test_what_is_left_out_is_that_of_its_file_and_keeps_its_reason() -> None:
     assert flags(sheared)["1"] == []
 
 
-def test_only_errors_are_listed_in_a_refusal() -> None:
-    """A mark of quality beside them is not an error."""
-    files = {name: text.encode() for name, text in WRONG.items()}
-    found = analyse_files(FilesInMemory(files), Choice())
-    assert isinstance(found, Refusal)
-    assert len(found.errors) == 1
-    assert "-40" in found.errors[0]
-    assert "-40" in found.said
-
-
 def test_the_worker_does_one_thing_after_another_in_a_process_of_its_own(desk: Desk) -> None:
     worker = Worker()
     worker.end()  # nothing was begun

@@ -225,28 +225,6 @@ def test_a_description_that_cannot_be_stored_is_rejected_and_stays(
     assert {name: page.field(name).value for name in typed} == typed
 
 
-def test_each_shape_asks_for_its_own_lengths(desk: Desk) -> None:
-    page = desk.open("/describe")
-    asked = {"ski": ["Length (mm)", "Width (mm)"], "disc": ["Diameter (mm)"], "cylinder": ["Width (mm)", "Radius (mm)"]}
-    for shape in ("disc", "cylinder", "ski"):
-        page.fill("Shape of tool 1", shape)
-        lengths = [line.split(" of ")[0] for line in page.outline() if line.endswith("numeric") and "of tool 1" in line]
-        assert lengths == [f"field {each}" for each in asked[shape]]
-
-
-def test_another_row_is_empty_and_has_the_focus(desk: Desk) -> None:
-    page = desk.open("/describe")
-    page.press("Another tool")
-    names = ("Name", "Shape", "Length (mm)", "Width (mm)")
-    assert [page.field(f"{name} of tool 2").value for name in names] == ["", "ski", "", ""]
-    assert page.focused() is page.field("Name of tool 2")
-    page.press("Another tool")
-    assert page.focused() is page.field("Name of tool 3")
-    page.press("Another plate")
-    assert page.focused() is page.field("Name of plate 2")
-    assert [page.field(f"{name} of plate 2").value for name in ("Name", "Length (mm)")] == ["", ""]
-
-
 def rows(page: Sheet, kind: str) -> int:
     return sum(line.startswith(f"field Name of {kind} ") for line in page.outline())
 

@@ -97,21 +97,6 @@ def test_another_depth_asks_for_a_reason(entered: Entered) -> None:
     assert "misread" in undo_button(page)
 
 
-def test_a_correction_without_a_reason_is_rejected(entered: Entered) -> None:
-    page = asked_to_correct(entered)
-    page.fill("Why", "  ")
-    form = page.field("Why").parent_slot.parent
-    page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
-    assert page.outcome() == "bad"
-    assert page.scripts[-1] == "lab.answered(2, false)"
-    assert "field Why = '  '" in page.outline()
-    assert len(entered.history()) == 2
-    page.fill("Why", " slip ")
-    page.fire(form, "keydown.enter", {"number": 3, "once": "c"})
-    assert page.scripts[-1] == "lab.answered(3, true)"
-    assert entered.history()[-1].why == "slip"
-
-
 def test_a_depth_that_is_left_with_another_number_asks_without_taking_the_focus(entered: Entered) -> None:
     entered.add_series("1", ("20", "1.5"), ("40.5", "22.5"))
     page = entered.series_page()

@@ -282,17 +282,6 @@ def test_another_person_on_the_same_series_is_reported_and_shown(entered: Entere
     assert entered.depths() == [("20", "1.4"), ("40.5", "2.1")]
 
 
-def test_another_persons_reading_under_the_same_load_stays(entered: Entered) -> None:
-    page = entered.begun_series()
-    entered.add_series("1", ("20", "1.4"), who="Bo")
-    enter(page, "Depth under 20 N (mm)", "1.5")
-    assert page.outcome() == "bad"
-    assert page.field("Depth under 20 N (mm)").value == "1.4"
-    assert entered.depths() == [("20", "1.4")]
-    enter(page, "Depth under 20 N (mm)", "1.5")
-    assert "20 N: 1.4 mm becomes 1.5 mm." in page.outline()
-
-
 def test_a_load_beyond_the_discs_stands_where_it_belongs(entered: Entered) -> None:
     page = entered.begun_series()
     enter(page, "Depth under 20 N (mm)", "1.5")

@@ -67,20 +67,6 @@ def test_a_shear_test_is_requested_and_stored(entered: Entered) -> None:
     assert page.between("h3 So far")[1:3] == ["h4 A", "button[small] 1 · 90°"]
 
 
-def test_enter_stores_a_test_of_one_row_too(entered: Entered) -> None:
-    page = entered.open("?table=density.csv")
-    page.fill("Site", "A")
-    form = page.field("Site").parent_slot.parent
-    page.fire(form, "keydown.enter", {"number": 1, "once": "a"})
-    assert page.outcome() == "bad"
-    assert page.refusals() == page.faults("Density (kg/m³)")
-    assert page.scripts[-1] == "lab.answered(1, false)"
-    page.fill("Density (kg/m³)", "350")
-    page.fire(form, "keydown.enter", {"number": 2, "once": "b"})
-    assert page.scripts[-1] == "lab.answered(2, true)"
-    assert entered.stored(DENSITY, "1") == [{"sample": "1", "site": "A", "sample_depth_mm": "", KG_PER_M3: "350"}]
-
-
 def test_a_sample_does_not_show_the_result_of_the_shear_test_with_its_number(entered: Entered) -> None:
     entered.add_shear("1")
     entered.add(DENSITY, "1", sample="1", site="A", snow_density_kg_per_m3="350")

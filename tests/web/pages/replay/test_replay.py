@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow._support.errors import OutputError, ParameterError
+from skisnow._support.errors import ParameterError
 from skisnow.replay import replay_bytes, replay_of_file, replay_of_run
 from skisnow.replay.page import in_language
 from skisnow.report.run.file import write_run_file
@@ -61,18 +61,6 @@ def labels(page: Sheet) -> list[tuple[str, str]]:
     """The field of each label, and its words."""
     made = page.tagged("label")
     return [(each.props["for"], next(iter(each.default_slot.children)).text) for each in made if "for" in each.props]
-
-
-def test_a_run_alone_is_listed_and_has_nothing_to_stand_beside(desk: Desk, run_files: dict[str, bytes]) -> None:
-    """The turn goes on for 4 s at 8 m/s."""
-    keep(desk.lab.runs, "a turn", run_files)
-    page = desk.open("/replay")
-    lines = page.outline()
-    assert lines[lines.index("h2 a turn") + 1].startswith("[quiet] 32.0 m in 4.00 s, ")
-    assert page.link("Watch") == show_address("a turn")
-    (watch,) = (each for each in page.of() if each.props.get("href") == show_address("a turn"))
-    assert watch.props["aria-label"].endswith(" a turn")
-    assert page.tagged("select") == []
 
 
 def test_two_runs_are_put_together_the_newest_over_the_one_before(desk: Desk, run_files: dict[str, bytes]) -> None:
@@ -201,12 +189,6 @@ def test_tracks_are_listed_the_newest_first_without_what_is_half_there(tmp_path:
     assert folders.names() == [newer, older]
     assert (older, newer, keep_track(tmp_path, "a.csv")) == ("z", "a", "a-2")
     assert sorted(each.name for each in (tmp_path / "tracks" / newer).iterdir()) == ["about.json", "track.csv"]
-
-
-def test_tracks_of_a_folder_that_cannot_be_written_are_rejected(tmp_path: Path) -> None:
-    (tmp_path / "tracks").write_bytes(b"")
-    with raises(OutputError, "cannot_write"):
-        keep_track(tmp_path)
 
 
 def test_a_track_is_no_longer_and_no_larger_than_allowed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -133,15 +133,6 @@ def test_a_campaign_that_gives_no_snow_says_why(desk: Desk, tmp_path: Path) -> N
 RENAMING = ["Rename", "field Name of the run = 'mine'", "button Use this name"]
 
 
-def test_a_run_that_waits_can_be_cancelled(desk: Desk) -> None:
-    name = asked(desk, desk.open("/simulate"))["name"]
-    page = desk.open("/simulate")
-    assert any(line.endswith(" · waiting") for line in page.outline())
-    assert [each.tag for each in page.of() if "card" in each.classes] == ["section"]
-    page.press(f"Cancel {name}")
-    assert any(" · cancelled · " in line for line in page.outline())
-
-
 @pytest.mark.parametrize(
     ("state", "lines"),
     [("waiting", ["button Cancel"]), ("running", ["[quiet progress] 1.2 s of 5 s", "button Cancel"]), ("failed", [])],

@@ -227,15 +227,6 @@ def test_an_edited_ski_is_saved_and_compared(desk: Desk) -> None:
     page.until(lambda: page.link(BOTH) == carving("carver", "second"))
 
 
-def test_a_ski_without_changes_is_saved_as_its_file_is_written(desk: Desk) -> None:
-    page = opened(desk)
-    page.fill("New name", "same")
-    page.press(SAVE)
-    page.shows("[status good] Saved: same.")
-    assert saved_place(desk, "same").read_text(encoding="utf-8") == TEXT.replace('name = "carver"', 'name = "same"')
-    assert not saved_place(desk, "same").with_name("ski.csv").exists()
-
-
 @pytest.mark.parametrize(
     ("name", "code"),
     [

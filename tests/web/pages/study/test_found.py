@@ -14,7 +14,7 @@ from skisnow.web.studies import Studies, StudyJob
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 
 from ..desk import Desk
-from .shared import ANGLE, LOAD, TURN, asked
+from .shared import ANGLE, LOAD, TURN
 
 TABLE_LINK = "link[main] Table and figure -> /study/a%20study"
 OF_CARVES = {
@@ -81,17 +81,6 @@ def test_a_card_shows_how_its_study_stands(desk: Desk, state: Any, further: Any,
         assert pressed == [(studies.go_on, "a study")]
     else:
         assert page.link("Table and figure") == "/study/a%20study"
-
-
-def test_a_study_that_waits_is_cancelled_and_continues(desk: Desk) -> None:
-    page = desk.open("/study")
-    name = asked(desk, page)[0]["name"]
-    page = desk.open("/study")
-    assert page.outline()[-2].endswith(" · waiting")
-    page.press(f"Cancel {name}")
-    assert " · cancelled · " in page.outline()[-2]
-    page.press(f"Go on with {name}")
-    assert page.outline()[-2].endswith(" · waiting")
 
 
 def test_a_table_of_turns_over_one_input(desk: Desk) -> None:
@@ -212,10 +201,3 @@ def test_a_file_that_is_not_there_is_reported(desk: Desk, file: str) -> None:
     answer = desk.get(f"/study/files/{name}/{file}")
     assert (answer.status_code, desk.code) == (404, "unknown_file")
     assert desk.fields["file"] == ("table.csv" if file == "study.zip" else file)
-
-
-def test_a_study_without_a_table_has_no_page_yet(desk: Desk) -> None:
-    name = Studies(desk.lab.runs).ask_for(StudyQuestion(CARVE, {"edge_angle_deg": Range(1.0, 7.0, 2)}, TURN)).name
-    assert desk.get(f"/study/{name}").status_code == 404
-    assert (desk.code, len(desk.failures)) == ("unknown_file", 1)
-    desk.failures.clear()

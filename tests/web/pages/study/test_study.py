@@ -11,7 +11,6 @@ from skisnow.campaign import read_campaign
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
 from skisnow.parameters import Quantity
-from skisnow.studies import read_study
 from skisnow.web.lab_skis import LabSkis
 from skisnow.web.study_fields import CARVE, first_range
 
@@ -201,16 +200,6 @@ def test_a_study_of_carved_turns_is_asked_about_a_turn(desk: Desk) -> None:
     assert [each.text for each in page.of() if each.props.get("aria-current") == "page"] == ["Study"]
 
 
-def test_a_study_of_runs_is_asked_about_its_scenario(desk: Desk) -> None:
-    page = scenario(desk)
-    assert [page.field(name).value for name in (OF, FIRST, SECOND)] == ["carved-46m", "start.speed_m_per_s", "nothing"]
-    assert [page.field(name).value for name in (FROM, TO, VALUES, LOG)] == ["6", "12", "7", False]
-    assert [page.field(name).value for name in (HARDNESS, ANGLE, ENDS, WAY)] == ["0.2", "30", "5", ""]
-    lines = page.outline()
-    assert sum(line.startswith("h3 ") for line in lines) == 11
-    assert lines[lines.index("h3 Air drag") + 1].endswith(" = '1.2' numeric")
-
-
 def test_a_study_without_typed_values_varies_the_edge_angle(desk: Desk) -> None:
     job, text = asked(desk, desk.open("/study"))
     assert text == {"out": "table.csv", "fixed": TURN, "grid": {"edge_angle_deg": {"from": 10.0, "to": 70.0, "n": 13}}}
@@ -287,17 +276,3 @@ def test_input_that_cannot_be_studied_is_rejected(desk: Desk, typed: dict[str, A
     for name, value in typed.items():
         page.fill(name, value)
     assert refused(desk, page) == code
-
-
-def test_a_whole_number_varies_as_one(desk: Desk) -> None:
-    page = desk.open("/study")
-    page.fill(FIRST, "elements")
-    assert [page.field(name).value for name in (FROM, TO)] == ["80", "320"]
-    page.fill(FROM, "40")
-    page.fill(VALUES, "2")
-    job, _ = asked(desk, page)
-    points = read_study(desk.lab.runs / "studies" / job["name"] / "study.toml").points
-    assert [point["elements"] for point in points] == [40, 320]
-    page.fill(FROM, "3")
-    page.press("Start the study")
-    page.shows("[status bad] ")
