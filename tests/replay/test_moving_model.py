@@ -84,6 +84,9 @@ def test_exaggeration_takes_bending_and_twist_alone(replay: Replay) -> None:
     found = edges_in(GlbFile(moving_replay_model(replay, exaggeration=6.0)), 1.2345, 10.0 * DEGREE)
     assert found == pytest.approx(by_hand(1.2345, 6.0), abs=1e-4)
     assert np.abs(by_hand(1.2345, 6.0) - by_hand(1.2345)).max() > 0.05
+    for exaggeration in (1.0, 6.0):
+        frame = ski_edges(replay, 123, exaggeration=exaggeration)
+        assert frame == pytest.approx(by_hand(float(replay.time[123]), exaggeration), abs=1e-9)
 
 
 @pytest.mark.slow
