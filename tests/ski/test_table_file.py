@@ -25,16 +25,8 @@ ROWS = """station_m,width_mm,base_height_mm,EI_N_m2,GJ_N_m2,mass_per_length_kg_p
 -0.4,78,1,260,140,1.5
 -0.8,100,10,100,60,1
 """
-REPLACED = (
-    "length_mm",
-    "tip_width_mm",
-    "waist_width_mm",
-    "tail_width_mm",
-    "mass_kg",
-    "camber_mm",
-    "EI_N_m2",
-    "GJ_N_m2",
-)
+WIDTHS = ("tip_width_mm", "waist_width_mm", "tail_width_mm")
+REPLACED = ("length_mm", *WIDTHS, "mass_kg", "camber_mm", "EI_N_m2", "GJ_N_m2")
 
 
 @pytest.fixture
@@ -78,27 +70,22 @@ def test_a_table_of_one_column_leaves_the_rest_to_the_keys(with_table: Written) 
     assert float(ski.at(0.0).bending_stiffness) == pytest.approx(400.0)
 
 
-def test_the_case_of_headings_does_not_matter(with_table: Written) -> None:
-    head, rows = ROWS.split("\n", 1)
-    at, again = (read_ski(with_table(text)).at([0.5, -0.5]) for text in (ROWS, f"{head.upper()}\n{rows}"))
+SEMICOLONS = ROWS.replace(",", ";").replace(".", ",")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ROWS.partition("\n")[0].upper() + "\n" + ROWS.partition("\n")[2],
+        "\ufeff# measured on a table\n" + ROWS.replace(",", "\t") + "\n",
+        "\ufeff" + SEMICOLONS,
+        "sep=;\n" + SEMICOLONS,
+    ],
+)
+def test_tables_of_any_program_are_read(with_table: Written, text: str) -> None:
+    at, again = (read_ski(with_table(each)).at([0.5, -0.5]) for each in (ROWS, text))
     assert np.array_equal(at.width, again.width)
     assert np.array_equal(at.bending_stiffness, again.bending_stiffness)
-
-
-@pytest.mark.parametrize("separator", [";", "\t"])
-def test_other_separators_remarks_and_byte_order_mark(with_table: Written, separator: str) -> None:
-    text = "\ufeff# measured on a table\n" + ROWS.replace(",", separator) + "\n"
-    assert read_ski(with_table(text)).waist_width == pytest.approx(0.068)
-
-
-@pytest.mark.parametrize("first", ["", "sep=;\n"])
-def test_decimal_commas_as_a_spreadsheet_program_writes_them(with_table: Written, first: str) -> None:
-    path = with_table()
-    text = first + ROWS.replace(",", ";").replace(".", ",").replace(";68;", ";68,25;")
-    (path.parent / "rows.csv").write_bytes(text.encode("utf-8-sig"))
-    ski = read_ski(path)
-    assert ski.waist_width == pytest.approx(0.06825)
-    assert ski.length == pytest.approx(1.6)
 
 
 def test_a_point_among_decimal_commas_could_be_a_thousand(with_table: Written) -> None:
@@ -107,47 +94,26 @@ def test_a_point_among_decimal_commas_could_be_a_thousand(with_table: Written) -
         read_ski(with_table(text))
 
 
+def beside(column: str, key: str, value: str) -> Coded:
+    """A key that gives what the table has."""
+    return coded("contradiction", column=column, key=key, value=value, other=f"the column {column}")
+
+
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        (
-            {"length_mm": 1700},
-            coded("contradiction", reach=1600.0, length=1700.0),
-        ),
+        ({"length_mm": 1700}, coded("contradiction", reach=1600.0, length=1700.0)),
         ({"length_mm": 1500}, coded("contradiction", length=1500.0)),
         (
             {"sidecut_length_mm": 1650},
             coded("contradiction", name="sidecut_length", length=1650.0000000000002, tip=800.0, tail=-800.0),
         ),
         ({"boot_position_mm": 150}, coded("contradiction", tip=800.0, tail=-800.0)),
-        (
-            {"waist_width_mm": 68},
-            coded("contradiction", column="width_mm", key="waist_width_mm", value="68", other="the column width_mm"),
-        ),
-        (
-            {"camber_mm": 7},
-            coded(
-                "contradiction", column="base_height_mm", key="camber_mm", value="7", other="the column base_height_mm"
-            ),
-        ),
-        (
-            {"camber_rounding_mm": 80},
-            coded(
-                "contradiction",
-                column="base_height_mm",
-                key="camber_rounding_mm",
-                value="80",
-                other="the column base_height_mm",
-            ),
-        ),
-        (
-            {"tip_end_width_mm": 30},
-            coded("contradiction", column="width_mm", key="tip_end_width_mm", value="30", other="the column width_mm"),
-        ),
-        (
-            {"EI_N_m2": [100]},
-            coded("contradiction", column="EI_N_m2", key="EI_N_m2", value="[100]", other="the column EI_N_m2"),
-        ),
+        ({"waist_width_mm": 68}, beside("width_mm", "waist_width_mm", "68")),
+        ({"camber_mm": 7}, beside("base_height_mm", "camber_mm", "7")),
+        ({"camber_rounding_mm": 80}, beside("base_height_mm", "camber_rounding_mm", "80")),
+        ({"tip_end_width_mm": 30}, beside("width_mm", "tip_end_width_mm", "30")),
+        ({"EI_N_m2": [100]}, beside("EI_N_m2", "EI_N_m2", "[100]")),
         ({"stiffness_station_mm": [100]}, coded("contradiction", key="stiffness_station_mm", value="[100]")),
         ({"tail_overhang_mm": 20}, coded("contradiction", key="tail_overhang_mm", value="20")),
         ({"mass_kg": 3.0}, coded("out_of_range", place="mass_kg", value="3.0")),
@@ -163,29 +129,15 @@ def test_keys_that_contradict_the_table(with_table: Written, changes: dict[str, 
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        (
-            ROWS.replace("width_mm", "widht_mm"),
-            coded("unknown_name", similar="width_mm", line=1, name="widht_mm"),
-        ),
+        (ROWS.replace("width_mm", "widht_mm"), coded("unknown_name", similar="width_mm", line=1, name="widht_mm")),
         (ROWS.replace("GJ_N_m2", "EI_N_m2"), coded("repeated", name="EI_N_m2")),
-        (
-            ROWS.replace("station_m", "width_mm", 1).replace("width_mm,width_mm", "width_mm"),
-            "missing",
-        ),
+        (ROWS.replace("station_m", "width_mm", 1).replace("width_mm,width_mm", "width_mm"), "missing"),
         (ROWS.replace("440", "4 40"), coded("wrong_kind", name="line 4, EI_N_m2", value="'4 40'")),
         (ROWS.replace("440", "nan"), "out_of_range"),
         (ROWS.replace("440", "-440"), "out_of_range"),
         (
             ROWS.replace("-0.4,", "0.4,"),
-            coded(
-                "out_of_range",
-                line=5,
-                column="station_m",
-                before=0.0,
-                place="line 5, station_m",
-                value="0.4",
-                allowed="less than the 0 before it",
-            ),
+            coded("out_of_range", column="station_m", place="line 5, station_m", allowed="less than the 0 before it"),
         ),
         (ROWS.replace("440,", ""), coded(WRONG_CELL_COUNT, line=4, n_cells=5, n_header=6)),
         (
