@@ -18,7 +18,7 @@ from skisnow.identification.solution import _neighbour_correlation
 from skisnow.identification.uncertainty import linear_uncertainty
 from skisnow.scenario import scenario_file, scenario_text
 from skisnow.scenario.identify_section import given_parameters
-from skisnow.scenario.keys import FREE_KEYS, free_key, free_keys, short_name
+from skisnow.scenario.keys import FREE_KEYS
 from skisnow.scenario.reading import load_input
 from tests.coded import raises
 
@@ -205,33 +205,6 @@ def test_parallel_columns_are_named_together_and_dead_ones_alone() -> None:
 
 
 VALUES = scenario_file("carved-46m").values
-
-
-@pytest.mark.parametrize("key", FREE_KEYS)
-def test_every_key_is_found_by_its_short_name_alone(key: str) -> None:
-    assert free_key(key) == free_key(short_name(key)) == free_key(key.partition(".")[2]) == key
-
-
-@pytest.mark.parametrize(
-    ("word", "told"),
-    [
-        ("mu_O", "friction.mu_0"),
-        ("dragarea", "drag.drag_area_m2"),
-        ("sf", "snow.S_f_N_per_mm2"),
-        ("quark", "There are"),
-        ("step", r"solver\.step_ms"),
-        ("inertia", "a whole table"),
-        ("ski.name", "a text"),
-    ],
-)
-def test_unknown_words_are_rejected_with_near_ones(word: str, told: str) -> None:
-    with pytest.raises(ParameterError, match=told):
-        free_key(word)
-
-
-def test_a_key_named_twice_is_rejected() -> None:
-    with pytest.raises(ParameterError, match="named twice"):
-        free_keys("mu_0, friction.mu_0")
 
 
 def test_bounds_that_exclude_the_start_are_rejected() -> None:

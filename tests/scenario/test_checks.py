@@ -33,15 +33,6 @@ def test_scenario_out_of_its_limits_is_rejected(values: dict[str, Any], told: st
         replace(load_scenario("carved-46m"), **values)
 
 
-@pytest.mark.parametrize(
-    ("part", "values"), [("sledge", {"stance_width": 0.05}), ("contact", {"friction_by_speed": -0.01})]
-)
-def test_parts_that_do_not_go_together_are_rejected(part: str, values: dict[str, Any]) -> None:
-    scenario = load_scenario("carved-46m")
-    with raises(ParameterError, "contradiction"):
-        replace(scenario, **{part: replace(getattr(scenario, part), **values)})
-
-
 BASE = "carved-46m"
 SHORT = {"run.duration_s": 0.04, "run.output_ms": 20.0, "solver.method": "fast", "solver.tolerance_mm": 1e-4}
 FIRST_GUESS = "solver.step_ms"

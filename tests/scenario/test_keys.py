@@ -136,6 +136,8 @@ def test_with_and_without_section_and_unit(word: str, key: str) -> None:
         ("x_ms", coded("unknown_name", word="x_ms")),
         ("MASS", "unknown_name"),
         ("speeds", "unknown_name"),
+        ("dragarea", coded("unknown_name", allowed="Near are drag.drag_area_m2")),
+        ("sf", coded("unknown_name", allowed="Near are snow.S_f_N_per_mm2, skier.shift_m")),
         ("step", coded("not_free", key="solver.step_ms")),
         ("inertia", coded("not_free", key="sledge.inertia_kg_m2")),
         ("ski.name", coded("not_free", key="ski.name")),
