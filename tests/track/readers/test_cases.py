@@ -9,8 +9,6 @@ import pytest
 from skisnow._support.errors import FieldDataError
 from skisnow.track.read import read_track
 from skisnow.track.track import FLAGS, Track
-from tests.fuzzing.registry import BY_NAME
-from tests.fuzzing.track_files import FILES
 
 from .receivers import fit_file, nav_pvt, sentence, ubx_frame
 from .test_nmea import gga
@@ -65,16 +63,6 @@ def require_track_or_our_error(path: Path, kind: str | None = None) -> bool:
     assert np.isfinite(track.place[track.usable, :2]).all()
     assert track.flags["no_fix"][np.isnan(track.place[:, 0])].all()
     return True
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_mutated_files(tmp_path: Path, name: str) -> None:
-    """Cases beyond those of tests/fuzzing; half of the binary ones have right checksums."""
-    (tmp_path / name).write_bytes(FILES[name])
-    assert require_track_or_our_error(tmp_path / name)
-    for number in range(1000, 1025):
-        (tmp_path / name).write_bytes(BY_NAME[f"track {name}"].mutated(number))
-        require_track_or_our_error(tmp_path / name)
 
 
 @pytest.mark.parametrize("kind", ["csv", "gpx", "fit", "nmea", "ubx", "rtklib"])
