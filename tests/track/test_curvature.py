@@ -137,7 +137,7 @@ def test_points_without_a_fix_in_a_gap_count_once() -> None:
 
 
 def test_at_rest_there_is_no_heading() -> None:
-    motion = track_motion(track(np.zeros((30, 2)), noise=NOISE))
+    motion = track_motion(track(np.zeros((20, 2)), noise=NOISE))
     assert np.isnan(motion.heading).all()
     assert np.isnan(motion.curvature).all()
 

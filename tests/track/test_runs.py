@@ -243,7 +243,7 @@ def test_part_of_a_track() -> None:
 
 def test_wide_bend_is_straight() -> None:
     for radius, turns in ((600.0, 0), (400.0, 1)):
-        bend = along(np.full(15_001, 1.0 / radius), STEP)[::100]
+        bend = along(np.full(15_001, 1.0 / radius), STEP)[::200]
         assert len(find_turns(track_motion(track(bend)))) == turns
 
 

@@ -237,12 +237,12 @@ def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
 
 
 @pytest.mark.parametrize(
-    ("period", "rate"),
-    [(4.0, 1.0), (17.0, 2.0), (4.0, 10.0)],
+    ("period", "rate", "count"),
+    [(4.0, 1.0, 50), (17.0, 2.0, 100), (4.0, 10.0, 200)],
 )
-def test_linked_turns_at_constant_speed(period: float, rate: float) -> None:
+def test_linked_turns_at_constant_speed(period: float, rate: float, count: int) -> None:
     """No maximum at an end, and no length below the polyline's."""
-    place = linked_turns(period, rate=rate, count=round(50 * rate))
+    place = linked_turns(period, rate=rate, count=count)
     found = estimate(place, rate=rate)
     speed = found.max_speed()
     assert speed is not None

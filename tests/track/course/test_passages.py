@@ -306,6 +306,7 @@ def test_gap_and_loss_at_each_gate(pair: tuple[Path, Path]) -> None:
     assert "0.10 s ahead" in last_words(gaps, ("mine", "theirs"))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_terminal_and_page_tell_the_same(pair: tuple[Path, Path]) -> None:
     gaps = read_gate_gaps(*pair)
     assert gaps is not None
@@ -328,6 +329,7 @@ def test_the_figure_has_a_point_for_each_gate_that_both_crossed(pair: tuple[Path
     assert "0.10 s ahead" in drawing.alt
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_other_courses_are_not_compared_and_damage_is_named(pair: tuple[Path, Path], tmp_path: Path) -> None:
     assert read_gate_gaps(pair[0], folder_of(tmp_path / "shifted", [1.0, 2.0, 3.0, 4.0], beside=0.5)) is None
     assert read_gate_gaps(pair[0], folder_of(tmp_path / "short", [1.0])) is None
