@@ -153,7 +153,7 @@ SPEED, ANGLE_DEG = 3.0, 10.0
 
 
 @cache
-def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
+def up_and_back(unloading_ratio: float) -> Run:
     """Up the fall line on flat rigid skis, without friction; backwards it meets the lines that it has left."""
     ski = rigid_ski(base_height=shovel(1.2, 0.03, 1.6), running_length=1.2)
     return simulate(
@@ -164,7 +164,7 @@ def up_and_back(unloading_ratio: float, *, duration: float = 3.2) -> Run:
             unloading_ratio=unloading_ratio,
             heading_deg=180.0,
             speed=SPEED,
-            duration=duration,
+            duration=3.2,
             solver=Solver(tolerance=1e-8),
         )
     )
@@ -205,16 +205,6 @@ def test_it_stands_deeper_in_the_groove_than_in_virgin_snow() -> None:
     cut = float(np.median(run.groove.depth))
     assert up < down < cut
     assert down == pytest.approx(cut, rel=0.02)
-
-
-def test_a_track_counts_once() -> None:
-    """All energy in the snow at the end, piece by piece of every 24 mm, does not exceed what was taken from the motion.
-
-    On the way up pieces are archived; the way back takes them over and archives them again.
-    Counted twice, the loss would double.
-    """
-    run, half = up_and_back(10.0), up_and_back(10.0, duration=1.7)
-    assert run.energies["penetration"][-1] == pytest.approx(half.energies["penetration"][-1], rel=0.1)
 
 
 HARDNESS, STRENGTH, LENGTH, STANCE = 0.2, 0.06, 1.6, 0.5
@@ -303,18 +293,19 @@ def test_the_uphill_ski_swings_in_the_groove() -> None:
     assert at_rest < 0.95 * run.place[-1, 0]
 
 
-CHANGES = {"run.duration_s": 1.2, "solver.fixed": True}
 WEAKER = 4.0
 """Distance (m) from which the snow is weaker."""
 
 
 @cache
-def of_strength(strength_along: Callable[[float], float] | None = None) -> Run:
-    return simulate(load_scenario("carved-46m", changes=CHANGES), strength_along=strength_along)
+def of_strength(strength_along: Callable[[float], float] | None = None, seconds: float = 1.2) -> Run:
+    changes = {"run.duration_s": seconds, "solver.fixed": True}
+    return simulate(load_scenario("carved-46m", changes=changes), strength_along=strength_along)
 
 
 def test_the_same_strength_everywhere_gives_the_same_bits() -> None:
-    assert np.array_equal(of_strength().place, of_strength(lambda _: 1.0).place)
+    short = of_strength(lambda _: 1.0, 0.3)
+    assert np.array_equal(of_strength().place[: len(short.time)], short.place)
 
 
 def test_where_it_gets_weaker_the_edges_slip() -> None:
