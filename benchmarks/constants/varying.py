@@ -7,7 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -22,6 +22,8 @@ CASES: Final[dict[str, tuple[str, dict[str, object]]]] = {
     "skier": ("slalom-20-gates", {"run.duration_s": 6.0}),
 }
 """Built-in scenarios with changes."""
+STARTS: Final = 16
+"""Speeds at the start, from 0.999 to 1.001 of 7 m/s, of which the ends are averaged."""
 VARIABLE: Final = "SKISNOW_TUNED"
 """``KEY=FACTOR`` in the environment: the constant that is varied."""
 _HEADER: Final = """#pragma once
@@ -100,20 +102,29 @@ class TunableBuild:
         """The folder to import it from."""
         return self.folder / "package"
 
-    def ends(self, key: str = "", factor: float = 1.0) -> dict[str, tuple[str, float | None, float | None]]:
+    def ends(
+        self, key: str = "", factor: float = 1.0, cases: Mapping[str, tuple[str, dict[str, object]]] = CASES
+    ) -> dict[str, tuple[str, float | None, float | None]]:
         """Outcome and end (m) of each case with a constant times a factor."""
         import numpy as np
 
         paths = os.pathsep.join([str(self.package), str(Path(np.__file__).parents[1])])
         environment = {**os.environ, "PYTHONPATH": paths, VARIABLE: f"{key}={factor}"}
-        command = [sys.executable, "-S", "-c", _RUN, json.dumps(CASES)]
+        command = [sys.executable, "-S", "-c", _RUN, json.dumps(cases)]
         said = subprocess.run(command, check=False, env=environment, capture_output=True, cwd=self.package, text=True)
         if said.returncode != 0:
-            return dict.fromkeys(CASES, (f"ends the program ({said.returncode})", None, None))
+            return dict.fromkeys(cases, (f"ends the program ({said.returncode})", None, None))
         found = json.loads(said.stdout)
         if not Path(found.pop("package")).is_relative_to(self.package):
             raise SystemExit("another package ran than the one that was built")
         return {case: tuple(end) for case, end in found.items()}
+
+    def ends_of_starts(self, case: str, key: str = "", factor: float = 1.0) -> list[complex]:
+        """End x + i y (m) of a case for each speed at the start, with a constant times a factor."""
+        name, changes = CASES[case]
+        speeds = [7.0 + 7e-3 * (2.0 * n / (STARTS - 1) - 1.0) for n in range(STARTS)]
+        cases = {str(speed): (name, changes | {"start.speed_m_per_s": speed}) for speed in speeds}
+        return [complex(x or 0.0, y or 0.0) for _, x, y in self.ends(key, factor, cases).values()]
 
 
 def rewritten(text: str, varied: Iterable[Constant]) -> str:
