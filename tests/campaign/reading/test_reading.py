@@ -163,12 +163,6 @@ def test_padding_of_spreadsheet_programs(small: SmallCampaign) -> None:
     assert campaign.density.further == {}
 
 
-def test_short_rows_have_blank_cells(small: SmallCampaign) -> None:
-    text = small["shear.csv"].replace("S2,Nord,blade,45,6,300,10,,", "S2,Nord,blade,45,6,300,10")
-    shear = present(small.read({"shear.csv": text}).shear)
-    assert shear.spot == ("a", "")
-
-
 def test_name_falls_back_to_the_folder(small: SmallCampaign) -> None:
     toml = small["campaign.toml"]
     campaign = small.read({"campaign.toml": toml.partition("\n")[2]})

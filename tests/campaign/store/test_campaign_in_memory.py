@@ -124,14 +124,6 @@ def test_tables_problems_and_corrections_are_those_of_the_exported_files(entered
     assert_equal(ours, campaign_of_files(exported(entered.campaign)))
 
 
-def test_an_undone_cancellation_has_no_effect(entered: Entered) -> None:
-    about = entered.append(cancellation("1"))
-    undo = NewEntry(action="undo", file="penetration.csv", test="1", about=about, who="Ada")
-    entered.append(undo)
-    assert campaign_in_memory(entered.campaign).corrections == ()
-    assert_equal(campaign_in_memory(entered.campaign), campaign_of_files(exported(entered.campaign)))
-
-
 def test_only_the_chosen_tests_are_in_it(entered: Entered) -> None:
     campaign = campaign_in_memory(entered.campaign, of=[entered.campaign.test("shear.csv", "1")])
     assert campaign.penetration is None

@@ -63,18 +63,6 @@ def campaign_with(journals: Journals, *depths: str) -> tuple[str, int]:
     return id_, last
 
 
-def test_what_was_entered_is_read_as_a_campaign(store: Store, tmp_path: Path) -> None:
-    journals = Journals(store)
-    id_, _ = campaign_with(journals, "1.5", "2.25", "3")
-    write_campaign(replay_journal(journals.entries(id_)), tmp_path)
-    campaign = read_campaign(tmp_path)
-    series = present(campaign.penetration).series(0)
-    assert series.load.tolist() == [20.0, 40.0, 60.0]
-    np.testing.assert_allclose(series.penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
-    np.testing.assert_allclose(series.edge_angle, np.pi / 6, rtol=1e-15)
-    assert campaign.problems == ()
-
-
 def test_readings_are_in_the_order_of_their_loads_whichever_came_first(store: Store) -> None:
     journals = Journals(store)
     id_, last = campaign_with(journals, "1.5", "2.25")
@@ -118,17 +106,6 @@ def test_a_correction_keeps_the_first_reading_and_what_came_between(store: Store
     campaign = read_campaign(tmp_path)
     np.testing.assert_allclose(present(campaign.penetration).penetration_depth, [1.5e-3, 2.25e-3, 3e-3], rtol=1e-15)
     assert [each.old for each in campaign.corrections] == ["22.5", "2.52"]
-
-
-def test_a_cancelled_series_stays_with_its_reason(store: Store, tmp_path: Path) -> None:
-    journals = Journals(store)
-    id_, last = campaign_with(journals, "1.5", "2.25", "3")
-    journals.append(id_, NewEntry(action="cancel", file="penetration.csv", test="1", why="plate slipped"), seen=last)
-    write_campaign(replay_journal(journals.entries(id_)), tmp_path)
-    campaign = read_campaign(tmp_path)
-    assert campaign.penetration is not None
-    assert campaign.penetration.cancelled == ("plate slipped",)
-    assert len(campaign.penetration.load) == 3
 
 
 def test_undoing_takes_the_last_entry_back_and_keeps_it_in_the_history(store: Store) -> None:

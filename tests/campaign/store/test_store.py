@@ -145,17 +145,6 @@ def test_a_check_that_breaks_does_not_cost_the_data(folder: Path, place: Path, m
         assert store.list()[0].n_errors is None
 
 
-def test_a_broken_campaign_is_kept(tmp_path: Path, place: Path) -> None:
-    broken = write(tmp_path / "broken", {"campaign.toml": b"name = [", "penetration.csv": b"\x00\xff\x00"})
-    with Store.open(place) as store:
-        added = store.add(broken)
-        store.export(added.id, tmp_path / "out")
-    assert added.name == "broken"
-    assert added.n_errors is not None
-    assert added.n_errors >= 1
-    assert contents(tmp_path / "out") == contents(broken)
-
-
 def test_ids_may_be_shortened(tmp_path: Path, place: Path) -> None:
     with Store.open(place) as store:
         added = store.add(write(tmp_path / "a", {"a": b"a"}))

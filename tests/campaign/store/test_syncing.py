@@ -11,7 +11,6 @@ import pytest
 from tests.coded import raises
 
 from skisnow._support.errors import StoreError
-from skisnow.campaign import read_campaign
 from skisnow.campaign.store import (
     Journals,
     NewEntry,
@@ -22,7 +21,6 @@ from skisnow.campaign.store import (
     corrected_files,
     replay_journal,
     sync,
-    write_campaign,
 )
 from skisnow.campaign.store.engine import writing
 from skisnow.cli import main
@@ -127,16 +125,6 @@ def test_both_see_what_each_entered_offline(ada: Laptop, bo: Laptop, store: Stor
     assert (stored,) == bo.store.list() == store.list()
     ada.store.export(added.id, tmp_path / "out")
     assert contents(tmp_path / "out") == FILES
-
-
-def test_a_synchronised_campaign_is_read_as_any(ada: Laptop, bo: Laptop, group: Store, tmp_path: Path) -> None:
-    id_ = shared(ada, bo, group)
-    bo.enter(id_, "2", "1", "2", "3")
-    both_sync(ada, bo, group)
-    write_campaign(replay_journal(ada.journals.entries(id_)), tmp_path)
-    tests = read_campaign(tmp_path).penetration
-    assert tests is not None
-    assert tests.experiment == ("1", "2")
 
 
 def test_changes_of_different_cells_go_together(ada: Laptop, bo: Laptop, group: Store) -> None:
