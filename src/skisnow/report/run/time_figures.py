@@ -70,7 +70,7 @@ def _draw_radius(axes: Axes, run: Run) -> None:
         carved = math.copysign(run.scenario.ski.sidecut_radius_of_three_widths * math.cos(angle), angle)
         axes.axhline(carved, color=GREY, linestyle=(0, (1, 1.2)), linewidth=0.9)
         axes.annotate(
-            Message("sidecut radius × cos ϑ"), (1.0, carved), (0, 2), xycoords=("axes fraction", "data"),
+            Message("sidecut radius × cos ϑ"), (1.0, carved), (0, 6), xycoords=("axes fraction", "data"),
             textcoords="offset points", ha="right", va="bottom", fontsize=6.5, color=GREY,
         )  # fmt: skip
     axes.set_ylabel(Message("turn radius (m)\nto the left +"))

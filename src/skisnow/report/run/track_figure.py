@@ -152,7 +152,7 @@ def _draw_groove_details(figure: Figure, row: Sequence[Axes], run: Run) -> None:
         along, across = arc_length[chosen], aside[chosen]
         across, width = steady_edges(along, across, width)
         corners = groove_corners(along, across, width, run.numbers.get("line_spacing_m", _SPACING))
-        drawn = PolyCollection(list(corners), array=depth / MM, cmap="cividis_r", edgecolor="face", linewidth=0.2)
+        drawn = PolyCollection(list(corners), array=depth / MM, cmap="cividis_r", edgecolor="face", linewidth=0.6)
         drawn.set_clim(0.0, top)
         drawn.set_rasterized(True)
         axes.add_collection(drawn)
