@@ -78,7 +78,7 @@ def sheet(pictures: list[Image.Image]) -> Image.Image:
 
 def film(browser: Any, folder: Path) -> None:
     """A skier through gates as a moving picture."""
-    run = simulate(load_scenario(SLALOM))
+    run = simulate(load_scenario(SLALOM, changes={"solver.method": "fast", "run.duration_s": 8.0}))
     page = browser.new_page(viewport={"width": 960, "height": 760})
     page.goto(write_replay(replay_of_run(run, title=SLALOM), folder / "slalom.html").as_uri())
     does(page, FILM)
@@ -87,10 +87,10 @@ def film(browser: Any, folder: Path) -> None:
     for number in range(start, end):
         page.evaluate(f"() => window.skisnowReplay.seek({number / FRAMES_PER_SECOND})")
         page.wait_for_timeout(80)
-        frames.append(picture(page.locator(".replay-canvas").screenshot(), width=560))
+        frames.append(picture(page.locator(".replay-canvas").screenshot(), width=500))
     spacing = round(1000 / FRAMES_PER_SECOND)
     frames[0].save(
-        FOLDER / "slalom.webp", save_all=True, append_images=frames[1:], duration=spacing, loop=0, quality=45, method=6
+        FOLDER / "slalom.webp", save_all=True, append_images=frames[1:], duration=spacing, loop=0, quality=30, method=6
     )
 
 
