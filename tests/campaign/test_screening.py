@@ -228,7 +228,7 @@ def test_flags_and_largest_load_against_a_plain_loop(drawn: list[list[tuple[int,
 def test_a_flag_names_its_reading(series: Series, row: int, column: str, value: str, allowed: str) -> None:
     campaign = campaign_of(GOOD, series)
     (problem,) = flag_problems(campaign, screen_penetration(campaign), {})
-    assert (problem.severity, problem.file, problem.experiment) == ("mark", "penetration.csv", "P1")
+    assert (problem.severity, problem.file, problem.experiment) == ("flag", "penetration.csv", "P1")
     assert (problem.row, problem.column, problem.value) == (row, column, value)
     assert allowed in str(problem.allowed)
     assert problem.code in QUALITY_FLAGS

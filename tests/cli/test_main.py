@@ -36,8 +36,8 @@ def test_check_of_a_good_campaign(campaign: Path, capsys: pytest.CaptureFixture[
     assert main(["check", str(campaign), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     jsonschema.validate(found, CHECK_SCHEMA)
-    assert found["errors"] == 0
-    assert all(problem["severity"] == "mark" for problem in found["problems"])
+    assert all(problem["severity"] == "flag" for problem in found["problems"])
+    assert (found["errors"], found["warnings"], found["flags"]) == (0, 0, len(found["problems"]))
     assert files_below(campaign.parent) == before
 
 

@@ -10,7 +10,7 @@ from typing import Final, Literal, TypeAlias
 
 from .._support.messages import Message, joined
 
-Severity: TypeAlias = Literal["error", "warning", "mark"]
+Severity: TypeAlias = Literal["error", "warning", "flag"]
 
 ERROR_CODES = (
     "missing_column",
@@ -38,7 +38,7 @@ WARNING_CODES = (
     "separator",
     "converted_unit",
 )
-_SEVERITIES: Final = {"error": Message("error"), "warning": Message("warning"), "mark": Message("flag")}
+_SEVERITIES: Final = {"error": Message("error"), "warning": Message("warning"), "flag": Message("flag")}
 LONGEST_VALUE: Final = 200
 """Characters of a value that its sentence shows."""
 

@@ -188,7 +188,7 @@ def flag_problems(
     *,
     geometry: GeometryForm = "extended",
 ) -> list[Problem]:
-    """List every quality flag as a problem of severity ``mark``.
+    """List every quality flag as a problem of severity ``flag``.
 
     Parameters
     ----------
@@ -247,7 +247,7 @@ def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
         "below_resolution": ("depth_mm", depth, _resolution_limit(campaign)),
     }[code]
     row, experiment = int(tests.row[index]), tests.experiment[index]
-    return Problem("mark", code, SHEAR.file, row, column, experiment, value, allowed, _effect_of_flag(campaign, code))
+    return Problem("flag", code, SHEAR.file, row, column, experiment, value, allowed, _effect_of_flag(campaign, code))
 
 
 _Cause: TypeAlias = tuple[int, str | None, str | None, str]
@@ -271,7 +271,7 @@ class _FlaggedReadings:
         row = int(rows[reading])
         experiment = self._tests.experiment[index]
         follows = _effect_of_flag(self._campaign, code)
-        return Problem("mark", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
+        return Problem("flag", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
 
     def _depth(self, reading: int) -> str:
         """Depth in mm, without the unit."""

@@ -28,10 +28,11 @@ def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 def check(options: argparse.Namespace) -> int:
     """Print the problems; 1 if any is an error."""
     problems, notes = _problems(options.campaign)
-    errors, warnings, flags = (_count(problems, severity) for severity in ("error", "warning", "mark"))
+    errors, warnings, flags = (_count(problems, severity) for severity in ("error", "warning", "flag"))
     if options.json:
         entries = [problem.as_dict() for problem in problems]
-        print(json.dumps({"errors": errors, "warnings": warnings, "problems": entries}, ensure_ascii=False))
+        counts = {"errors": errors, "warnings": warnings, "flags": flags}
+        print(json.dumps(counts | {"problems": entries}, ensure_ascii=False))
     else:
         from ..campaign.problems import lines_of
 

@@ -105,7 +105,7 @@ def screened_both(campaign: Campaign, *, geometry: GeometryForm) -> tuple[Screen
 def quality_flags(
     campaign: Campaign, *, geometry: GeometryForm = "extended", screened: tuple[Screened, Screened] | None = None
 ) -> list[Problem]:
-    """Every quality flag of a campaign as a problem of severity ``mark``, the one that needs the hardness included.
+    """Every quality flag of a campaign as a problem of severity ``flag``, the one that needs the hardness included.
 
     ``screened`` is the result of `screened_both`, if already computed.
     """

@@ -124,7 +124,7 @@ def problem(severity: str) -> Problem:
 
 
 def test_counts_of_the_check_are_kept(folder: Path, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = tuple(map(problem, ["error", "warning", "warning", "mark", "mark", "mark"]))
+    found = tuple(map(problem, ["error", "warning", "warning", "flag", "flag", "flag"]))
     found += (replace(problem("warning"), needs_action=False),)
     monkeypatch.setattr("skisnow.campaign.reading.campaign.check_campaign", lambda _: found)
     with Store.open(place) as store:
