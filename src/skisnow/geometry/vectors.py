@@ -67,17 +67,21 @@ def applied(rows: Iterable[Vector], a: Vector) -> Vector:
 
 
 def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:
-    """Axes of a boot, ahead, left and off the base as rows, (3, 3).
+    """Array (3, 3) of `axis_rows`."""
+    return np.array(axis_rows(edge_angle, pitch, heading))
+
+
+def axis_rows(edge_angle: float, pitch: float, heading: float) -> tuple[Vector, Vector, Vector]:
+    """Axes of a boot, ahead, left and off the base as rows.
 
     edge_angle: about the ski, the left edge down for positive ones (rad): the last rotation.
     pitch: the tip up for positive ones (rad).
     heading: to the left for positive ones (rad): the first rotation.
     """
     (sh, ch), (sp, cp), (se, ce) = ((math.sin(a), math.cos(a)) for a in (heading, pitch, edge_angle))
-    ahead = np.array([ch * cp, sh * cp, sp])
-    level = np.array([-sh, ch, 0.0])
-    above = np.array([-ch * sp, -sh * sp, cp])
-    return np.array([ahead, ce * level - se * above, se * level + ce * above])
+    level, above = (-sh, ch, 0.0), (-ch * sp, -sh * sp, cp)
+    left, off = minus(times(ce, level), times(se, above)), plus(times(se, level), times(ce, above))
+    return (ch * cp, sh * cp, sp), left, off
 
 
 def angles_of(axes: FloatArray) -> FloatArray:

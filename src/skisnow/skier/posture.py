@@ -11,7 +11,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.units import STANDARD_GRAVITY
 from ..dynamics import BootPose
-from ..geometry.vectors import axes_of, combined, cross, minus, plus, times
+from ..geometry.vectors import axis_rows, combined, cross, minus, plus, times
 from ..scenario.skier import Skier
 from .seen import Seen
 
@@ -159,7 +159,7 @@ class Posture:
             from_centre = (-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height)
             arm = combined(from_centre, body)
             moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
-            axes = [combined(axis, body) for axis in axes_of(edge, pitch, toe).tolist()]
+            axes = [combined(axis, body) for axis in axis_rows(edge, pitch, toe)]
             across = combined((-math.sin(toe), math.cos(toe), 0.0), body)
             turning = plus(spin, minus(times(toe_rate, body[2]), times(pitch_rate, across)))
             turning = minus(turning, times(edge_rate, axes[0]))
