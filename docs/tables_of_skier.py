@@ -38,14 +38,19 @@ from watched_slope import DAY, write_profile
 
 sys.path.append(str(Path(__file__).parents[1]))
 from benchmarks.page_tables import write_tables
+from benchmarks.skier.cases import CASES, Start
 
-from skisnow import Run, Scenario, time_gates
+from skisnow import Run, Scenario, load_scenario, simulate, time_gates
 from skisnow.scenario import scenario_values
 from skisnow.scenario.keys import SCENARIO_KEYS
 
 SHARE = 0.2
 SHORT = 4.0
-FOR_GATES = ("skier.pole_clearance_m", "skier.line_rate_per_s")
+KICKER = "kicker, 10°"
+KEYS_OF = {
+    "slalom-20-gates": ("skier.pole_clearance_m", "skier.line_rate_per_s"),
+    KICKER: ("skier.leg_load", "skier.shortest_leg_m", "skier.highest_flight_m"),
+}
 
 WATCHED = (
     ("slalom-20-gates", 4420.0, 203.0),
@@ -281,12 +286,22 @@ def sensitivity() -> Iterator[str]:
     """What a fifth more or less of each number of the skier moves after 4 s."""
     yield "| key | value | moves the end by, −20 %, +20 % (m) | load, 5 to 12 Hz (N) | greatest lean (°) |"
     yield "| --- | ---: | ---: | ---: | ---: |"
-    for name in ("skier-10deg", "slalom-20-gates"):
-        base = run_of(name, ("run.duration_s", SHORT))
+    others = ["skier.stops_after_s", *(key for keys in KEYS_OF.values() for key in keys)]
+    for name in ("skier-10deg", *KEYS_OF):
+        base = _short(name)
         yield f"| `{name}` as it is | | | {swing(base):.0f} | {_lean(base)} |"
         for key, value in _numbers(base.scenario):
-            if (key in FOR_GATES) is (name == "slalom-20-gates"):
+            if key in KEYS_OF.get(name, ()) or (name not in KEYS_OF and key not in others):
                 yield f"| `{key.removeprefix('skier.')}` | {value:g} | {_moved(name, base, key, value)} |"
+
+
+def _short(name: str, *changes: tuple[str, object]) -> Run:
+    """The first seconds of a built-in scenario, or of the benchmark's kicker, with changes."""
+    if name != KICKER:
+        return run_of(name, ("run.duration_s", SHORT), *changes)
+    case = next(case for case in CASES if case.name == KICKER).scenario(Start())
+    keys = {"solver.method": "fast", "run.duration_s": SHORT, "skier.first_turn_s": 100.0, **dict(changes)}
+    return simulate(load_scenario("skier-10deg", changes=keys).with_(slope=case.slope, start=case.start))
 
 
 def _numbers(turn: Scenario) -> Iterator[tuple[str, float]]:
@@ -300,7 +315,7 @@ def _numbers(turn: Scenario) -> Iterator[tuple[str, float]]:
 def _moved(name: str, base: Run, key: str, value: float) -> str:
     highest = SCENARIO_KEYS[key].highest
     top = min(value * (1.0 + SHARE), highest)
-    runs = [run_of(name, ("run.duration_s", SHORT), (key, each)) for each in (value * (1.0 - SHARE), top)]
+    runs = [_short(name, (key, each)) for each in (value * (1.0 - SHARE), top)]
     ends = ", ".join(
         f"{math.dist(each.place[-1], base.place[-1]):.3f}" if each.time[-1] == base.time[-1] else each.outcome
         for each in runs
