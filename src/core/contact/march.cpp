@@ -122,11 +122,13 @@ struct Touch {
         0.5 * (lines.values[MARK_STATION][slot] - s[STATION][i]) * (s[DEPTH_CLIMB][i] - lines.values[MARK_CLIMB][slot]);
     if (!was_in_snow(deeper) || !(edge_depth(deeper) > 0.0) || !(bend > 0.0)) return false;
     const double to_end = bend + s[LINE_NORMAL_2][i] * rise_beside_mean();
-    const double left = s[LEFT_X][i], right = s[RIGHT_X][i], per_width = 1.0 / (left - right);
     double u[2], aside[2];
     for (int k = 0; k < 2; k++)
-      u[k] = 0.5 * (to_end + of_line(LEFT_MARK_DEPTH, k) - edge_depth(k)) / bend,
+      u[k] = 0.5 * (to_end + of_line(LEFT_MARK_DEPTH, k) - edge_depth(k)),
       aside[k] = of_line(LEFT_MARK, k) - edge_place(k);
+    if (std::max(u[0], u[1]) <= 0.0 || std::min(u[0], u[1]) >= bend) return false;
+    u[0] /= bend, u[1] /= bend;
+    const double left = s[LEFT_X][i], right = s[RIGHT_X][i], per_width = 1.0 / (left - right);
     const auto at = [&](const double* of, double x) { return (of[0] * (x - right) + of[1] * (left - x)) * per_width; };
     const auto place_of = [&](double v) { return ((v - u[1]) * left + (u[0] - v) * right) / (u[0] - u[1]); };
     const double low = std::max(s[WET_FROM][i], std::min(place_of(0.0), place_of(1.0)));

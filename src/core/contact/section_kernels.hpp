@@ -12,21 +12,6 @@ inline V table_place(const Runner& runner, V station) {
   return within((station - runner.tail) * runner.places_per_metre(), 0.0, runner.places - 1.0);
 }
 
-// Rows of the ski's table at the stations of all lanes, linear between its places: half width, its slope, height of the
-// base, its slope.
-template <class V>
-inline void look_up_shape(const Runner& runner, V place, V (&out)[ROW]) {
-  Row rows[WIDTH<V>];
-  const WholeParts<V> at(minimum(place, all<V>(runner.places - 2.0)));
-  const V beyond = place - at.value();
-  for (int lane = 0; lane < WIDTH<V>; lane++) {
-    const double* row = runner.table.data() + ROW * at[lane];
-    const Row here = load<Row>(row);
-    rows[lane] = here + beyond[lane] * (load<Row>(row + ROW) - here);
-  }
-  transpose<V>(rows, out);
-}
-
 // [give_share] The length of ski that belongs to each line: halfway to its neighbours, and no farther than tip and
 // tail. Lines beyond the ends lie one spacing off.
 template <class V>
@@ -76,24 +61,39 @@ struct BentBase {
   V element, length, in_element;    // element of the beam, its length, place in it from the front
   V sine{}, cosine, twist_slope{};  // sine, cosine and slope of the twist
 
+  // The ski's table is linear between its places. The element of a place is also that of the stations behind it; in
+  // front of that element's first node they are in the one before.
   SKISNOW_INLINE BentBase(const Runner& runner, const Pose& pose, V station) : cosine(all<V>(1.0)) {
     const V place = table_place(runner, station);
-    const bool bends = !pose.beam.empty();
-    look_up_shape<V>(runner, place, shape);
-    Row nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
-    const WholeParts<V> at(place);
+    const WholeParts<V> at(minimum(place, all<V>(runner.places - 2.0)));
+    const V beyond = place - at.value();
+    int number[WIDTH<V>];
+    Row rows[WIDTH<V>], nodes[WIDTH<V>], front[WIDTH<V>], rear[WIDTH<V>];
+    const auto take_element = [&](int lane, int e) {
+      number[lane] = e, nodes[lane] = load<Row>(runner.element_rows.data() + ROW * e);
+    };
     for (int lane = 0; lane < WIDTH<V>; lane++) {
-      int e = runner.element[std::size_t(at[lane])];
-      if (station[lane] > runner.node[std::size_t(e)] && e > 0) e--;
-      nodes[lane] = load<Row>(runner.element_rows.data() + ROW * e);
-      if (!bends) continue;
-      const double* beam = pose.beam.data() + 3 * e;  // rows of four overlap: twist in front, then the node behind
-      front[lane] = load<Row>(beam), rear[lane] = load<Row>(beam + 2);
+      const double* row = runner.table.data() + ROW * at[lane];
+      const Row here = load<Row>(row);
+      rows[lane] = here + beyond[lane] * (load<Row>(row + ROW) - here);
+      take_element(lane, runner.element[std::size_t(at[lane])]);
     }
+    transpose<V>(rows, shape);
     V row[ROW];
     transpose<V>(nodes, row);
+    if (any(station > row[0])) {
+      for (int lane = 0; lane < WIDTH<V>; lane++)
+        if (station[lane] > nodes[lane][0] && number[lane] > 0) take_element(lane, number[lane] - 1);
+      transpose<V>(nodes, row);
+    }
     length = row[1], in_element = (row[0] - station) * row[2], element = row[3];
-    if (bends) bend(front, rear, row[2]);
+    if (pose.beam.empty()) return;
+    for (int lane = 0; lane < WIDTH<V>; lane++) {
+      const double* beam =
+          pose.beam.data() + 3 * number[lane];  // rows of four overlap: twist in front, the node behind
+      front[lane] = load<Row>(beam), rear[lane] = load<Row>(beam + 2);
+    }
+    bend(front, rear, row[2]);
   }
 
  private:
