@@ -106,6 +106,13 @@ def test_impossible_parameters_are_rejected(drag_area: float, air_density: float
 ANGLES_DEG = (30.0, 45.0, 60.0, 75.0, 90.0)
 
 
+@pytest.mark.parametrize(("angle_deg", "depth_mm"), list(zip(ANGLES_DEG, (1.25, 2.01, 2.85, 3.82, 4.99), strict=True)))
+def test_worked_example(angle_deg: float, depth_mm: float) -> None:
+    """900 N on 1.7 m of edge, S = 0.05 N/mm², μ_t = 0.06: the depth that balances."""
+    stress = float(cutting_stress(0.05e6, math.radians(angle_deg), transverse_friction=0.06))
+    assert 900.0 / (1.7 * stress) * 1e3 == pytest.approx(depth_mm, abs=0.005)
+
+
 def test_a_vertical_blade_without_friction_cuts_at_twice_the_shear_strength() -> None:
     assert float(cutting_stress(1.0, math.pi / 2, transverse_friction=0.0)) == pytest.approx(2.0)
     # Eqn 13 at 90° is 0.0344 N/mm² as printed, so S = 0.0172

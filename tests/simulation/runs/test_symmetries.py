@@ -261,6 +261,33 @@ def turned(degrees: float, **changes: object) -> Run:
     return simulate(load_scenario("carved-46m", changes=STRAIGHT | changes | {"sledge.edge_angle_deg": degrees}))
 
 
+@pytest.mark.parametrize(
+    ("degrees", "end"),
+    [
+        (0.5, (41.6075, 24.6194)),
+        pytest.param(1.0, (27.7411, 33.1881), marks=pytest.mark.slow),
+        pytest.param(3.0, (14.3869, 32.3952), marks=pytest.mark.slow),
+    ],
+)
+def test_it_ends_where_the_shear_moves_across_at_once(degrees: float, end: tuple[float, float]) -> None:
+    """The former rule moved the place of the shear across the base over ±2°. Over ±0.02° its ends are these.
+
+    It had friction along the ski, and pressed grooves only at the ends of steps: with 0.5 ms they differ by 27 mm at
+    0.5°, with 0.25 ms by 6 mm. From 3° on its blend had no effect.
+    """
+    fixed = {"solver.fixed": True, "solver.step_ms": 0.25}
+    run = turned(degrees, **fixed, **{"friction.direction": "along-ski"})
+    assert run.outcome == "finished"
+    assert float(np.hypot(*(run.place[-1, :2] - end))) < 0.015
+
+
+@pytest.mark.parametrize("degrees", [0.05, 1.0])
+def test_mirrored_runs_end_at_mirrored_places(degrees: float) -> None:
+    one, other = (turned(each, **{"run.duration_s": 1.0}) for each in (degrees, -degrees))
+    assert other.place[-1] == pytest.approx(one.place[-1] * [1.0, -1.0, 1.0], abs=1e-6)
+    assert one.place[-1, 1] > 0.02  # to the side of the edge
+
+
 @pytest.mark.parametrize("degrees", [0.0, 0.02, 1.0])
 @pytest.mark.parametrize("hardness", [0.01, 2.0])
 def test_a_start_is_found(degrees: float, hardness: float) -> None:
