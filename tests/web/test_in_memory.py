@@ -16,7 +16,7 @@ from skisnow.web.campaign_analysis import CampaignSource, Choice, Numbers, analy
 from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
-from skisnow.web.transfer import kept_files
+from skisnow.web.transfer import entry_files, kept_files, write_entry
 from tests.present import present
 
 from ..campaign.recordings import plain_snow
@@ -66,6 +66,14 @@ def correct(lab: Lab, id_: str) -> None:
 
 def experiments(results: dict[str, Any]) -> Any:
     return results["penetration"]["experiments"]
+
+
+def test_a_campaign_being_entered_is_analysed_as_its_export(lab: Lab, tmp_path: Path) -> None:
+    id_ = entered(lab)
+    write_entry(lab, id_, tmp_path / "export")
+    found = analyse_files(entry_files(lab, id_), Choice())
+    assert isinstance(found, Numbers)
+    assert experiments(found.results) == experiments(analyse(read_campaign(tmp_path / "export")).results)
 
 
 def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: Lab, tmp_path: Path) -> None:

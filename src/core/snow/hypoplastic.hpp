@@ -1,6 +1,6 @@
 // Snow that remembers, at a point: pressed to a depth ε it bears H ε; where it was pressed deeper before, by a lift of
 // the base above that, it bears H ε - E lift (E = k_u - H) as far as that pushes, else nothing. Stated once, for runs
-// (pressure_kernels.hpp) and for the steady carve (carve_strip.cpp).
+// (pressure_kernels.hpp) and for the steady carve (carve/strip.hpp).
 #pragma once
 
 #include "support/lanes.hpp"

@@ -8,9 +8,11 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.present import present
 
+from skisnow._support.errors import FieldDataError
 from skisnow.campaign import Campaign, campaign_of_files, read_campaign
 from skisnow.estimation import analyse, quality_flags, results_dict
 
@@ -119,6 +121,15 @@ def numbers_of(campaign: Campaign) -> dict[str, object]:
     }
 
 
+def test_results_are_those_of_the_folder(small: SmallCampaign) -> None:
+    small["notes.txt"] = "wind"
+    folder = small.read()
+    campaign = campaign_of_files(at_hand(small))
+    assert numbers_of(campaign) == numbers_of(folder)
+    assert campaign.unread_files == folder.unread_files == ("notes.txt",)
+    assert np.array_equal(present(campaign.penetration).load, present(folder.penetration).load)
+
+
 def test_nothing_is_opened(small: SmallCampaign, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("the disk was asked")
@@ -128,6 +139,17 @@ def test_nothing_is_opened(small: SmallCampaign, monkeypatch: pytest.MonkeyPatch
         monkeypatch.setattr(os, name, refused)
     monkeypatch.setattr(Path, "open", refused)
     assert campaign_of_files(files).name == "north slope"
+
+
+def test_errors_are_those_of_the_folder(small: SmallCampaign) -> None:
+    small.replace("shear.csv", "12.25", "twelve")
+    small["Density.csv"] = small.pop("density.csv")
+    with pytest.raises(FieldDataError) as told:
+        small.read()
+    with pytest.raises(FieldDataError) as found:
+        campaign_of_files(at_hand(small))
+    assert found.value.problems == told.value.problems
+    assert len(found.value.problems) == 2
 
 
 def test_files_that_are_named_alone_are_reported(small: SmallCampaign) -> None:
