@@ -221,7 +221,7 @@ def test_an_outlier_stays_unless_it_is_excluded(make_campaign: MakeCampaign, ext
     assert found.codes()[-1] == ["hardness_outlier"]
     assert found.used.tolist() == [True] * 5 + [used]
     flag = next(p for p in quality_flags(campaign) if p.code == "hardness_outlier")
-    assert (flag.severity, flag.file, flag.experiment, flag.row) == ("mark", "penetration.csv", "p5", 19)
+    assert (flag.severity, flag.file, flag.experiment, flag.row) == ("flag", "penetration.csv", "p5", 19)
 
 
 def test_excluding_flags_keep_a_series_out(make_campaign: MakeCampaign) -> None:

@@ -26,7 +26,7 @@ _CELLS = b"run,station_m,time_s,time_sd_s\nfirst,20,3.34,0.01\nfirst,40,5.1,0.01
 _GROOVES = b"depth_mm,width_mm,turn_radius_m\n12.5,40,14\n13,41,\n11,38,15.5\n12,,15\n"
 _COURSE = b"gate,x_m,y_m,side,outer_x_m,outer_y_m\n1,10,3,left,10,8\n2,20,-3,right,20,-8\n3,30,3,left,,\n"
 _GATES = b"gate,outcome,time_s,x_m,y_m\n1,passed,1.5,10,3\n2,missed,,20,-3\n3,passed,4.5,30,3\n"
-_LINE = b"gate,aside_m,along,turning,apex_x_m\n1,0.8,0.5,0.6,10\n2,0.9,0.4,0.5,20\n3,0.8,0.5,0.6,30\n"
+_LINE = b"gate,aside_m,along,turning,speed,apex_x_m\n1,0.8,0.5,0.6,1,10\n2,0.9,0.4,0.5,1,20\n3,0.8,0.5,0.6,1,30\n"
 _WAYPOINTS = b"""<?xml version="1.0" encoding="UTF-8"?>
 <gpx version="1.1" creator="x" xmlns="http://www.topografix.com/GPX/1/1">
 <wpt lat="47.1" lon="11.3"><ele>2000</ele><name>1</name><type>left</type></wpt>
