@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from skisnow import Profile, load_scenario
+from skisnow import Profile, load_scenario, simulate
+from skisnow._support.errors import ParameterError
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from skisnow.skier.edges import ForceMap
@@ -31,6 +32,7 @@ from skisnow.skier.yaw import (
     _dynamics,
     yaw_gain,
 )
+from tests.coded import raises
 
 TURNS = load_scenario("skier-10deg")
 HEIGHT, UP = 0.6, np.array([0.0, 0.0, 1.0])
@@ -268,6 +270,22 @@ def test_the_gain_of_the_yaw_is_that_of_the_least_cost() -> None:
         inputs[:, 2 * k : 2 * k + 2] += steps[k, :, 7:]
     best = np.linalg.lstsq(np.array(rows), np.array(sides), rcond=None)[0]
     assert -gain @ state == pytest.approx(best[:2], rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("command", "code", "fields"),
+    [
+        (None, "wrong_kind", {"kind": "NoneType"}),
+        (Command(edge=(math.nan, 0.1)), "not_a_number", {"name": "edge"}),
+        (Command(edge=(0.1,)), "not_a_number", {"name": "edge"}),  # type: ignore[arg-type]
+        (Command(edge=(0.1, 0.1), load=math.inf), "not_a_number", {"name": "load"}),
+        (Command(edge=(0.1, 0.1), aside="left"), "not_a_number", {"name": "aside"}),  # type: ignore[arg-type]
+        (Command(edge=(0.1, 0.1), ahead=None), "not_a_number", {"name": "ahead"}),  # type: ignore[arg-type]
+    ],
+)
+def test_a_controller_that_returns_no_numbers_is_told(command: Any, code: str, fields: dict[str, str]) -> None:
+    with raises(ParameterError, code, **fields):
+        simulate(TURNS.with_(duration_s=0.1, method="fast"), controller=SimpleNamespace(command=lambda *_: command))
 
 
 def test_the_grip_is_learnt_where_skis_slide() -> None:

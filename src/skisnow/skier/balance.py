@@ -20,7 +20,7 @@ from .carve import CarveControl, CarvesOverTime, Pursuit, Steering
 from .control import Balance, Controller, SkidControl, standing
 from .edges import Edges, ForceMap
 from .plan import Gravity, HalfWaves, Line, Plan, RecedingLine, SideSlip, TurnsOverTime, apexes_of
-from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture
+from .posture import ASIDE, LEFT_EDGE, RIGHT_EDGE, Posture, require_command
 from .seen import Moment, Seen, seen_at
 from .wedge import WedgeControl
 from .yaw import Body
@@ -230,6 +230,8 @@ class BalancedSkier:
             command = standing(seen, self.posture, (self.posture.edge, float(self.posture.numbers[RIGHT_EDGE])))
         else:
             command = control.command(seen, self.posture, dt)
+            if built_in is None:
+                require_command(command, moment.time)
         balance = None if built_in is None else built_in.balance
         self.posture.step(command, seen, dt)
         self.records.append(BalanceRecord(seen, balance, self.posture.numbers.copy()))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from numbers import Real
 from typing import Final
 
 import numpy as np
 
 from .._support.arrays import FloatArray
+from .._support.errors import ParameterError
 from .._support.units import STANDARD_GRAVITY
 from ..dynamics import BootPose
 from ..geometry.vectors import axis_rows, combined, cross, minus, plus, times
@@ -85,6 +87,22 @@ class Command:
     toe: tuple[float, float] = (0.0, 0.0)
     stance: float | None = None
     edge_rate: float | None = None
+
+
+def require_command(command: object, time: float) -> None:
+    """Raise ParameterError unless a controller returned, at a time (s), a command of finite numbers."""
+    if not isinstance(command, Command):
+        raise ParameterError("at {time:g} s the controller returned a {kind}; return a skisnow.skier.Command").tag(
+            "wrong_kind", time=time, kind=type(command).__name__
+        )
+    for each in fields(command):
+        value, shape = getattr(command, each.name), (2,) if each.name in {"edge", "toe"} else ()
+        if value is None and each.default is None:
+            continue
+        if np.shape(value) != shape or not all(isinstance(n, Real) and math.isfinite(n) for n in np.ravel(value)):
+            raise ParameterError(
+                "at {time:g} s the controller's {name} is {value}; give finite numbers, such as {example}"
+            ).tag("not_a_number", time=time, name=each.name, value=str(value), example="(0.1, 0.1)" if shape else "0.1")
 
 
 @dataclass(slots=True)
