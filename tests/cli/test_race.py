@@ -168,7 +168,7 @@ def test_a_search_is_reported_and_written(tmp_path: Path, capsys: Printed) -> No
     assert found["gained_s"] == pytest.approx(found["began_from_s"] - found["time_s"])
     assert found["gained_s"] > 0.0
     assert found["evaluations"] >= 25
-    (margin,) = found["worth"]  # of the line that it began from: a point knows nothing of the snow
+    (margin,) = found["worth"]  # of the start line: one point on one snow has no spread
     assert margin["interval_s"] == pytest.approx([found["gained_s"]] * 2)
     assert margin["verdict"] == "slower"
     rows = table(tmp_path / "a" / "line.csv")

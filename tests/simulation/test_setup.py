@@ -216,7 +216,7 @@ NUDGED = ["start.speed_m_per_s", "sledge.edge_angle_deg", "snow.H_V_N_per_mm3", 
 
 
 def test_each_repetition_refines_one_choice_from_what_was_in_force() -> None:
-    """A fixed step in place of the tolerance; the places of a delayed depth where there is one."""
+    """A fixed step instead of the tolerance; the places of a delayed depth if there is one."""
     run = straight_run(load_scenario("carved-46m", changes=STRAIGHT))  # in force: 40 elements, 18 mm, 4 mm
     plain = run.scenario.solver
     assert refined_solvers(run) == {

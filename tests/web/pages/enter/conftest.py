@@ -61,7 +61,7 @@ def undo_button(page: Sheet) -> str:
 
 @dataclass
 class Entered:
-    """A campaign that is being entered, with its pages and what is stored of it."""
+    """A campaign that is being entered, its pages and its stored entries."""
 
     desk: Desk
     id_: str

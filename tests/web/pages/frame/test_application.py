@@ -159,7 +159,7 @@ async def hi(_: Scope, receive: Receive, send: Send) -> None:
 
 
 class Patience:
-    """The server's side of a connection to nobody, and for how long it waits with it."""
+    """The server's end of a simulated connection, with its timers."""
 
     def __init__(self) -> None:
         self.wire = Mock(spec=asyncio.Transport)
