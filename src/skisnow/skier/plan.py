@@ -6,7 +6,7 @@ import bisect
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Final, Protocol
 
 import numpy as np
@@ -164,45 +164,49 @@ class RecedingLine:
         self.apexes = with_run_out(apexes)
         end = apexes[-1][0]
         last = self.apexes[-1][0]
-        self._first, self._quintic = apexes[0][0], (0.0, 1.0, np.zeros(6))
+        self._first, self._quintic = apexes[0][0], (0.0, 1.0, [0.0] * 6)
         x = np.arange(apexes[0][0], last + 15.0, TABLE_STEP)
         beyond = HalfWaves(self.apexes[len(apexes) - 1 :])
         rows = np.array([line.at(float(each)) if each < end else beyond.at(float(each)) for each in x])
-        self._course = np.arctan(rows[:, 1])
-        self._bend = rows[:, 2]
-        self._curvature = rows[:, 2] * np.cos(self._course) ** 3
-        self._aside = rows[:, 0]
+        course = np.arctan(rows[:, 1])
+        self._course, self._bend = course.tolist(), rows[:, 2].tolist()
+        self._curvature = (rows[:, 2] * np.cos(course) ** 3).tolist()
+        ways = [x1 - x0 for (x0, _), (x1, _) in pairwise(self.apexes)]
+        self._last_way = ways[-1]
+        until = (place - JOINS * max(ways[i : i + 2]) for i, (place, _) in enumerate(self.apexes[1:]))
+        self._join_before = list(accumulate(until, max))  # x (m) before which each apex but the start is joined
 
     def at(self, x: float) -> tuple[float, float]:
         """Course (rad) and curvature (1/m) of the line at a place down the slope (m)."""
         place = min(max((x - self._first) / TABLE_STEP, 0.0), len(self._course) - 2.0)
         i = int(place)
-        share = place - i
+        share, course, curvature = place - i, self._course, self._curvature
         return (
-            float(self._course[i] + share * (self._course[i + 1] - self._course[i])),
-            float(self._curvature[i] + share * (self._curvature[i + 1] - self._curvature[i])),
+            course[i] + share * (course[i + 1] - course[i]),
+            curvature[i] + share * (curvature[i + 1] - curvature[i]),
         )
 
     def ahead(self, seen: Seen, gravity: Gravity) -> Planned:
         """Along the path and the line at the present speed."""
         x, y = seen.place
         until = self._join(x, y, max(-STEEPEST_COURSE, min(STEEPEST_COURSE, seen.course)))
-        _, way, c = self._quintic
+        _, way, (_, c1, c2, c3, c4, c5) = self._quintic
         speed = max(seen.speed, SLOWEST)
-        place = x + 0.5 * STEP * speed * math.cos(seen.course)
-        force, course = np.empty(len(AHEAD)), np.empty(len(AHEAD))
-        for k in range(len(AHEAD)):
+        step, square, down = STEP * speed, speed**2, gravity.down
+        place = x + 0.5 * step * math.cos(seen.course)
+        force, course = [], []
+        for _ in AHEAD:
             if place < until:
                 u = (place - x) / way
-                slope = (c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + 5 * u * c[5])))) / way
-                bend = (2 * c[2] + u * (6 * c[3] + u * (12 * c[4] + 20 * u * c[5]))) / way**2
+                slope = (c1 + u * (2 * c2 + u * (3 * c3 + u * (4 * c4 + 5 * u * c5)))) / way
+                bend = (2 * c2 + u * (6 * c3 + u * (12 * c4 + 20 * u * c5))) / way**2
                 along, curvature = math.atan(slope), bend / (1.0 + slope**2) ** 1.5
             else:
                 along, curvature = self.at(place)
-            force[k] = speed**2 * curvature + gravity.down * math.sin(along)
-            course[k] = along
-            place += STEP * speed * math.cos(along)
-        return Planned(force, course)
+            force.append(square * curvature + down * math.sin(along))
+            course.append(along)
+            place += step * math.cos(along)
+        return Planned(np.array(force), np.array(course))
 
     def _join(self, x: float, y: float, course: float) -> float:
         """Lay the path to the apex that is joined; gives its x (m)."""
@@ -217,21 +221,19 @@ class RecedingLine:
         d1 = -a1 - 2.0 * a2
         d2 = self._bend_at(i) * way**2 - 2.0 * a2
         rest = (10 * d0 - 4 * d1 + 0.5 * d2, -15 * d0 + 7 * d1 - d2, 6 * d0 - 3 * d1 + 0.5 * d2)
-        self._quintic = (x, way, np.array([a0, a1, a2, *rest]))
+        self._quintic = (x, way, [a0, a1, a2, *rest])
         return place
 
     def _bend_at(self, i: int) -> float:
         """Second derivative (1/m) at a row of the table, of the turn behind it."""
-        return float(self._bend[min(i + 1, len(self._bend) - 1)])
+        return self._bend[min(i + 1, len(self._bend) - 1)]
 
     def _next_apex(self, x: float) -> tuple[float, float]:
-        ways = np.diff([place for place, _ in self.apexes])
-        for i in range(1, len(self.apexes)):
-            place, aside = self.apexes[i]
-            if place - x > JOINS * float(ways[i - 1 : i + 1].max()):
-                return place, aside
+        i = bisect.bisect_right(self._join_before, x) + 1
+        if i < len(self.apexes):
+            return self.apexes[i]
         place, aside = self.apexes[-1]
-        return max(place, x) + float(ways[-1]), aside
+        return max(place, x) + self._last_way, aside
 
 
 def with_run_out(apexes: Sequence[tuple[float, float]], *, turns: int = 3) -> list[tuple[float, float]]:

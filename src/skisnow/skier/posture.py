@@ -168,21 +168,25 @@ class Posture:
         origin = (self.centre[0], 0.0, self.centre[1])
         spin = minus(times(lean_rate, body[0]), (0.0, 0.0, yaw_rate))
         poses = []
-        for side, edge, toe, edge_rate, toe_rate in zip(
-            (0.5, -0.5), edges_and_toes[:2], edges_and_toes[2:], turns[:2], turns[2:], strict=True
-        ):
+        for k, side in enumerate((0.5, -0.5)):
+            edge, toe, edge_rate, toe_rate = edges_and_toes[k], edges_and_toes[k + 2], turns[k], turns[k + 2]
             sine = math.sin(edge)
             bent = math.hypot(sine, BLUNT)
             lift_rate = self.half_width * sine * math.cos(edge) * edge_rate / bent
             from_centre = (-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height)
             arm = combined(from_centre, body)
             moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
-            axes = [combined(axis, body) for axis in axis_rows(edge, pitch, toe)]
-            across = combined((-math.sin(toe), math.cos(toe), 0.0), body)
-            turning = plus(spin, minus(times(toe_rate, body[2]), times(pitch_rate, across)))
-            turning = minus(turning, times(edge_rate, axes[0]))
-            numbers = plus(arm, origin), axes, plus(moving, cross(spin, arm)), turning
-            poses.append(BootPose(*(np.array(each) for each in numbers)))
+            rows = axis_rows(edge, pitch, toe)
+            turns_by = minus(
+                (pitch_rate * math.sin(toe), -pitch_rate * math.cos(toe), toe_rate), times(edge_rate, rows[0])
+            )
+            numbers = (
+                plus(arm, origin),
+                [combined(axis, body) for axis in rows],
+                plus(moving, cross(spin, arm)),
+                plus(spin, combined(turns_by, body)),
+            )
+            poses.append(BootPose(*map(np.array, numbers)))
         return poses
 
     def step(self, command: Command, seen: Seen, dt: float) -> None:
