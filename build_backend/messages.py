@@ -46,7 +46,7 @@ def sources_of_skis(
         yield 1, next(iter(keywords)), source, []
 
 
-ERRORS = ("Given", "Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
+ERRORS = ("Content", "Parameter", "Fit", "Solver", "Store", "Overtaken", "Output", "Skisnow")
 WARNINGS = ("Range", "ModelLimit", "Fit")
 CLASSES = {**{f"{name}Error": None for name in ERRORS}, **{f"{name}Warning": None for name in WARNINGS}}
 COUNTED = {"count_message": (1, 2), "counted": (2, 3)}

@@ -15,7 +15,7 @@ from skisnow._support.units import MM
 from skisnow.campaign import SnowMicroPenProfile, read_snow_micro_pen
 from skisnow.campaign.snow_micro_pen_records import SnowMicroPenSettings
 from skisnow.estimation.snow_micro_pen import EvaluatedRecording, evaluate_profile
-from skisnow.parameters import made
+from skisnow.parameters import build_declared
 
 CASES = {
     "as it is": {},
@@ -63,7 +63,7 @@ def by_setting(profiles: Sequence[SnowMicroPenProfile]) -> Iterator[str]:
     )
     yield "| --- |" + " ---: |" * 3 * len(profiles)
     for words, changes in CASES.items():
-        found = [evaluate_profile(profile, made(SnowMicroPenSettings, changes)) for profile in profiles]
+        found = [evaluate_profile(profile, build_declared(SnowMicroPenSettings, changes)) for profile in profiles]
         yield f"| {words} | " + " | ".join(map(_cells, found)) + " |"
     for words, (constant, value) in CONSTANTS.items():
         with patch(f"skisnow.{constant}", value):

@@ -13,7 +13,15 @@ import skisnow
 from skisnow._support.messages import Message
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.model_choice import bootstrap_intervals, compare_nested_rows
-from skisnow.estimation.models import MODELS, NESTED_PAIRS, Model, ModelFit, fit_models, select_model, why_no_choice
+from skisnow.estimation.models import (
+    MODELS,
+    NESTED_PAIRS,
+    Model,
+    ModelFit,
+    fit_models,
+    reason_without_choice,
+    select_model,
+)
 from skisnow.estimation.readings import Readings
 from skisnow.estimation.regressions import fit_warnings
 from skisnow.geometry import SkiPiece
@@ -290,7 +298,7 @@ def test_a_law_is_chosen_from_four_series_at_two_angles_on(
     angles_deg: tuple[float, ...], m: int, chooses: bool
 ) -> None:
     readings = replace(simulated(5, angles_deg, m=m), edge_angle=np.radians(np.resize(angles_deg, m)))
-    assert (why_no_choice(readings) == "") == chooses
+    assert (reason_without_choice(readings) == "") == chooses
 
 
 def _fit(rmse: float) -> ModelFit:

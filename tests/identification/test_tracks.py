@@ -14,7 +14,7 @@ import pytest
 
 from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow._support.processes.kept_rows import Row
-from skisnow.cli.identify import _with_site
+from skisnow.cli.identify import _with_fall_line
 from skisnow.identification import Identification, identification_dict, identify, track_positions
 from skisnow.identification.simulations import RunTask, grip_limit_sentences
 from skisnow.identification.track_positions import estimated_noise
@@ -291,7 +291,7 @@ def test_east_north_up_is_turned_into_the_slope(tmp_path: Path, monkeypatch: pyt
     assert found["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
     assert any("Add start.x,start.y to --free" in str(warning) for warning in found.warnings)
     options = argparse.Namespace(scenario="carved-46m", fall_line_azimuth_deg=90.0)
-    free = identify(_with_site(options), there, "mu_0,speed,start.x,start.y", changes=SCENARIO, workers=1)
+    free = identify(_with_fall_line(options), there, "mu_0,speed,start.x,start.y", changes=SCENARIO, workers=1)
     assert free["mu_0"].value == pytest.approx(TRUE_FRICTION, abs=1e-5)
     assert not any("--free" in str(warning) for warning in free.warnings)
     far = path.with_name("far.toml")

@@ -16,7 +16,7 @@ from tests.coded import Coded, coded, raises
 
 import skisnow
 from skisnow._support.errors import ParameterError
-from skisnow.parameters import Allowed, Quantity, Section, Word, made, quantities, require_declared, values_of
+from skisnow.parameters import Allowed, Quantity, Section, Word, build_declared, quantities, require_declared, values_of
 from skisnow.parameters.json_schema import page_table, table_schema
 
 
@@ -66,8 +66,8 @@ GIVEN = {
 
 
 def bench(**values: Any) -> Bench:
-    snow = made(Snow, GIVEN, section="snow", strength=None)
-    return made(Bench, GIVEN | {f"bench.{name}": value for name, value in values.items()}, snow=snow)
+    snow = build_declared(Snow, GIVEN, section="snow", strength=None)
+    return build_declared(Bench, GIVEN | {f"bench.{name}": value for name, value in values.items()}, snow=snow)
 
 
 def test_fields_say_kind_choices_default_and_need() -> None:
@@ -100,7 +100,7 @@ def test_values_as_given_become_si() -> None:
 
 
 def test_what_a_dataclass_holds_is_made_with_it() -> None:
-    found = made(Bench, GIVEN | {"snow.S_f_N_per_mm2": 0.5})
+    found = build_declared(Bench, GIVEN | {"snow.S_f_N_per_mm2": 0.5})
     assert found.snow == Snow(hardness=2e8, strength=5e5)
 
 

@@ -10,7 +10,7 @@ from tests.coded import coded, raises
 
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import unit_of_name, without_unit
-from skisnow.parameters import Allowed, Quantity, Search, checked_table, made, own_quantities
+from skisnow.parameters import Allowed, Quantity, Search, build_declared, checked_table, own_quantities
 from skisnow.parameters.json_schema import output_schema, page_table, schema_of, schema_text
 
 ANGLE = Quantity("edge_angle_deg", "edge angle", lowest=0.0, highest=90.0, below=True)
@@ -87,7 +87,7 @@ def test_label_of_an_axis() -> None:
 
 
 def test_a_table_is_checked_and_made() -> None:
-    assert made(Range, checked_table(Range, {"from": 20, "n": 11}, "[grid]")) == Range(20.0, 11)
+    assert build_declared(Range, checked_table(Range, {"from": 20, "n": 11}, "[grid]")) == Range(20.0, 11)
     for table, expected in (
         ({"from": 1, "till": 2}, coded("unknown_name", place="[grid]", name="till", allowed="Allowed: from, n.")),
         ({"form": 1}, coded("unknown_name", place="[grid]", name="form", similar="from")),

@@ -18,10 +18,10 @@ from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate
 from skisnow.racing.line import first_gates, ways
 from skisnow.racing.point import Racer, run_score, ski_line
-from skisnow.racing.quickest import _begun, _require, _search, _window
+from skisnow.racing.quickest import _require, _search, _start_line, _window
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
-from skisnow.racing.surrogate import BATCH, Daring, SurrogateSearch, _best_within
+from skisnow.racing.surrogate import BATCH, PointChoice, SurrogateSearch, _best_within
 from skisnow.racing.worth import wider
 from skisnow.track.course import MovingPoint, passages
 from tests.coded import raises
@@ -50,7 +50,7 @@ def least_of_bowl(bowl: Bowl, centre: Any, box: float, hope: float, directions: 
     pytest.importorskip("cmaes")
     known: Any = bowl
     moved = np.array(directions, float)
-    return _best_within(known, moved, np.zeros(len(moved)), np.array(centre), box, Daring(hope, 4.0, 0.0), (1, 2))
+    return _best_within(known, moved, np.zeros(len(moved)), np.array(centre), box, PointChoice(hope, 4.0, 0.0), (1, 2))
 
 
 def test_a_batch_is_asked_within_its_box_and_the_cube() -> None:
@@ -224,13 +224,13 @@ def test_values_at_the_limits_are_accepted() -> None:
 
 def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:
     start = first_gates(FOLLOWED, 4)
-    assert len(_begun(SLALOM, 3, start).turns) == 3
-    assert len(_begun(SLALOM, 4, start).turns) == 4
-    assert len(_begun(SLALOM, None, None).turns) == 20
+    assert len(_start_line(SLALOM, 3, start).turns) == 3
+    assert len(_start_line(SLALOM, 4, start).turns) == 4
+    assert len(_start_line(SLALOM, None, None).turns) == 20
     with pytest.raises(ParameterError, match="4 turns"):
-        _begun(SLALOM, None, start)
+        _start_line(SLALOM, None, start)
     with pytest.raises(ParameterError, match="from 2 to 4"):
-        _begun(SLALOM, 5, start)
+        _start_line(SLALOM, 5, start)
 
 
 def test_a_search_begins_within_its_ranges() -> None:
@@ -238,7 +238,7 @@ def test_a_search_begins_within_its_ranges() -> None:
 
     def begun(**numbers: float) -> RacingLine:
         turns = (LineTurn(aside=0.8), LineTurn(**({"aside": 0.8} | numbers)))
-        return _begun(SLALOM, 2, RacingLine(course, start, turns))
+        return _start_line(SLALOM, 2, RacingLine(course, start, turns))
 
     for name, low, high in (("aside", 0.25, 1.75), ("along", -0.25, 0.25), ("turning", 0.35, 1.0)):
         assert [getattr(begun(**{name: value}).turns[1], name) for value in (low, high)] == [low, high]

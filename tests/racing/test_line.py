@@ -22,7 +22,7 @@ from skisnow.racing.line import NUMBERS, first_gates, with_numbers
 from skisnow.racing.point import LinePoint, turns_in
 from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
-from skisnow.racing.windows import How, Search, Windows
+from skisnow.racing.windows import Search, Windows, WindowSettings
 from skisnow.skier.plan import HalfWaves
 
 SLALOM = load_scenario("slalom-20-gates")
@@ -237,7 +237,7 @@ class Searched:
 
     def best(self, begun: RacingLine, search: Search, window: int, ahead: int, evaluations: int = 40) -> Evaluated:
         pytest.importorskip("cmaes")
-        how = How(search, evaluations, None, 0.15, 0.0, 1, self.told.append)
+        how = WindowSettings(search, evaluations, None, 0.15, 0.0, 1, self.told.append)
         with Pool(self.race, 1, advice="") as pool:
             made = Evaluations(pool, KeptRows(), self.done)
             return Windows(made, how, window, 2, ahead, 3).search_line(begun)

@@ -18,7 +18,7 @@ from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import compare_variants, drawn_for_race, follower_line
 from skisnow.racing.line import first_gates
 from skisnow.racing.point import run_score, ski_line
-from skisnow.racing.search import Batches, Evaluated, Evaluations, least_of
+from skisnow.racing.search import Batches, Evaluated, Evaluations, minimise
 from skisnow.racing.surrogate import Surrogate, times_of
 
 from .test_point import WAY, glide, straight_course
@@ -59,7 +59,7 @@ def test_a_brachistochrone_of_pieces_obeys_snell() -> None:
     line = Polyline()
     with Pool(line, 1, advice="") as pool:
         made = batches(Evaluations(pool, KeptRows(), []))
-        best = least_of(made, np.full(3, 0.5), count=600, population=None, spread=0.2, seed=(5,))
+        best = minimise(made, np.full(3, 0.5), count=600, population=None, spread=0.2, seed=(5,))
     length, speed, rise = line.pieces(line.aside * np.array(best.place))
     assert rise / length / speed == pytest.approx(np.full(4, (rise / length / speed).mean()), rel=1e-4)
     assert cycloid(line.x[-1], line.aside, line.down) < best.value < 1.03 * cycloid(line.x[-1], line.aside, line.down)

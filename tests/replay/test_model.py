@@ -11,7 +11,7 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, replay_model, replay_of_run, ski_edges, write_replay_model
 from skisnow.replay.binary import ARRAY_TYPES
-from skisnow.replay.meshes import _strips, linear, round_above
+from skisnow.replay.meshes import _strips, linear_light, round_above
 from skisnow.replay.replay import groove_times, nearest_frame, quaternions
 from skisnow.scenario import load_scenario
 from skisnow.simulation.simulated_run import simulate
@@ -89,12 +89,12 @@ def test_colour_is_that_of_the_force(replay: Replay) -> None:
     loaded = force > 0.01 * force.max()
     order = np.argsort(force[loaded])
     assert (np.diff(dark[loaded][order]) <= 1e-6).all()  # more force, darker
-    assert colours[np.argmin(force), 0] == pytest.approx(linear([214, 220, 226]), abs=1e-6)
+    assert colours[np.argmin(force), 0] == pytest.approx(linear_light([214, 220, 226]), abs=1e-6)
 
 
 def test_linear_light_of_srgb() -> None:
     """IEC 61966-2-1: straight up to 0.04045 of full light, a power of 2.4 above."""
-    assert linear(np.array([0.0, 10.0, 64.0, 128.0, 255.0])) == pytest.approx(
+    assert linear_light(np.array([0.0, 10.0, 64.0, 128.0, 255.0])) == pytest.approx(
         [0.0, 0.0030353, 0.0512695, 0.2158605, 1.0], abs=1e-6
     )
 

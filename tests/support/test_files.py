@@ -13,7 +13,7 @@ from threading import Thread
 
 import pytest
 
-from skisnow._support.environment import load_certificate, needed, paused_collector
+from skisnow._support.environment import import_extra, load_certificate, paused_collector
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow._support.messages import Message
 from skisnow._support.staging import place_to_write, prepare_folder, require_writable, staged, write_file
@@ -112,12 +112,12 @@ def test_one_that_rested_before_continues_resting() -> None:
 
 
 def test_a_package_that_is_there_is_given() -> None:
-    assert needed("math", extra="none", what=Message("nothing")) is math
+    assert import_extra("math", extra="none", what=Message("nothing")) is math
 
 
 def test_a_missing_one_is_named_with_its_extra_and_what_else_can_be_done() -> None:
     with raises(ParameterError, "package_missing", module="skisnow_nowhere", extra="far") as caught:
-        needed("skisnow_nowhere", extra="far", what=Message("A far thing"), instead=Message("Or stay here."))
+        import_extra("skisnow_nowhere", extra="far", what=Message("A far thing"), instead=Message("Or stay here."))
     assert str(caught.value) == (
         "A far thing needs skisnow_nowhere, which cannot be loaded (No module named 'skisnow_nowhere'). "
         "Install it: pip install 'skisnow[far]'. Or stay here."
@@ -296,8 +296,8 @@ def test_what_cannot_be_taken_away_is_left_for_the_next_time(tmp_path: Path, mon
     def kept(*_given: object, **_named: object) -> None:
         raise PermissionError
 
-    with monkeypatch.context() as patched:
-        patched.setattr(os, "rmdir", kept)
+    with monkeypatch.context() as interpolate_patches:
+        interpolate_patches.setattr(os, "rmdir", kept)
         replace_old_by_new(tmp_path)
     assert seen(tmp_path) == NEW
     assert len(list(tmp_path.glob(".skisnow-*"))) == 1

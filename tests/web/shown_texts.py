@@ -19,7 +19,7 @@ _UNREAD: Final = """
     read_text write_text encode decode mkdtemp TemporaryDirectory create query_params execute text debug info warning
     error set_cookie setdefault get pop page api_route simplefilter filterwarnings strptime strftime TypeVar isinstance
     Message template count_message PageRequest NewEntry partial cast Environment PackageLoader get_template fullmatch
-    sub finditer glob ParameterError GivenError StoreError
+    sub finditer glob ParameterError ContentError StoreError
 """
 UNREAD_CALLS: Final = frozenset(_UNREAD.split())
 """Arguments of these are read by programs, or their translation is checked elsewhere (`Message`)."""

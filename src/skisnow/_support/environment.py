@@ -14,7 +14,7 @@ from .errors import ParameterError
 from .messages import Message, joined
 
 
-def needed(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
+def import_extra(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
     """The module of a package that an extra installs.
 
     what: work that is impossible without it, a noun phrase.

@@ -14,7 +14,7 @@ from typing import Any, Self
 from .messages import ENGLISH, Message, count_message, joined, languages, template, translated
 
 
-def templated(message: str, fields: Mapping[str, Any]) -> str:
+def as_template(message: str, fields: Mapping[str, Any]) -> str:
     """A `Message` of a template; messages, and texts with braces and no fields, as they are."""
     is_template = not isinstance(message, Message) and (fields or not {*"{}"} & {*message})
     return Message(message, **fields) if is_template else message
@@ -33,7 +33,7 @@ class _Coded(Exception):  # noqa: N818 -- of errors and warnings
 
     def tag(self, code: str, /, **fields: Any) -> Self:
         """The same error with its code, and with fields in its template."""
-        self.args = (templated(self.message, fields),)
+        self.args = (as_template(self.message, fields),)
         self.code = code
         return self
 
@@ -133,26 +133,26 @@ class FitWarning(SkisnowWarning):
     """A fit has an answer of which fewer digits are known than a reader would take for granted."""
 
 
-def nearest(word: str, words_allowed: Iterable[str]) -> Message:
+def suggest_and_list(word: str, words_allowed: Iterable[str]) -> Message:
     """The known word most like a misspelt one as a question, and all of them; sentences with their full stop."""
     words = list(words_allowed)
-    like = most_like(word, words)
+    like = most_similar(word, words)
     if like is None:
         return Message("Allowed: {allowed}.", allowed=words)
     return Message("Did you mean {similar}? Allowed: {allowed}.", similar=like, allowed=words)
 
 
-def meant(word: str, words_allowed: Iterable[str]) -> str:
+def suggest(word: str, words_allowed: Iterable[str]) -> str:
     """The known word most like a misspelt one as a question with a space behind; empty where none is like it.
 
-    >>> meant("angel", ["angle", "mass"])
+    >>> suggest("angel", ["angle", "mass"])
     'Did you mean angle? '
     """
-    like = most_like(word, words_allowed)
+    like = most_similar(word, words_allowed)
     return f"Did you mean {like}? " if like else ""
 
 
-def most_like(word: str, words_allowed: Iterable[str]) -> str | None:
+def most_similar(word: str, words_allowed: Iterable[str]) -> str | None:
     """The known word most like a misspelt one; None where none is like it."""
     by_small = {name.lower(): name for name in words_allowed}
     like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
@@ -186,7 +186,7 @@ def require_choice(name: str, value: object, choices: Iterable[str]) -> None:
     words = list(choices)
     if value not in words:
         raise ParameterError("{name} is {value!r}. {allowed}").tag(
-            "unknown_choice", name=name, value=value, allowed=nearest(str(value), words)
+            "unknown_choice", name=name, value=value, allowed=suggest_and_list(str(value), words)
         )
 
 

@@ -179,13 +179,13 @@ def csv_text(rows: Iterable[Iterable[object]]) -> str:
     return stream.getvalue()
 
 
-def guarded(text: str) -> str:
+def protect_from_formulas(text: str) -> str:
     """The cell of a text in a table that people open: no spreadsheet program takes it for a formula.
 
     A text that begins with = + - @, a tab or a carriage return, and is not a number, gets an apostrophe in front.
-    So does one that begins so behind apostrophes, so that `unguarded` gives every text back.
+    So does one that begins so behind apostrophes, so that `remove_protection` gives every text back.
 
-    >>> [guarded(text) for text in ("=1+1", "-1.5", "'=a", "it's", "-")]
+    >>> [protect_from_formulas(text) for text in ("=1+1", "-1.5", "'=a", "it's", "-")]
     ["'=1+1", '-1.5', "''=a", "it's", "'-"]
     """
     if not _AS_FORMULA.match(text) or is_number(text, ".") or is_number(text, ","):
@@ -193,10 +193,10 @@ def guarded(text: str) -> str:
     return f"'{text}"
 
 
-def unguarded(cell: str) -> str:
-    """The text that `guarded` made a cell of.
+def remove_protection(cell: str) -> str:
+    """The text that `protect_from_formulas` made a cell of.
 
-    >>> [unguarded(cell) for cell in ("'=1+1", "-1.5", "''=a", "'tis")]
+    >>> [remove_protection(cell) for cell in ("'=1+1", "-1.5", "''=a", "'tis")]
     ['=1+1', '-1.5', "'=a", "'tis"]
     """
     return cell[1:] if cell.startswith("'") and _AS_FORMULA.match(cell) else cell

@@ -81,14 +81,14 @@ def prepare_folder(folder: Path) -> list[str]:
     """
     require_writable(folder)
     try:
-        with _alone(folder):
+        with _lock_folder(folder):
             left = sorted(path for path in folder.iterdir() if _HIDDEN.fullmatch(path.name) and path.is_dir())
-            return [sentence for hidden in left if (sentence := _tidied(hidden))]
+            return [sentence for hidden in left if (sentence := _finish_or_remove(hidden))]
     except OSError as error:
         raise cannot_write(folder, error) from error
 
 
-def _tidied(hidden: Path) -> str | None:
+def _finish_or_remove(hidden: Path) -> str | None:
     lock = _locked(hidden)
     if lock is None and not _is_old(hidden):
         return None
@@ -104,7 +104,7 @@ def _tidied(hidden: Path) -> str | None:
 
 
 def _new_hidden(folder: Path) -> tuple[Path, int | None]:
-    with _alone(folder):
+    with _lock_folder(folder):
         hidden = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
         lock = _locked(hidden)
     (hidden / _FILES).mkdir()
@@ -160,7 +160,7 @@ def _is_old(hidden: Path) -> bool:
 
 
 @contextmanager
-def _alone(folder: Path) -> Iterator[None]:
+def _lock_folder(folder: Path) -> Iterator[None]:
     """Wait while another process makes or tidies a stage in the same folder."""
     if sys.platform == "win32":
         yield

@@ -22,7 +22,7 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.spreadsheet_text import number
 from .._support.units import CM, DEGREE, MM, ZERO_CELSIUS
-from .._support.user_files import Element, GivenError, plain_bytes, xml_tree
+from .._support.user_files import ContentError, Element, plain_bytes, xml_tree
 from ..parameters.quantity import LARGEST
 from .problems import error
 from .snow_pit import DepthTemperature, ForceProfile, LayerDensity, PlateValue, SnowLayer, SnowPit
@@ -65,7 +65,7 @@ def read_caaml(path: str | Path) -> SnowPit:
     path = Path(path)
     try:
         root = xml_tree(plain_bytes(path, most_bytes=MOST_BYTES))
-    except GivenError as failure:
+    except ContentError as failure:
         problem = error(
             "unreadable_file",
             path.name,

@@ -22,7 +22,7 @@ from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.spreadsheet_text import number
 from .._support.units import Facts, Shown
-from .._support.user_files import GivenError, plain_bytes
+from .._support.user_files import ContentError, plain_bytes
 from ..parameters import Allowed, Quantity, require_declared
 from ..parameters.quantity import LARGEST
 from .problems import error
@@ -98,7 +98,7 @@ def read_smet(path: str | Path) -> StationSeries:
     path = Path(path)
     try:
         data = plain_bytes(path, most_bytes=MOST_BYTES)
-    except GivenError as failure:
+    except ContentError as failure:
         allowed, action = Message("a weather file in SMET"), Message("Check its name and folder.")
         problem = error("unreadable_file", path.name, value=failure.what, allowed=allowed, action=action)
         raise FieldDataError([problem]) from failure

@@ -20,7 +20,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, MM
-from .._support.user_files import GivenError, plain_bytes
+from .._support.user_files import ContentError, plain_bytes
 from .problems import error
 
 HEADER_BYTES: Final = 512
@@ -155,7 +155,7 @@ def read_snow_micro_pen(path: Path) -> SnowMicroPenProfile:
     path = Path(path)
     try:
         data = plain_bytes(path, most_bytes=MOST_BYTES)
-    except GivenError as failure:
+    except ContentError as failure:
         _refuse(path.name, failure.what, "a readable file", "Check its name and permissions.")
     return parse_snow_micro_pen(path.name, data)
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray, IntArray
-from ..ski.beam import ClampedSki, beam_at_stations, beam_rows, bent
+from ..ski.beam import ClampedSki, base_motion, beam_at_stations, beam_rows
 from .solve import Solution
 
 BOOT_REACH: Final = 0.40
@@ -74,7 +74,7 @@ class EdgeLine:
     def sections(self, station: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Width, height of the unloaded base, deflection (m) and twist (rad) at stations (m)."""
         width, base_height, rows = sections_at(self._model, tuple(station.tolist()))
-        return (width, base_height, *bent(self._u, *rows))
+        return (width, base_height, *base_motion(self._u, *rows))
 
     def across(
         self, width: FloatArray, base_height: FloatArray, deflection: FloatArray, twist: FloatArray

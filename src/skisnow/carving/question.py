@@ -10,7 +10,7 @@ from typing import Annotated, Any, Final, Literal
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM3, in_degrees_if_radians
-from ..parameters import Allowed, Label, Quantity, nearest, own_quantities, require_declared
+from ..parameters import Allowed, Label, Quantity, own_quantities, require_declared, suggest_and_list
 from ..ski import Ski
 from ..ski.beam import CLAMP_LENGTH, MOST_ELEMENTS
 from ..ski.editing import SIDECUT, SkiEdit, edit_stations, edited_ski
@@ -51,7 +51,7 @@ def require_known(names: Iterable[str]) -> None:
     for name in names:
         if name not in CARVE_KEYS:
             raise ParameterError("unknown input of a carved turn: {name}. {allowed}").tag(
-                "unknown_name", name=name, allowed=nearest(name, CARVE_KEYS)
+                "unknown_name", name=name, allowed=suggest_and_list(name, CARVE_KEYS)
             )
 
 

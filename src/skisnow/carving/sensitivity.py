@@ -15,7 +15,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
 from .outputs import OUTPUTS, At, OutputGrowth, output_growth
@@ -189,7 +189,7 @@ class CarveDerivatives:
             return values[parameter]
         if parameter.partition(".")[0] not in ("ski", "edit"):
             raise ParameterError("unknown parameter of a carve: {name}. {allowed}").tag(
-                "unknown_name", name=parameter, allowed=nearest(parameter, self.parameters)
+                "unknown_name", name=parameter, allowed=suggest_and_list(parameter, self.parameters)
             )
         return shape_value(self.request.model.ski, parameter)
 
@@ -303,7 +303,7 @@ class CarveDerivatives:
     def _output(self, output: str) -> OutputGrowth | None:
         if output not in OUTPUTS:
             raise ParameterError("unknown output, or one without derivatives: {name}. {allowed}").tag(
-                "unknown_name", name=output, allowed=nearest(output, OUTPUTS)
+                "unknown_name", name=output, allowed=suggest_and_list(output, OUTPUTS)
             )
         if output not in self._outputs:
             self._outputs[output] = output_growth(output, self.at)

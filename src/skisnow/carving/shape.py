@@ -17,8 +17,8 @@ from ..ski.beam import (
     ClampedSki,
     curvature_shape,
     deflection_shape,
+    element_places,
     model_nodes,
-    places_within,
     slope_shape,
 )
 from ..ski.editing import TableGrowth, table_growth
@@ -103,8 +103,8 @@ def _mesh(station: bytes, clamp_length: float, elements: int) -> _Mesh:
     node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
     return _Mesh(
         node,
-        _lines(station, places_within(node, STATION_POINTS).ravel()),
-        _lines(station, places_within(node, GAUSS_POINTS).ravel()),
+        _lines(station, element_places(node, STATION_POINTS).ravel()),
+        _lines(station, element_places(node, GAUSS_POINTS).ravel()),
     )
 
 
@@ -131,7 +131,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
     mesh, half = _mesh(station, clamp_length, elements), clamp_length / 2.0
     parts = np.array([float(ski.station[-1]), -half, half, float(ski.station[0])])
     node = np.interp(mesh.node, parts, [by_station[-1], 0.0, 0.0, by_station[0]])
-    place, gauss = places_within(node, STATION_POINTS).ravel(), places_within(node, GAUSS_POINTS).ravel()
+    place, gauss = element_places(node, STATION_POINTS).ravel(), element_places(node, GAUSS_POINTS).ravel()
     sections = fixed.sections + mesh.stations.moved(np.array([ski.width, ski.base_height]), by_station, place)
     stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
     return Shape(

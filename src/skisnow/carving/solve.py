@@ -10,7 +10,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from ..compiled import core
-from ..ski.beam import STATION_POINTS, ClampedSki, deflection_shape, places_within, twist_shape
+from ..ski.beam import STATION_POINTS, ClampedSki, deflection_shape, element_places, twist_shape
 from ..ski.ski import Ski
 from .laws import STEEPEST_RATIO, SnowLaws
 
@@ -143,7 +143,7 @@ def _mesh_rows(nodes: bytes, dofs: bytes) -> tuple[FloatArray, int]:
     first = np.where(before >= front, before + 6, np.where(behind >= front, behind + 3, front))
     deflection = deflection_shape(STATION_POINTS, length).reshape(-1, 6)
     columns = [
-        places_within(node, STATION_POINTS).ravel(),
+        element_places(node, STATION_POINTS).ravel(),
         np.repeat(length / 2.0, 2),
         np.zeros((len(dof), 2)),
         np.where((before >= 0) & (before < front), before, first),

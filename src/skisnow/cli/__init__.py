@@ -68,11 +68,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         status: int = options.run(options) or 0
         sys.stdout.flush()
     except (Exception, KeyboardInterrupt) as error:
-        return _ended(error)
+        return _report_end(error)
     return status
 
 
-def _ended(error: Exception | KeyboardInterrupt) -> int:
+def _report_end(error: Exception | KeyboardInterrupt) -> int:
     """Say why a command ended; returns its exit status."""
     if isinstance(error, KeyboardInterrupt):
         print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)

@@ -86,7 +86,7 @@ def run(options: argparse.Namespace) -> int:
     """Identify, print, write; 0 with an answer, 1 with too few points or without convergence, 130 when interrupted."""
     if options.resume and options.out is None:
         options.parser.error("--resume continues the results in --out DIR; name it")
-    scenario_input = _prepared(options)
+    scenario_input = _prepare(options)
     with ending_is_an_interrupt() as ending:
         result = _identified(options)
         with ending.finishing():
@@ -96,7 +96,7 @@ def run(options: argparse.Namespace) -> int:
     return 1 if result.outcome in ("too_few_points", "not_converged") else 0
 
 
-def _prepared(options: argparse.Namespace) -> ScenarioFile:
+def _prepare(options: argparse.Namespace) -> ScenarioFile:
     """Reject wrong options before the work."""
     with announced("loading"):
         from ..identification.intervals import require_bootstrap, require_emcee
@@ -118,7 +118,7 @@ def _identified(options: argparse.Namespace) -> Identification:
 
     with Progress() as progress:
         return identify(
-            _with_site(options),
+            _with_fall_line(options),
             options.data,
             options.free,
             changes=changes_of(options),
@@ -137,7 +137,7 @@ def _identified(options: argparse.Namespace) -> Identification:
         )
 
 
-def _with_site(options: argparse.Namespace) -> ScenarioInput:
+def _with_fall_line(options: argparse.Namespace) -> ScenarioInput:
     """The scenario, with the direction of the fall line that the option states."""
     from ..scenario.reading import load_input
 

@@ -8,7 +8,7 @@ import re
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
-from .._support.errors import ParameterError, meant
+from .._support.errors import ParameterError, suggest
 from .._support.messages import ENGLISH, languages
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class Parser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Name the command that a misspelt one is most like; anything else as usual."""
         if isinstance(action, argparse._SubParsersAction) and value not in action.choices:
-            similar = meant(value, sorted(action.choices))
+            similar = suggest(value, sorted(action.choices))
             self.error(f"there is no command {value}. {similar}{self.prog} --help names all")
         super()._check_value(action, value)
 
@@ -49,7 +49,7 @@ class Parser(argparse.ArgumentParser):
         for word in words[: words.index("--")] if "--" in words else words:
             name = word.split("=", 1)[0]
             if name.startswith("--") and not any(option.startswith(name) for option in options):
-                self.error(f"there is no option {name}. {meant(name, sorted(options))}{self.prog} --help names all")
+                self.error(f"there is no option {name}. {suggest(name, sorted(options))}{self.prog} --help names all")
 
 
 def add_fall_line_azimuth(parser: argparse.ArgumentParser, why: str) -> None:

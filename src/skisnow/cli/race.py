@@ -117,10 +117,10 @@ def run(options: argparse.Namespace) -> int:
     """Search, simulate the result by the scenario's method, compare, print, write; 1 if no line passes all gates."""
     try:
         with ending_is_an_interrupt():
-            raced = _raced(options)
+            raced = _run_race(options)
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, options.out)
-    _tell(options, raced)
+    _write_and_print(options, raced)
     return 1 if raced.fastest.score.time is None else 0
 
 
@@ -132,14 +132,14 @@ class _Raced:
     worth: tuple[Worth, ...]
 
 
-def _raced(options: argparse.Namespace) -> _Raced:
+def _run_race(options: argparse.Namespace) -> _Raced:
     with announced("loading"):
         from ..racing import compare_variants, drawn_for_race, quickest_line
         from ..racing.search import require_cmaes
 
         if options.evaluations > 1:
             require_cmaes()
-        scenario, variants = _asked(options)
+        scenario, variants = _scenario_and_variants(options)
         snow = scenario.contact.snow
         snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
         begin = _start(options, scenario)
@@ -152,7 +152,7 @@ def _raced(options: argparse.Namespace) -> _Raced:
             window=options.window, step=options.step, ahead=options.ahead, room=options.room, seed=options.seed,
             checkpoint=options.out / KEPT, progress=progress, **computing,
         )  # fmt: skip
-        checked, run = _checked(fastest, scenario, progress)
+        checked, run = _scores_by_method(fastest, scenario, progress)
         worth: tuple[Worth, ...] = ()
         start = fastest.start if options.snows and options.evaluations > 1 else None
         if variants or start:
@@ -164,7 +164,7 @@ def _raced(options: argparse.Namespace) -> _Raced:
     return _Raced(fastest, checked, run, worth)
 
 
-def _asked(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
+def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
     """The scenario, and its variants by name."""
     from ..racing import worth_changes
 
@@ -185,7 +185,7 @@ def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None
     return read_line(options.line, course_of(scenario), (scenario.start.x, scenario.start.y))
 
 
-def _checked(
+def _scores_by_method(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
     """Scores of both lines by the scenario's method if the search used a quicker one; run on the quickest line."""
@@ -202,7 +202,7 @@ def _checked(
     return [*checked, ("where it began", run_score(ski_line(scenario, fastest.start)))], run
 
 
-def _tell(options: argparse.Namespace, raced: _Raced) -> None:
+def _write_and_print(options: argparse.Namespace, raced: _Raced) -> None:
     from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
 
     fastest, checked, worth = raced.fastest, raced.checked, raced.worth

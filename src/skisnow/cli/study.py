@@ -52,10 +52,10 @@ def run(options: argparse.Namespace) -> int:
     study = read_study(file)
     if options.shard is not None:
         return _shard(options, study)
-    return _whole(options, study)
+    return _run_whole(options, study)
 
 
-def _whole(options: argparse.Namespace, study: Study) -> int:
+def _run_whole(options: argparse.Namespace, study: Study) -> int:
     from ..studies import run_study
 
     if options.figure is not None and "turn_radius_boot_m" not in study.columns:
@@ -63,14 +63,14 @@ def _whole(options: argparse.Namespace, study: Study) -> int:
             "not_supported"
         )
     executor = scheduler_of(options)
-    _tell_state(study)
+    _print_state(study)
     try:
         with ending_is_an_interrupt(), Progress() as progress:
             table = run_study(study, workers=options.workers, executor=executor, progress=_Pace(progress))
     except KeyboardInterrupt as stopped:
         return report_interrupt(stopped, study.partial)
-    _tell(study.out, table)
-    if _none_was_asked(study.out, table):
+    _print_outcomes(study.out, table)
+    if _all_points_failed(study.out, table):
         return 1
     if options.figure is not None:
         _draw(options, table)
@@ -99,18 +99,18 @@ def _merge(options: argparse.Namespace) -> int:
     if options.figure is not None or options.scheduler is not None:
         options.parser.error("--merge computes nothing: it takes a table and the files that --shard left, and no more")
     table = merge_shards(options.merge, options.study)
-    _tell(options.merge, table)
-    return 1 if _none_was_asked(options.merge, table) else 0
+    _print_outcomes(options.merge, table)
+    return 1 if _all_points_failed(options.merge, table) else 0
 
 
-def _none_was_asked(place: Path, table: StudyTable) -> bool:
+def _all_points_failed(place: Path, table: StudyTable) -> bool:
     if table.tally().failed < len(table.rows):
         return False
     print(f"skisnow: not one point could be asked; {place} was not written.", file=sys.stderr)
     return True
 
 
-def _tell_state(study: Study) -> None:
+def _print_state(study: Study) -> None:
     from ..studies import StudyState, study_state
 
     state = study_state(study)
@@ -121,7 +121,7 @@ def _tell_state(study: Study) -> None:
         print(f"{study.out} holds this study already; nothing is computed again.", file=sys.stderr)
 
 
-def _tell(place: Path, table: StudyTable) -> None:
+def _print_outcomes(place: Path, table: StudyTable) -> None:
     tally = table.tally()
     counts = ", ".join(f"{outcome} {count}" for outcome, count in tally.counts().items())
     print(f"{place}: points {tally.rows} ({counts})")

@@ -69,7 +69,7 @@ def summarise(options: argparse.Namespace) -> int:
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
 
-        track = read_track(options.file, origin=None if course is None else _origin(course))
+        track = read_track(options.file, origin=None if course is None else _course_origin(course))
     with announced(f"smoothing {len(track)} points"):
         from ..simulation.run_summary import time_gates
         from ..track.summary import summary_dict, track_summary
@@ -112,7 +112,7 @@ def _course(options: argparse.Namespace) -> Course:
     return course
 
 
-def _origin(course: Course) -> GeodeticPoint | None:
+def _course_origin(course: Course) -> GeodeticPoint | None:
     """One plane for the track and a course in degrees."""
     from ..track.projection import GeodeticPoint
 
@@ -185,7 +185,7 @@ def compare(options: argparse.Namespace) -> int:
         )
     if options.out is not None:
         prepare_output(options.out)
-    comparison, verdict = _compared(options)
+    comparison, verdict = _compare(options)
     from ..comparison import comparison_dict
     from ..track.course.gates_table import gap_rows, read_gate_gaps
 
@@ -209,7 +209,7 @@ def compare(options: argparse.Namespace) -> int:
     return 0
 
 
-def _compared(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
+def _compare(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
     from ..comparison.alignment import require_offsets
 
     fit = _offsets(options)

@@ -112,7 +112,7 @@ def compare_tracks(
         simulated = simulated.at_origin(measured.origin)
     placed, together = set(fit) >= _PLACED, (simulated.axes == "east_north_up") == (measured.axes == "east_north_up")
     laid = lay_for_fit(simulated, measured, slope_angle) if placed else LaidTracks(simulated, measured)
-    dimensions, seen = _dimensions(laid, from_above=from_above, heights_agree=together or laid.angle is not None)
+    dimensions, seen = _view(laid, from_above=from_above, heights_agree=together or laid.angle is not None)
     lines = track_polyline(laid.simulated, dimensions=dimensions), track_polyline(laid.measured, dimensions=dimensions)
     clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
@@ -153,7 +153,7 @@ def _require_options(
     require_range("slope_angle", slope_angle or 0.0, 0.0, STEEPEST)
 
 
-def _dimensions(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
+def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
     if from_above:
         return 2, "from above, as asked"
     if not heights_agree:

@@ -15,7 +15,7 @@ from .._support.spreadsheet_text import decimal_mark, number
 from .._support.user_files import plain_bytes
 from ..campaign.importing.sheets import column_letters, read_sheets
 from ..campaign.reading.headings import FORM, conversion, known_unit, named_unit, plain_heading, units_for
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 
 if TYPE_CHECKING:
     from .._support.arrays import FloatArray
@@ -65,7 +65,7 @@ class Mapped:
         for name in self.columns.values():
             if name not in SYNONYMS:
                 raise ParameterError("the column {name!r} is not known. {allowed}").tag(
-                    "unknown_name", name=name, allowed=nearest(name, SYNONYMS)
+                    "unknown_name", name=name, allowed=suggest_and_list(name, SYNONYMS)
                 )
 
     def column(self, heading: str) -> str:

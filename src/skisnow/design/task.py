@@ -19,7 +19,7 @@ from .._support.user_files import read_toml
 from ..carving.answer import asked_snow
 from ..carving.outputs import FORCE_ALONG_EDGE, OUTPUTS
 from ..carving.question import CARVE_KEYS, SKI_FACTORS, CarveQuestion, carve_question
-from ..parameters import Allowed, Quantity, checked_table, made, nearest
+from ..parameters import Allowed, Quantity, build_declared, checked_table, suggest_and_list
 from ..ski import Ski
 from ..ski.editing import shape_parameters
 from ..ski.file_keys import LISTS
@@ -141,7 +141,9 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
     keys = ("ski", "variables", "conditions", "goals", "constraints", "monotone", "starts", "seed")
     for name in values:
         if name not in keys:
-            _refuse(Message("unknown: {name}. {allowed}", name=name, allowed=nearest(name, keys)), "unknown_name")
+            _refuse(
+                Message("unknown: {name}. {allowed}", name=name, allowed=suggest_and_list(name, keys)), "unknown_name"
+            )
     for name in ("ski", "variables", "conditions", "goals"):
         if not values.get(name):
             _refuse(Message("{name} is missing. Add it, as on the page docs/files/ski.md.", name=name), "missing")
@@ -208,7 +210,9 @@ def _variable(ski: Ski, name: str, bounds: object) -> Variable:
     )
     if name not in allowed:
         _refuse(
-            Message("variables: unknown variable {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
+            Message(
+                "variables: unknown variable {name}. {allowed}", name=name, allowed=suggest_and_list(name, allowed)
+            ),
             "unknown_name",
         )
     if (
@@ -236,7 +240,9 @@ def _conditions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[Ca
         if name not in CARVE_KEYS or name in _WITHOUT:
             allowed = [INTERVALS, *(key for key in CARVE_KEYS if key not in _WITHOUT)]
             _refuse(
-                Message("conditions: unknown key {name}. {allowed}", name=name, allowed=nearest(name, allowed)),
+                Message(
+                    "conditions: unknown key {name}. {allowed}", name=name, allowed=suggest_and_list(name, allowed)
+                ),
                 "unknown_name",
             )
     lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
@@ -278,10 +284,13 @@ def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQues
 
 def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     place = f"goals, {number}"
-    goal: Goal = made(Goal, checked_table(Goal, table, place))
+    goal: Goal = build_declared(Goal, checked_table(Goal, table, place))
     if goal.output not in (*OUTPUTS, FORCE_ALONG_EDGE):
         raise ParameterError("{place}: unknown output {name}. {allowed}").tag(
-            "unknown_name", place=place, name=goal.output, allowed=nearest(goal.output, (*OUTPUTS, FORCE_ALONG_EDGE))
+            "unknown_name",
+            place=place,
+            name=goal.output,
+            allowed=suggest_and_list(goal.output, (*OUTPUTS, FORCE_ALONG_EDGE)),
         )
     along, places = goal.output == FORCE_ALONG_EDGE, goal.places_m or ()
     if along != bool(places) or len(goal.curve or places) != len(places) or (along and goal.ratio):

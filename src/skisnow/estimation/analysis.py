@@ -18,14 +18,14 @@ from ..campaign import read_campaign
 from ..campaign.records import Campaign
 from ..geometry import GeometryForm
 from ..snow import SnowProperties
-from .comparisons import Comparison, OwnValue, compare_with_published, own_mean, site_values
+from .comparisons import CampaignMean, Comparison, compare_with_published, own_mean, site_values
 from .errors_in_depth import fit_models_with_depth_errors, fitted_hardness, volume_factor
 from .group_comparisons import DIFFERENCE, GroupComparison, compare_campaign
 from .hardness import shear_displacement, shear_stress
 from .layering import growing_hardness, site_growth
 from .model_choice import bootstrap_intervals, compare_nested_rows
-from .models import Model, fit_models, select_model, why_no_choice
-from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, SiteMean, seating, site_means, site_snow, used_of
+from .models import Model, fit_models, reason_without_choice, select_model
+from .parts import ModelTable, PenetrationAnalysis, ShearAnalysis, SiteMean, seating, site_means, site_snow, used_words
 from .readings import ReadingUncertainty, readings_of
 from .regressions import (
     DENSITY_KEY,
@@ -95,8 +95,8 @@ class Analysis(Shown):
     site_means: tuple[SiteMean, ...]
     group_comparisons: tuple[GroupComparison, ...]
     comparisons: tuple[Comparison, ...]
-    own_hardness: OwnValue
-    own_stress: OwnValue
+    own_hardness: CampaignMean
+    own_stress: CampaignMean
     observations: Mapping[Source, Observations]
     time: datetime = field(default_factory=lambda: datetime.now(UTC))
     snow_micro_pen: SnowMicroPenAnalysis | None = None
@@ -199,13 +199,13 @@ class Analysis(Shown):
     def _repr_facts(self) -> Facts:
         selected = self.penetration.selected if self.penetration is not None else None
         rows = [
-            ("penetration", "none" if self.penetration is None else used_of(self.penetration.screened)),
-            ("shear", "none" if self.shear is None else used_of(self.shear.screened)),
-            ("H_V", _own(self.own_hardness, "N/mm³")),
-            ("S_f", _own(self.own_stress, "N/mm²")),
+            ("penetration", "none" if self.penetration is None else used_words(self.penetration.screened)),
+            ("shear", "none" if self.shear is None else used_words(self.shear.screened)),
+            ("H_V", _mean_words(self.own_hardness, "N/mm³")),
+            ("S_f", _mean_words(self.own_stress, "N/mm²")),
             ("model", "none" if selected is None else f"{selected.model.id}, rmse {amount(selected.rmse, 'N')}"),
             ("sites", ", ".join(dict.fromkeys(row.site for row in self.site_means)) or "none"),
-            *(_by_relation(row) for row in self.results.get("published_relations", ())),
+            *(_relation_facts(row) for row in self.results.get("published_relations", ())),
         ]
         return Facts(f"of {self.campaign.name!r}", tuple(rows))
 
@@ -216,7 +216,7 @@ class Analysis(Shown):
         return NotebookFigure("depth (mm)", "load (N)", [(tests.penetration_depth / MM, tests.load)], points=True)
 
 
-def _by_relation(row: dict[str, Any]) -> tuple[str, str]:
+def _relation_facts(row: dict[str, Any]) -> tuple[str, str]:
     """Hardness of a site without plate tests, by its relation."""
     resistance, index = row["penetration_resistance_kPa"], row["hand_hardness_index"]
     measured = "" if resistance is None else f"{amount(resistance, 'kPa')}, "
@@ -224,7 +224,7 @@ def _by_relation(row: dict[str, Any]) -> tuple[str, str]:
     return f"hardness at {row['site']}", f"{measured}hand hardness {hand} by {row['hardness_relation']}; not H_V"
 
 
-def _own(mean: OwnValue, unit: str) -> str:
+def _mean_words(mean: CampaignMean, unit: str) -> str:
     """A mean over the campaign with its interval, if it has one, in the unit that it is held in."""
     interval = "no interval" if math.isnan(mean.low) else span(mean.low, mean.high)
     return f"{amount(mean.value, unit)} ({interval})"
@@ -385,7 +385,7 @@ def _with_models(
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
     depth_fits = fit_models_with_depth_errors(of_series.fitted.of(included), uncertainty)
-    no_choice = why_no_choice(used)
+    no_choice = reason_without_choice(used)
     selected = None if no_choice else select_model(fits)
     return replace(
         of_series,
@@ -420,16 +420,16 @@ def _observations(
     return {"penetration": first, "shear": second, "spots": spot_observations(first, second)}
 
 
-def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[OwnValue, OwnValue]:
+def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[CampaignMean, CampaignMean]:
     """b0 and b1 of the row that Eqn 11 is, with their bootstrap intervals."""
-    unknown = OwnValue(*[float("nan")] * 5)
+    unknown = CampaignMean(*[float("nan")] * 5)
     if penetration is None or penetration.table is None:
         return unknown, unknown
     model = Model("H_V", "none", "linear")
     fit = next(fit for fit in penetration.table.fits if fit.model == model)
     (low0, high0), (low1, high1) = penetration.table.intervals[model][2:].tolist()
     nan = float("nan")
-    return OwnValue(fit.b0, low0, high0, nan, nan), OwnValue(fit.b1, low1, high1, nan, nan)
+    return CampaignMean(fit.b0, low0, high0, nan, nan), CampaignMean(fit.b1, low1, high1, nan, nan)
 
 
 def _report(progress: Callable[[str], None] | None, text: str) -> None:

@@ -21,7 +21,7 @@ FEWEST_SITES: Final = 4
 
 
 @dataclass(frozen=True, slots=True)
-class OwnValue:
+class CampaignMean:
     """A mean of the campaign: value and 95 % interval, NaN if unknown or withheld; minimum and maximum.
 
     With several sites the interval takes them as clusters; under four sites it is withheld.
@@ -41,7 +41,7 @@ class Comparison:
     source: str
     quantity: str
     published: float | tuple[float, float]
-    own: OwnValue
+    own: CampaignMean
 
     def as_dict(self) -> dict[str, Any]:
         """Give the entry of results.json."""
@@ -59,7 +59,7 @@ class Comparison:
         }
 
 
-def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> OwnValue:
+def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> CampaignMean:
     """Mean (geometric for hardness, which spans decades) of the used experiments with its interval.
 
     The interval is one of the logarithm of the mean, so that no bound of a positive quantity is negative: for a plain
@@ -70,7 +70,7 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ow
     (2.0, 6.353, True)
     """
     if values.size == 0 or (geometric and np.any(values <= 0)):
-        return OwnValue(*[float("nan")] * 5)
+        return CampaignMean(*[float("nan")] * 5)
     data = np.log(values) if geometric else values
     mean, half = float(data.mean()), _half_width(data, index_names(sites)[1])
     if geometric:
@@ -78,7 +78,7 @@ def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> Ow
     else:
         half = half / mean if mean > 0 else float("nan")
     low, high = (mean * np.exp([-half, half])).tolist()
-    return OwnValue(mean, low, high, float(values.min()), float(values.max()))
+    return CampaignMean(mean, low, high, float(values.min()), float(values.max()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,10 @@ def _half_width(data: FloatArray, sites: IntArray) -> float:
 
 
 def compare_with_published(
-    hardness: OwnValue, stress: OwnValue, angle_term: tuple[OwnValue, OwnValue], shear_density: OwnValue
+    hardness: CampaignMean,
+    stress: CampaignMean,
+    angle_term: tuple[CampaignMean, CampaignMean],
+    shear_density: CampaignMean,
 ) -> tuple[Comparison, ...]:
     """The published ranges, Federolf 2006 converted, Eqns 11 and 14, Domine 2011; units as in the keys."""
     H_V, S_f = "H_V_N_per_mm3", "S_f_N_per_mm2"

@@ -38,7 +38,7 @@ from ..statistics.bounded import condensed, non_negative_fits
 from ..statistics.combined_uncertainty import expanded_factor
 from .campaign_model import CONTACT_STEPS, CampaignModel
 from .hardness import DEFINITIONS, hardness_of_all_readings
-from .models import MODELS, EndBasis, Model, ModelFit, end_basis, end_columns, fit_model
+from .models import MODELS, EndBasis, Model, ModelFit, end_basis, fit_model, weighted_columns
 from .readings import Readings, ReadingUncertainty
 
 _EXACT_SHARE: Final = 1e-6
@@ -136,7 +136,7 @@ def _depth_slopes(readings: Readings, hardness: FloatArray) -> FloatArray:
     """Derivatives with depth of the four regressors (n, 4): dA/de replaces A, and A, which is dV/de, replaces V."""
     # a line contact (cylinder at e = 0) has an infinite dA/de: no depth, no information
     growth = np.where(np.isfinite(readings.area_growth), readings.area_growth, 0.0)
-    return end_columns(readings, hardness, growth, readings.contact_area)
+    return weighted_columns(readings, hardness, growth, readings.contact_area)
 
 
 def _weights(

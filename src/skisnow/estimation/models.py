@@ -173,11 +173,11 @@ def _projection(a: Term, b: Term, flat: bool) -> FloatArray:
 def end_basis(readings: Readings, hardness: FloatArray) -> EndBasis:
     """Build the regressors from the hardness of each series (SI)."""
     low, high = float(readings.edge_angle.min()), float(readings.edge_angle.max())
-    columns = end_columns(readings, hardness, readings.contact_area, readings.displaced_volume)
+    columns = weighted_columns(readings, hardness, readings.contact_area, readings.displaced_volume)
     return EndBasis(columns, low, high)
 
 
-def end_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b: FloatArray) -> FloatArray:
+def weighted_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b: FloatArray) -> FloatArray:
     """(n, 4) H x (1-t), H x t for x of a and x of b: A and V, or their derivatives with depth."""
     low, high = readings.edge_angle.min(), readings.edge_angle.max()
     t = (readings.angle_of_reading - low) / (high - low) if high > low else np.zeros(readings.n)
@@ -267,7 +267,7 @@ FEWEST_ANGLES: Final = 2
 """At one edge angle a and b are one number each, and rows repeat each other."""
 
 
-def why_no_choice(readings: Readings) -> str:
+def reason_without_choice(readings: Readings) -> str:
     """Why no law can be selected from these readings, in a sentence; nothing where one can."""
     angles = len(np.unique(np.round(readings.edge_angle, 9)))
     if readings.n_series >= FEWEST_SERIES and angles >= FEWEST_ANGLES:

@@ -27,7 +27,7 @@ from ..snow.mean_snow import (
     with_measured_unloading,
 )
 from .campaign_model import CampaignModel
-from .comparisons import OwnValue, SiteValue, own_mean
+from .comparisons import CampaignMean, SiteValue, own_mean
 from .errors_in_depth import FittedHardness, VolumeFactor
 from .group_comparisons import GroupComparison, letters_of_groups
 from .hardness import Hardness, ShearDisplacement, ShearStress
@@ -80,7 +80,7 @@ class PenetrationAnalysis(Shown):
     warnings: tuple[str, ...] = ()
 
     def _repr_facts(self) -> Facts:
-        return field_facts(self, {}, title=used_of(self.screened))
+        return field_facts(self, {}, title=used_words(self.screened))
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,10 +93,10 @@ class ShearAnalysis(Shown):
     site_displacement: tuple[SiteValue, ...]
 
     def _repr_facts(self) -> Facts:
-        return Facts(used_of(self.screened))
+        return Facts(used_words(self.screened))
 
 
-def used_of(screened: Screened) -> str:
+def used_words(screened: Screened) -> str:
     """Number of used experiments, in words."""
     return f"{int(screened.used.sum())} of {len(screened.used)} experiments used"
 
@@ -143,7 +143,7 @@ class SiteMean:
     quantity: str
     site: str
     n: int
-    own: OwnValue
+    own: CampaignMean
     letters: str = ""
 
 
@@ -178,9 +178,9 @@ def site_snow(
     unloading_ratio: float | None,
 ) -> SnowProperties:
     """The means over the used experiments of a site, as `skisnow.read_snow` reads them from results.json."""
-    pressed, sheared = _pressed(penetration, campaign), _sheared(shear, campaign)
+    pressed, sheared = _hardness_by_site(penetration, campaign), _stress_by_site(shear, campaign)
     site = site_of_campaign(campaign, site)
-    hardness, stress = (_of(site, *pair) for pair in (pressed, sheared))
+    hardness, stress = (_at_site(site, *pair) for pair in (pressed, sheared))
     name = campaign.name
     if not hardness.size:
         sites = sorted({str(row) for row in pressed[1]})
@@ -197,7 +197,7 @@ def site_snow(
     return snow if ratio is None else with_measured_unloading(snow, ratio.ratio, (ratio.low, ratio.high))
 
 
-def _pressed(penetration: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+def _hardness_by_site(penetration: PenetrationAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
     """H_V (N/m³) and site of each used penetration experiment that has one."""
     tests = campaign.penetration
     if penetration is None or tests is None:
@@ -205,7 +205,7 @@ def _pressed(penetration: PenetrationAnalysis | None, campaign: Campaign) -> tup
     return _used(penetration.hardness["H_V"].value, penetration.screened.used, tests.site)
 
 
-def _sheared(shear: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
+def _stress_by_site(shear: ShearAnalysis | None, campaign: Campaign) -> tuple[FloatArray, TextArray]:
     """S_f (N/m²) and site of each used shear experiment that has one."""
     tests = campaign.shear
     if shear is None or tests is None:
@@ -219,7 +219,7 @@ def _used(value: FloatArray, used: BoolArray, site: tuple[str, ...]) -> tuple[Fl
     return value[there], np.array(site, dtype=object)[there]
 
 
-def _of(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
+def _at_site(site: str | None, value: FloatArray, sites: TextArray) -> FloatArray:
     """Values of a site; all values without a site."""
     return value if site is None else value[sites == site]
 
@@ -232,15 +232,15 @@ def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
 
 def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
     """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
-    return (*_alike(campaign), *_without_tests(campaign), *_unread(campaign))
+    return (*_similar_names(campaign), *_without_tests(campaign), *_unread(campaign))
 
 
-def _tested(campaign: Campaign) -> set[str]:
+def _test_sites(campaign: Campaign) -> set[str]:
     """Sites with a penetration or shear test."""
     return {site for tests in (campaign.penetration, campaign.shear) if tests is not None for site in tests.site}
 
 
-def _described(campaign: Campaign) -> dict[str, set[str]]:
+def _snow_data_sites(campaign: Campaign) -> dict[str, set[str]]:
     """Sites in each table of snow data, by file."""
     tables = {
         "density.csv": campaign.density,
@@ -250,10 +250,10 @@ def _described(campaign: Campaign) -> dict[str, set[str]]:
     return {name: set(table.site) for name, table in tables.items() if table is not None}
 
 
-def _alike(campaign: Campaign) -> Iterator[str]:
+def _similar_names(campaign: Campaign) -> Iterator[str]:
     """Names that differ only by capitals and spaces."""
     names: dict[str, set[str]] = {}
-    for site in _tested(campaign).union(*_described(campaign).values()):
+    for site in _test_sites(campaign).union(*_snow_data_sites(campaign).values()):
         names.setdefault("".join(site.split()).casefold(), set()).add(site)
     for variants in sorted(sorted(variants) for variants in names.values() if len(variants) > 1):
         listed = [repr(name) for name in variants]
@@ -265,10 +265,10 @@ def _alike(campaign: Campaign) -> Iterator[str]:
 
 
 def _without_tests(campaign: Campaign) -> Iterator[str]:
-    tested = _tested(campaign)
+    tested = _test_sites(campaign)
     if not tested:  # recordings or samples alone
         return
-    for name, sites in _described(campaign).items():
+    for name, sites in _snow_data_sites(campaign).items():
         lost = sorted(sites - tested)
         if lost:
             listed = [repr(site) for site in lost]

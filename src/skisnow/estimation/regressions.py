@@ -52,7 +52,7 @@ def penetration_observations(
     keys = (HARDNESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
     tests = campaign.penetration
     if tests is None:
-        return _nothing(*keys, *((PEN_FORCE_KEY, PEN_DENSITY_KEY) if pen else ()))
+        return _no_observations(*keys, *((PEN_FORCE_KEY, PEN_DENSITY_KEY) if pen else ()))
     own = {HARDNESS_KEY: hardness / N_PER_MM3}
     if pen is not None:
         own[PEN_FORCE_KEY] = pen.at(tests.site, tests.spot, pen.mean_force)
@@ -63,7 +63,7 @@ def penetration_observations(
 def shear_observations(campaign: Campaign, stress: FloatArray, used: BoolArray) -> Observations:
     """The used shear experiments; ``stress`` is S_f of all of them in N/m²."""
     if campaign.shear is None:
-        return _nothing(STRESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
+        return _no_observations(STRESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
     return _observations(campaign, campaign.shear, {STRESS_KEY: stress / N_PER_MM2}, used)
 
 
@@ -114,7 +114,7 @@ def _by_spot(data: Observations, values: FloatArray) -> dict[tuple[str, str], fl
     return {key: float(np.mean(items)) for key, items in collected.items()}
 
 
-def _nothing(*keys: str) -> Observations:
+def _no_observations(*keys: str) -> Observations:
     """Columns without any observation."""
     return Observations({key: np.zeros(0) for key in keys}, (), ())
 

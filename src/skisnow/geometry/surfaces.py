@@ -66,11 +66,11 @@ class Grid(ShownFields):
 
     def heights(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
         """Heights (m) at places x, y (m, of shapes that go together); beyond the border along its slope."""
-        return self._going_on(x, y)[0]
+        return self._extrapolated(x, y)[0]
 
     def gradients(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
         """dz/dx and dz/dy at places x, y (m); beyond the border those of the border."""
-        _, along_x, along_y = self._going_on(x, y)
+        _, along_x, along_y = self._extrapolated(x, y)
         return along_x, along_y
 
     def values_at(self, x: npt.ArrayLike, y: npt.ArrayLike) -> FloatArray:
@@ -84,13 +84,13 @@ class Grid(ShownFields):
         counts = self.values.shape
         where = [(coordinate.ravel() - start) / step for coordinate, start, step in zip(at, first, steps, strict=True)]
         inside = [np.clip(coordinate, 0.0, count - 1.0) for coordinate, count in zip(where, counts, strict=True)]
-        value, per_x, per_y = patched(self.values, *inside)
+        value, per_x, per_y = interpolate_patches(self.values, *inside)
         beyond = (where[0] - inside[0]) * per_x + (where[1] - inside[1]) * per_y
         shape = at[0].shape
         slopes = (per_x / steps[0], per_y / steps[1])
         return value.reshape(shape), slopes[0].reshape(shape), slopes[1].reshape(shape), beyond.reshape(shape)
 
-    def _going_on(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _extrapolated(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         value, along_x, along_y, beyond = self._patched(x, y)
         return value + beyond, along_x, along_y
 
@@ -130,7 +130,7 @@ class _Weights(NamedTuple):
     slope: tuple[FloatArray, FloatArray]
 
 
-def patched(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
+def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
     """Values (n, m) between their places.
 
     values: (n, m) at the places 0 to n - 1 and 0 to m - 1.
@@ -141,7 +141,7 @@ def patched(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
 
     A parabola comes back: 1.5² = 2.25, with the slope 3.
 
-    >>> found = patched(np.arange(4.0)[:, None] ** 2, np.array([1.5]), np.zeros(1))
+    >>> found = interpolate_patches(np.arange(4.0)[:, None] ** 2, np.array([1.5]), np.zeros(1))
     >>> found.value, found.slope_x, found.slope_y
     (array([2.25]), array([3.]), array([0.]))
     """
@@ -217,10 +217,10 @@ def smoothed(values: FloatArray, steps: tuple[float, float], *, cutoff: float) -
     """
     if cutoff <= 0.0:
         return values
-    return _along_first(_along_first(values, steps[0], cutoff).T, steps[1], cutoff).T
+    return _local_lines(_local_lines(values, steps[0], cutoff).T, steps[1], cutoff).T
 
 
-def _along_first(values: FloatArray, step: float, cutoff: float) -> FloatArray:
+def _local_lines(values: FloatArray, step: float, cutoff: float) -> FloatArray:
     """A straight line of weighted least squares through the neighbours of each place, taken at the place."""
     count = len(values)
     reach = min(math.ceil(cutoff / step), count - 1)

@@ -19,7 +19,7 @@ from .._support.messages import Message
 from .._support.spreadsheet_text import encoding_of, most_frequent_separator, named_separator
 from .._support.units import DEGREE
 from .._support.user_files import is_file
-from ..parameters import checked_table, made, nearest
+from ..parameters import build_declared, checked_table, suggest_and_list
 from ..scenario import Plane, ScenarioFile
 from ..scenario.identify_section import Site
 from ..scenario.keys import EACH, SCENARIO_KEYS, free_key
@@ -230,7 +230,7 @@ def _run_starts(table: Mapping[str, Mapping[str, object]], runs: Sequence[str]) 
     for run, entries in table.items():
         if run not in runs:
             raise ParameterError('[identify.runs."{run}"]: unknown run. {allowed}').tag(
-                "unknown_name", run=run, allowed=nearest(run, runs)
+                "unknown_name", run=run, allowed=suggest_and_list(run, runs)
             )
         keys = {free_key(word): value for word, value in entries.items()}
         starts[run] = {key: SCENARIO_KEYS[key].in_range(value) for key, value in keys.items()}
@@ -327,7 +327,7 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
 
 
 def _site(site: Mapping[str, Any]) -> Site:
-    parsed = made(Site, checked_table(Site, site, "[identify.site]"))
+    parsed = build_declared(Site, checked_table(Site, site, "[identify.site]"))
     if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
         raise ParameterError("[identify.site]: latitude_deg and longitude_deg go together; one is missing").tag(
             "half_place"

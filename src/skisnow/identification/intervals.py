@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from .._support.arrays import FloatArray
-from .._support.environment import needed
+from .._support.environment import import_extra
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from ..statistics import percentile_interval
@@ -152,7 +152,7 @@ def add_posterior_intervals(
 
 def require_emcee() -> Any:
     """Import emcee, the package that samples the posterior."""
-    return needed("emcee", extra="posterior", what=Message("A posterior"))
+    return import_extra("emcee", extra="posterior", what=Message("A posterior"))
 
 
 def posterior_places(

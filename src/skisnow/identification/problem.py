@@ -11,7 +11,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import ShownFields
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 from ..scenario.keys import EACH
 from .parameter import Parameter, values_of
 
@@ -196,7 +196,7 @@ def expand_keys(keys: Sequence[str], runs: Sequence[str]) -> tuple[str, ...]:
         own, at, run = key.partition("@")
         if at and run != EACH and run not in runs:
             raise ParameterError("--free: {key}: unknown run {run!r}. {allowed}").tag(
-                "unknown_run", key=key, run=run, allowed=nearest(run, runs)
+                "unknown_run", key=key, run=run, allowed=suggest_and_list(run, runs)
             )
         if len(runs) < 2:
             expanded.append(own)

@@ -15,7 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 from .._support.arrays import FloatArray
 from .._support.errors import SkisnowError
 from .._support.messages import Message
-from .._support.processes.batch import ExecutorLike, Pool, workers_in_force
+from .._support.processes.batch import ExecutorLike, Pool, worker_count
 from .._support.processes.kept_rows import KeptRows, Row
 from ..scenario import Scenario, Stop
 from ..scenario.reading import build_input
@@ -57,7 +57,7 @@ class Simulations:
 
     def __post_init__(self) -> None:
         advice = Message("Finished runs are kept. Start again with --resume, with fewer workers.")
-        self._pool = Pool(self.simulate, workers_in_force(self.workers), advice=advice, executor=self.executor)
+        self._pool = Pool(self.simulate, worker_count(self.workers), advice=advice, executor=self.executor)
         self._before = frozenset(self.stored.numbers())
 
     def __call__(self, tasks: Sequence[RunTask]) -> list[Row]:

@@ -26,7 +26,7 @@ from ..campaign.smet import StationSeries, read_smet
 from ..campaign.snow_micro_pen_records import SnowMicroPenSettings, snow_surface
 from ..campaign.snow_pit import ForceProfile, SnowPit
 from ..estimation.weather import QUANTITIES
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 from .caaml import write_caaml
 from .campaign_netcdf import write_campaign_netcdf
 from .opensim import Markers, read_c3d, read_motion, read_trc, write_c3d, write_motion, write_trc
@@ -195,7 +195,7 @@ def _kind(path: Path) -> str:
     ending = path.suffix.lower()
     if ending not in ENDINGS:
         problem = Message("the ending of {path} states no format; a folder is a campaign.", path=path)
-        raise ParameterError(joined([problem, nearest(ending, ENDINGS)])).tag("wrong_ending")
+        raise ParameterError(joined([problem, suggest_and_list(ending, ENDINGS)])).tag("wrong_ending")
     return ENDINGS[ending]
 
 

@@ -1,16 +1,16 @@
 """A quantity, declared once on its dataclass: for files, checks, command line, schemas, docs, forms."""
 
-from .._support.errors import meant, nearest
+from .._support.errors import suggest, suggest_and_list
 from .declared import (
     APART,
     Section,
     Word,
-    changed,
+    build_declared,
     checked_table,
     declared_text,
-    made,
     own_quantities,
     quantities,
+    replace_declared,
     require_declared,
     require_effect,
     values_of,
@@ -29,15 +29,15 @@ __all__ = [
     "Search",
     "Section",
     "Word",
-    "changed",
+    "build_declared",
     "checked_table",
     "declared_text",
-    "made",
-    "meant",
-    "nearest",
     "own_quantities",
     "quantities",
+    "replace_declared",
     "require_declared",
     "require_effect",
+    "suggest",
+    "suggest_and_list",
     "values_of",
 ]

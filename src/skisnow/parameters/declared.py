@@ -11,7 +11,7 @@ The annotation of a field declares its quantity, with its `Label`, `Allowed`, `C
 >>> (density,) = quantities(Air)
 >>> density.unit, density.default, str(density.allowed)
 ('kg/m³', 1.2, '0 or more')
->>> made(Air, {"air.density_kg_per_m3": 1.1})
+>>> build_declared(Air, {"air.density_kg_per_m3": 1.1})
 Air(density=1.1)
 >>> Air(-1.0)
 Traceback (most recent call last):
@@ -28,7 +28,7 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
-from .._support.errors import ParameterError, nearest
+from .._support.errors import ParameterError, suggest_and_list
 from .quantity import Allowed, Condition, Kind, Label, Quantity, Search
 
 T = TypeVar("T")
@@ -116,7 +116,7 @@ def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
     return tuple(quantity for quantity in quantities(owner) if quantity.condition is not None)
 
 
-def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
+def build_declared(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
     """A dataclass from values by name, in the units in the names, with its nested dataclasses.
 
     values: values in their ranges; None and missing ones leave the default.
@@ -136,19 +136,19 @@ def made(owner: type[T], values: Mapping[str, Any], *, section: str = "", **part
             parts.setdefault(quantity.field, quantity.in_si(value))
     for slot in _slots(owner):
         if len(slot.parts) == 1 and slot.field.name not in parts:
-            parts[slot.field.name] = made(slot.parts[0], values, section=slot.section.name)
+            parts[slot.field.name] = build_declared(slot.parts[0], values, section=slot.section.name)
     for name, entries in several.items():
         parts.setdefault(name, tuple(value for _, value in sorted(entries)))
     return owner(**parts)
 
 
-def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
+def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
     """The same dataclass with other values, by name, in the units of their names; also in nested dataclasses.
 
     >>> @dataclass(frozen=True)
     ... class Step:
     ...     length: Annotated[float, Quantity("solver.step_ms", "time step")]
-    >>> changed(Step(0.5e-3), {"solver.step_ms": 2.0})
+    >>> replace_declared(Step(0.5e-3), {"solver.step_ms": 2.0})
     Step(length=0.002)
     """
     parts: dict[str, Any] = {}
@@ -168,7 +168,7 @@ def changed(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
                 several[quantity.index] = value
                 parts[slot.field.name] = tuple(several)
         if slot.parts and current is not None:
-            inside = changed(current, values, section=slot.section.name)
+            inside = replace_declared(current, values, section=slot.section.name)
             if inside is not current:
                 parts[slot.field.name] = inside
     return replace(thing, **parts) if parts else thing  # type: ignore[type-var]
@@ -330,7 +330,7 @@ def checked_table(
 ) -> dict[str, Any]:
     """The stated values of a table in their kinds and units.
 
-    owner: the dataclass that declares the allowed values; `made` makes one of the values.
+    owner: the dataclass that declares the allowed values; `build_declared` makes one of the values.
     place: place of the table, for messages.
     further: other keys that it may have; the caller reads them.
     """
@@ -338,7 +338,7 @@ def checked_table(
     for name in table:
         if name not in keys and name not in further:
             raise ParameterError("{place}: unknown name {name!r}. {allowed}").tag(
-                "unknown_name", place=place, name=name, allowed=nearest(name, (*keys, *further))
+                "unknown_name", place=place, name=name, allowed=suggest_and_list(name, (*keys, *further))
             )
     for name, key in keys.items():
         if key.needed and name not in table:

@@ -263,7 +263,7 @@ class Quantity:
         return checked
 
     @property
-    def _held(self) -> float:
+    def _unit_of_field(self) -> float:
         """Size in SI of the unit of the field: a field with the whole name stores the value as stated."""
         return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
 
@@ -274,8 +274,8 @@ class Quantity:
         0.0005
         """
         if self.kind in ("numbers", "three numbers"):
-            return tuple(number * self._held for number in value)
-        return value * self._held if self.kind == "number" else value
+            return tuple(number * self._unit_of_field for number in value)
+        return value * self._unit_of_field if self.kind == "number" else value
 
     def in_unit(self, value: Any) -> Any:
         """Give a field's value in the unit of the name, three numbers as a list; None stays.
@@ -284,15 +284,15 @@ class Quantity:
         0.2
         """
         if self.kind in ("numbers", "three numbers") and value is not None:
-            return [number / self._held for number in value]
-        return value / self._held if self.kind == "number" and value is not None else value
+            return [number / self._unit_of_field for number in value]
+        return value / self._unit_of_field if self.kind == "number" and value is not None else value
 
     def require(self, value: object) -> None:
         """Refuse a field's value, as Python gives it, that no file could give."""
         if self.kind in ("numbers", "three numbers") and isinstance(value, list | tuple):
-            self.in_range([_plain(number, self._held) for number in value])
+            self.in_range([_plain(number, self._unit_of_field) for number in value])
         elif self.kind in ("number", "whole number"):
-            self.in_range(_plain(value, self._held))
+            self.in_range(_plain(value, self._unit_of_field))
         elif self.in_range(value) != value:  # a file's text may have blanks around it
             raise ParameterError(_NOT_ALLOWED).tag(
                 "out_of_range", name=self.name, value=shown_value(value), allowed=self.allowed

@@ -11,7 +11,7 @@ import numpy as np
 
 from .._support.errors import ParameterError, require_range
 from .._support.messages import Message
-from .._support.processes.batch import run_batch, workers_in_force
+from .._support.processes.batch import run_batch, worker_count
 from ..campaign import Campaign, read_campaign
 from ..estimation import Analysis, analyse
 from ..estimation.parts import site_of_campaign
@@ -113,7 +113,7 @@ def turn(
     * The page docs/how-to/in-python.md.
     """
     _require(unloading_ratio, shear_displacement, runs)
-    workers = workers_in_force(workers)
+    workers = worker_count(workers)
     say = progress or (lambda *_: None)
     analysis = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
     snow = analysis.snow(site, unloading_ratio=unloading_ratio)

@@ -11,7 +11,7 @@ from typing import get_args
 from .._support.arrays import content_hash
 from .._support.errors import ParameterError, require_choice, require_range
 from .._support.messages import Message
-from .._support.processes.batch import ExecutorLike, Pool, require_executor, workers_in_force
+from .._support.processes.batch import ExecutorLike, Pool, require_executor, worker_count
 from .._support.processes.kept_rows import KeptRows
 from .._support.units import Facts, Shown, amount
 from ..scenario import Scenario
@@ -19,7 +19,7 @@ from .line import RacingLine, course_of, first_gates, follower_line, skier_of
 from .point import Racer, RacerModel, ScoredLine, score_in, turns_in
 from .score import NOT_PASSED, Score
 from .search import Evaluated, Evaluations, require_cmaes
-from .windows import RANGES, How, Progress, Search, Windows
+from .windows import RANGES, Progress, Search, Windows, WindowSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False, eq=False)
@@ -169,7 +169,7 @@ def quickest_line(
     * The page docs/how-to/race.md.
     """
     require_choice("model", model, get_args(RacerModel))
-    begun = _begun(scenario, gates, start)
+    begun = _start_line(scenario, gates, start)
     window, step = _window(len(begun.turns), window, step, ahead)
     _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
     search = _search(search, model)
@@ -183,9 +183,9 @@ def quickest_line(
     rows = KeptRows() if checkpoint is None else KeptRows.opened(checkpoint, _fingerprint(racer, begun, settings))
     advice = Message("Finished evaluations are kept. Start again, with fewer workers.")
     try:
-        with Pool(ScoredLine(racer), workers_in_force(workers), advice=advice, executor=executor) as pool:
+        with Pool(ScoredLine(racer), worker_count(workers), advice=advice, executor=executor) as pool:
             made = Evaluations(pool, rows, [])
-            how = How(search, evaluations, population, spread, settled, seed, tell)
+            how = WindowSettings(search, evaluations, population, spread, settled, seed, tell)
             kinds = len(RANGES) - (model == "point" or not skier_of(scenario).brakes_to)
             searched = Windows(made, how, window, step, ahead, kinds).search_line(begun)
     finally:
@@ -197,7 +197,7 @@ def quickest_line(
     )  # fmt: skip
 
 
-def _begun(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:
+def _start_line(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:
     course = course_of(scenario)
     line = follower_line(scenario) if start is None else start
     if start is not None and len(start.turns) != len(course.gates) and gates is None:

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from .._support.arrays import FloatArray
-from .._support.environment import needed
+from .._support.environment import import_extra
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.processes.batch import Pool
@@ -105,10 +105,10 @@ class Batches:
 
 def require_cmaes() -> Any:
     """The package of the search."""
-    return needed("cmaes", extra="racing", what=Message("A race"))
+    return import_extra("cmaes", extra="racing", what=Message("A race"))
 
 
-def least_of(
+def minimise(
     batches: Batches,
     start: FloatArray,
     *,

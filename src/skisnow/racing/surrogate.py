@@ -240,7 +240,7 @@ ALIKE: Final = 0.25
 
 
 @dataclass(frozen=True, slots=True)
-class Daring:
+class PointChoice:
     """Choice of a point of a batch.
 
     curiosity: times the deviation of a time, by which it may come out other than expected.
@@ -254,7 +254,12 @@ class Daring:
     held: float
 
 
-BATCH: Final = (Daring(0.1, 4.0, 0.0), Daring(1.0, 1.0, 0.5), Daring(0.3, 4.0, 0.5), Daring(1.0, 2.0, 0.0))
+BATCH: Final = (
+    PointChoice(0.1, 4.0, 0.0),
+    PointChoice(1.0, 1.0, 0.5),
+    PointChoice(0.3, 4.0, 0.5),
+    PointChoice(1.0, 2.0, 0.0),
+)
 """The places of a batch: the first is where the least is expected."""
 
 
@@ -360,7 +365,7 @@ class SurrogateSearch:
 
 
 def _best_within(
-    prospects: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: Daring,
+    prospects: Prospects, directions: FloatArray, rest: FloatArray, centre: FloatArray, box: float, daring: PointChoice,
     seed: Sequence[int],
 ) -> FloatArray:  # fmt: skip
     """Point of the largest prospect within a box about the centre and the unit cube (m,)."""

@@ -12,7 +12,7 @@ from .._support.arrays import FloatArray
 from .line import RacingLine, first_gates, with_numbers
 from .point import LinePoint, turns_in
 from .score import NOT_PASSED
-from .search import Batches, Evaluated, Evaluations, least_of
+from .search import Batches, Evaluated, Evaluations, minimise
 from .surrogate import SurrogateSearch
 
 Progress: TypeAlias = Callable[[str], None]
@@ -26,7 +26,7 @@ _LOW: Final = np.array([low for low, _ in RANGES.values()])
 
 
 @dataclass(frozen=True, slots=True)
-class How:
+class WindowSettings:
     """Settings of a window's search: the arguments of `quickest_line`."""
 
     search: Search
@@ -48,7 +48,7 @@ class Windows:
     """
 
     made: Evaluations
-    how: How
+    how: WindowSettings
     window: int
     step: int
     ahead: int
@@ -60,13 +60,13 @@ class Windows:
         if self.window == count:
             return self._part(begun, 0, count, count)
         best = self._whole(begun)
-        line = _as_found(begun, best)
+        line = _with_best_turns(begun, best)
         first, end = 0, min(self.window + self.ahead, count)
         while True:
             last = min(first + self.window, count)
             part = self._part(line, first, last, end)
             if part.value < NOT_PASSED:
-                line = _as_found(line, part)
+                line = _with_best_turns(line, part)
                 if end == count and part.value < best.value:
                     best = part
                 if last == count:
@@ -91,7 +91,7 @@ class Windows:
         batches, place = self._batches(line, first, last, end), self._place(line, first, last)
         how = self.how
         if how.search == "cma" or how.evaluations == 1:
-            return least_of(
+            return minimise(
                 batches, place, count=how.evaluations, population=how.population, spread=how.spread,
                 seed=(how.seed, first), settled=how.settled,
             )  # fmt: skip
@@ -124,7 +124,7 @@ class Windows:
         return np.clip((numbers - _LOW) / _WIDTH, 0.0, 1.0)[:, : self.kinds].ravel()
 
 
-def _as_found(line: RacingLine, evaluation: Evaluated) -> RacingLine:
+def _with_best_turns(line: RacingLine, evaluation: Evaluated) -> RacingLine:
     """The line with its first turns replaced by those of an evaluated point of the search."""
     turns = turns_in(evaluation.row)
     return RacingLine(line.course, line.start, (*turns, *line.turns[len(turns) :]))

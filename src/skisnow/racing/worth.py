@@ -160,7 +160,7 @@ def compare_variants(
     if start is not None:
         raced[START] = scenario, start
     raced |= {name: (variant, line) for name, variant in others.items()}
-    points = [(_on(variant, scenario, snow), along) for variant, along in raced.values() for snow in snows]
+    points = [(_on_snow(variant, scenario, snow), along) for variant, along in raced.values() for snow in snows]
     finished_rows = None
     if checkpoint is not None:
         finished_rows = KeptRows.opened(checkpoint, _fingerprint(points, model))
@@ -218,8 +218,8 @@ def drawn_for_race(snow: SnowProperties, count: int, *, spread: float | None, se
         require_range("spread", spread, 0.0, 10.0, above=True)
         snow = replace(
             snow,
-            snow_hardness_interval=_about(snow.snow_hardness, spread),
-            failure_shear_stress_interval=_about(snow.failure_shear_stress or 0.0, spread),
+            snow_hardness_interval=_spread_interval(snow.snow_hardness, spread),
+            failure_shear_stress_interval=_spread_interval(snow.failure_shear_stress or 0.0, spread),
         )
     shares = qmc.LatinHypercube(2, rng=np.random.default_rng(seed)).random(count)
     return [snow, *drawn_snows(snow, shares)]
@@ -248,7 +248,7 @@ def wider(ski: Ski, more: float) -> Ski:
     return replace(ski, name=f"{ski.name}, waist {more * 1e3:+g} mm", width=ski.width + more * (1.0 - along**2))
 
 
-def _on(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
+def _on_snow(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
     """A variant on another snow: where it changes H_V or S_f it changes them there as much."""
     own, its = base.contact.snow, variant.contact.snow
     share = its.snow_hardness / own.snow_hardness
@@ -268,7 +268,7 @@ def _on(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
     return replace(variant, contact=replace(variant.contact, snow=changed), skier=skier)
 
 
-def _about(value: float, spread: float) -> tuple[float, float]:
+def _spread_interval(value: float, spread: float) -> tuple[float, float]:
     """Interval from value / (1 + spread) to value (1 + spread)."""
     return value / (1.0 + spread), value * (1.0 + spread)
 

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray, IntArray
 from .._support.errors import ParameterError
-from .._support.user_files import GivenError, json_value
+from .._support.user_files import ContentError, json_value
 from .meshes import COLOURS, drawn_thickness
 from .replay import SKI_NAMES, Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack
 from .skier import JOINTS, Part, skier_parts
@@ -105,7 +105,7 @@ def replay_of_bytes(content: bytes) -> Replay:
             raise ParameterError("a piece of the groove belongs to no ski").tag("damaged")
         return _build(header, arrays)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, MemoryError) as error:
-        if isinstance(error, ParameterError) and not isinstance(error, GivenError):
+        if isinstance(error, ParameterError) and not isinstance(error, ContentError):
             raise
         raise ParameterError("the replay is damaged or cut off ({error}). Write it again").tag(
             "damaged", error=error

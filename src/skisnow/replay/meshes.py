@@ -58,7 +58,7 @@ def _force_colours(replay: Replay, force: FloatArray) -> FloatArray:
     """Colours (m, 3) of forces (m,) along a ski in N/m, on the scale of the whole run."""
     share = force / end_of_force_scale(replay.skis.force_per_length)
     face = linear_colours("force", share)
-    face[share <= COLOURS["least_share"]] = linear(COLOURS["unloaded"])
+    face[share <= COLOURS["least_share"]] = linear_light(COLOURS["unloaded"])
     return face
 
 
@@ -67,7 +67,7 @@ def _ski_with_walls(base: FloatArray, top: FloatArray, face: FloatArray) -> Mesh
     ring = [top[:, 0], top[:, 1], base[:, 1], base[:, 0]]  # twice: for the faces and for the walls
     corners = np.stack([ring[0], ring[1], ring[2], ring[3], ring[3], ring[0], ring[1], ring[2]], axis=1)
     colours = np.empty_like(corners)
-    colours[:, :4], colours[:, 4:] = face[:, None], linear(COLOURS["side"])
+    colours[:, :4], colours[:, 4:] = face[:, None], linear_light(COLOURS["side"])
     pairs = [(0, 1), (2, 3), (4, 5), (6, 7)]
     return Mesh(corners.reshape(-1, 3), colours.reshape(-1, 3), _strips(len(corners), CORNERS, pairs))
 
@@ -119,7 +119,7 @@ def snow_mesh(replay: Replay) -> Mesh:
     )
     place = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     vertices = np.column_stack([place, surface_heights(replay, *place.T)])
-    colours = np.broadcast_to(linear(COLOURS["snow"]), vertices.shape)
+    colours = np.broadcast_to(linear_light(COLOURS["snow"]), vertices.shape)
     return Mesh(vertices, colours, _strips(len(x), len(y), [(j, j + 1) for j in range(len(y) - 1)]))
 
 
@@ -142,7 +142,7 @@ def grid_mesh(replay: Replay) -> Mesh:
     place, dark = np.concatenate(pieces), np.concatenate(tones)
     vertices = np.column_stack([place, surface_heights(replay, *place.T)])
     vertices += LIFTED * _normals(replay, vertices)
-    colours = np.where(dark[:, None], linear(_GRID[True]), linear(_GRID[False]))
+    colours = np.where(dark[:, None], linear_light(_GRID[True]), linear_light(_GRID[False]))
     return Mesh(vertices, colours, np.arange(len(vertices)).reshape(-1, 2))
 
 
@@ -195,10 +195,10 @@ def linear_colours(kind: str, share: FloatArray) -> FloatArray:
     scale = np.asarray(COLOURS[kind], dtype=float)
     at = np.clip(share, 0.0, 1.0) * (len(scale) - 1)
     parts = [np.interp(at, np.arange(len(scale)), scale[:, i]) for i in range(3)]
-    return linear(np.stack(parts, axis=-1))
+    return linear_light(np.stack(parts, axis=-1))
 
 
-def linear(colour: npt.ArrayLike) -> FloatArray:
+def linear_light(colour: npt.ArrayLike) -> FloatArray:
     """Linear light, 0 to 1, of an sRGB colour, 0 to 255 (IEC 61966-2-1)."""
     part = np.asarray(colour, dtype=float) / 255.0
     return np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)

@@ -26,7 +26,7 @@ from .meshes import (
     surface_heights,
     unloaded_ski_mesh,
 )
-from .replay import SKI_NAMES, Replay, ReplayBoots, continuous, nearest_frame
+from .replay import SKI_NAMES, Replay, ReplayBoots, nearest_frame, without_sign_jumps
 from .skier import JOINTS, part_poses, skier_mesh, skier_parts
 
 
@@ -193,7 +193,7 @@ def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatA
     """Places (n, 3) of a moving boot in the sledge's frame (m), and its quaternions x, y, z, w."""
     back = Rotation.from_quat(_sledge_quaternions(replay)).inv()
     turn = (back * Rotation.from_quat(np.roll(boots.attitude[:, ski], -1, axis=1))).as_quat()
-    return back.apply(boots.place[:, ski] - replay.place), continuous(turn)
+    return back.apply(boots.place[:, ski] - replay.place), without_sign_jumps(turn)
 
 
 def _groove(model: Glb, replay: Replay) -> list[int]:

@@ -313,10 +313,10 @@ def quaternions(matrices: FloatArray) -> FloatArray:
     """
     if not len(matrices):
         return np.zeros((0, 4))
-    return continuous(np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1))
+    return without_sign_jumps(np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1))
 
 
-def continuous(turns: FloatArray) -> FloatArray:
+def without_sign_jumps(turns: FloatArray) -> FloatArray:
     """The same rotations by quaternions (n, 4) of which none is opposite to the one before."""
     turned = np.sum(turns[1:] * turns[:-1], axis=1) < 0.0
     return np.asarray(turns * np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))[:, None])

@@ -13,7 +13,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SkisnowError, require_range
 from .._support.messages import Message, template
 from .._support.units import DEGREE
-from .._support.user_files import GivenError, json_value
+from .._support.user_files import ContentError, json_value
 from ..geometry.vectors import axes_of
 from ..scenario import Plane, read_profile, read_terrain
 from ..scenario.keys import SCENARIO_KEYS
@@ -80,7 +80,7 @@ def replay_of_file(
         setting = _setting(path, values, outcome, spacing, ski)
         return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
     except SkisnowError as error:
-        if str(path.parent) in str(error) and not isinstance(error, GivenError):
+        if str(path.parent) in str(error) and not isinstance(error, ContentError):
             raise
         raise _not_a_run(path, error) from error
     except OSError as error:

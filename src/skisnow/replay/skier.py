@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 from .._support.arrays import FloatArray
 from .._support.units import DEGREE
 from ..skier.anthropometry import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM, Segment
-from .meshes import Mesh, linear
+from .meshes import Mesh, linear_light
 from .replay import Replay, ReplaySkier, quaternions
 
 SIDED: Final = ("ankle", "knee", "hip", "shoulder", "elbow", "hand", "pole tip")
@@ -256,7 +256,7 @@ def _round(rings: Sequence[Ring], colour: tuple[int, int, int], *, square: float
         np.stack(np.broadcast_arrays(first + following, first + AROUND + following, first + AROUND + corner), -1),
     )
     pieces = np.concatenate([below.reshape(-1, 3), above.reshape(-1, 3)])
-    return Mesh(vertices, np.broadcast_to(linear(colour), vertices.shape), pieces)
+    return Mesh(vertices, np.broadcast_to(linear_light(colour), vertices.shape), pieces)
 
 
 def _ball(middle: tuple[float, float, float], half: tuple[float, float, float], colour: tuple[int, int, int]) -> Mesh:

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from .._support.arrays import BoolArray
 from .._support.errors import require_language
 from .._support.messages import ENGLISH, Message, in_language, outcome_words, template
-from .._support.spreadsheet_text import csv_text, guarded
+from .._support.spreadsheet_text import csv_text, protect_from_formulas
 from .._support.staging import require_writable, staged, write_file
 from .figures.drawing import Drawing, Picture
 from .figures.figure_files import picture_files, silent, write_pictures
@@ -81,7 +81,7 @@ def fits_csv(result: Identification) -> str:
                 numbers = (fit.measured[i, k], fit.fitted[i, k], fit.sd[i, k])
                 if math.isfinite(numbers[0]):
                     cells = [repr(float(number)) if math.isfinite(number) else "" for number in numbers]
-                    rows.append([guarded(fit.name), fit.kind, repr(float(along)), label, *cells])
+                    rows.append([protect_from_formulas(fit.name), fit.kind, repr(float(along)), label, *cells])
     return csv_text(rows)
 
 

@@ -152,7 +152,7 @@ def short(name: str, value: Any) -> str:
     >>> short("load_N", 800.0), short("ski", "slalom"), short("twist", False)
     ('800 N', 'slalom', 'twist false')
     """
-    before, behind = _around(name)
+    before, behind = _prefix_and_suffix(name)
     if isinstance(value, bool):
         text = "true" if value else "false"
     else:
@@ -165,7 +165,7 @@ def label(name: str) -> str:
     return CARVE_KEYS[name].axis_label if name in CARVE_KEYS else name
 
 
-def _around(name: str) -> tuple[str, str]:
+def _prefix_and_suffix(name: str) -> tuple[str, str]:
     """Short texts before and after a value."""
     key = CARVE_KEYS.get(name)
     if key is None or not (key.label or key.symbol or (key.kind == "text" and not key.choices)):

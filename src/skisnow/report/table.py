@@ -13,7 +13,7 @@ import orjson
 from markupsafe import Markup
 
 from .._support.messages import Message, joined, local_number
-from .._support.spreadsheet_text import guarded
+from .._support.spreadsheet_text import protect_from_formulas
 from . import formatting
 from .formatting import html, prose
 
@@ -134,7 +134,7 @@ def _digits(values: Sequence[float | None]) -> list[str]:
 
 
 def _text(value: Any) -> str:
-    return "" if value is None else guarded(str(value))
+    return "" if value is None else protect_from_formulas(str(value))
 
 
 def _truth(value: bool) -> str:
@@ -146,7 +146,7 @@ _CSV_TEXT: Final[dict[str, Callable[[Any], str]]] = {
     "words": _text,
     "yes": _truth,
     "tick": _truth,
-    "codes": lambda codes: guarded("; ".join(codes)),
+    "codes": lambda codes: protect_from_formulas("; ".join(codes)),
 }
 
 

@@ -21,7 +21,7 @@ from .._support.units import DEGREE, Facts, Shown, ends
 from .._support.user_files import plain_text
 from .._support.user_files.motion_head import HEAD_END, degrees_stated, head_of_motion, require_whole
 from ..geometry.vectors import axes_of
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -218,7 +218,7 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     stripped = [name.strip() for name in names]
     head = column_names(stripped, (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in _OF_A_BOOT)))
     _require_columns(path, head)
-    table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_read(name)}
+    table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_input_column(name)}
     clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
         raise ParameterError("{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more").tag(
@@ -288,21 +288,21 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
     return rows, head_of_motion(lines[: ends[0]])
 
 
-def _is_read(name: str) -> bool:
+def _is_input_column(name: str) -> bool:
     return not name.endswith(_RESULTS)
 
 
-def _known(head: list[str]) -> tuple[str, ...]:
+def _known_columns(head: list[str]) -> tuple[str, ...]:
     places = OF_SLOPE if "left_x_m" in head else OF_SLEDGE
     return (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
 
 
 def _require_columns(path: Path, head: list[str]) -> None:
-    motion_columns, counts = _known(head), Counter(head)
+    motion_columns, counts = _known_columns(head), Counter(head)
     for name in head:
-        if _is_read(name) and name not in motion_columns:
+        if _is_input_column(name) and name not in motion_columns:
             raise ParameterError("{path}: unknown column {name}. {allowed}").tag(
-                "missing", path=path, name=name, allowed=nearest(name, motion_columns)
+                "missing", path=path, name=name, allowed=suggest_and_list(name, motion_columns)
             )
         if counts[name] > 1:
             raise ParameterError("{path}: the column {name} occurs twice; remove one").tag(
@@ -313,7 +313,7 @@ def _require_columns(path: Path, head: list[str]) -> None:
         raise ParameterError("{path}: it needs one of the columns time_s (time in .mot) and distance_m").tag(
             "missing", path=path
         )
-    if not any(_is_read(name) and name not in clocks for name in head):
+    if not any(_is_input_column(name) and name not in clocks for name in head):
         raise ParameterError("{path}: no column is one of a boot. There are {known}").tag(
             "missing", path=path, known=list(motion_columns[3:])
         )

@@ -8,11 +8,11 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from .._support.errors import ParameterError, most_like
+from .._support.errors import ParameterError, most_similar
 from .._support.messages import Message
 from .._support.units import N_PER_MM2, N_PER_MM3
 from ..forces.friction import read_friction_file
-from ..parameters import Word, changed, made, nearest, values_of
+from ..parameters import Word, build_declared, replace_declared, suggest_and_list, values_of
 from ..ski import Ski, read_ski, ski_names
 from ..ski.ski_file import Sources
 from ..snow import SnowProperties, published_snow
@@ -53,7 +53,7 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     }
     if not any(name.startswith("skier.") for name in values):
         parts["skier"] = None
-    return made(Scenario, values, **parts), (*ski_warnings, *(course.warnings if course else ()))
+    return build_declared(Scenario, values, **parts), (*ski_warnings, *(course.warnings if course else ()))
 
 
 def _require(values: Mapping[str, Any], name: str, remedy: Message) -> None:
@@ -81,7 +81,7 @@ def _slope(resolution: Resolution) -> Slope:
     if kind == "plane":
         profile = Message('Give it, or a measured profile: slope.kind = "profile" and slope.profile')
         _require(values, "slope.angle_deg", profile)
-        return made(Plane, values)
+        return build_declared(Plane, values)
     plane = Message('Give it, or a plane: slope.kind = "plane" and slope.angle_deg')
     if kind == "grid":
         _require(values, "slope.grid", plane)
@@ -105,7 +105,7 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
     if name is not None and name not in course_names():
         raise ParameterError(
             "course.name is {name!r}, no course of the catalogue. {allowed} A path is course.file"
-        ).tag("unknown_name", name=name, allowed=nearest(str(name), course_names()))
+        ).tag("unknown_name", name=name, allowed=suggest_and_list(str(name), course_names()))
     course = read_course(name or resolution.files["course.file"], **options)
     return course_on_slope(course, slope)
 
@@ -121,7 +121,7 @@ def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]
     if name not in ski_names():
         raise ParameterError(
             "ski.name is {name!r}, not a ski of the catalogue. {allowed} Put a path under ski.file"
-        ).tag("unknown_name", name=name, allowed=nearest(str(name), ski_names()))
+        ).tag("unknown_name", name=name, allowed=suggest_and_list(str(name), ski_names()))
     return sources.ski(str(name))
 
 
@@ -150,7 +150,7 @@ def _contact(resolution: Resolution) -> Contact:
         measured |= {"friction_law": law, "friction": values.get("friction.mu_0", 0.0)}
     if "snow.layers_file" in values:
         measured["layers"] = read_snow_layers(resolution.files["snow.layers_file"])
-    return made(Contact, values, snow=snow, snow_map=resolution.snow_map, **measured)
+    return build_declared(Contact, values, snow=snow, snow_map=resolution.snow_map, **measured)
 
 
 def _snow(resolution: Resolution) -> SnowProperties:
@@ -170,7 +170,7 @@ def _snow(resolution: Resolution) -> SnowProperties:
             raise ParameterError("{name} is missing: the failure shear stress S_f. It has no default").tag(
                 "missing", name=S_F
             )
-        snow = made(SnowProperties, values, section="snow", source=Message("given as numbers"))
+        snow = build_declared(SnowProperties, values, section="snow", source=Message("given as numbers"))
     else:
         snow = with_numbers(snow, values)
         require_stress(snow, None, carves=snow_map is None or snow_map.mean_stress is None)
@@ -214,14 +214,14 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     snow = with_numbers(scenario.contact.snow.without_measured(**measured), _in_range(numbers))
     if snow is not scenario.contact.snow:
         scenario = replace(scenario, contact=replace(scenario.contact, snow=snow))
-    return changed(scenario, numbers)
+    return replace_declared(scenario, numbers)
 
 
 def _full_name(name: str, part_names: Collection[str]) -> str:
     try:
         return full_name(name)
     except ParameterError as error:
-        part = most_like(name, part_names)
+        part = most_similar(name, part_names)
         if part is None:
             raise
         raise ParameterError("{problem} Did you mean the part {part}?").tag(

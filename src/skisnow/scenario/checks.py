@@ -11,7 +11,7 @@ from ..ski import Ski
 from .run_settings import Start
 from .skier import Skier
 from .sledge import RigidSledge, Shear
-from .terrain import Slope, reach_of
+from .terrain import Slope, extent_of
 
 
 def require_sound(
@@ -25,7 +25,7 @@ def require_sound(
     friction: float,
 ) -> None:
     """Refuse parts that do not go together."""
-    for complaint in _together(slope, sledge, ski, clamp_length, start, shear, friction):
+    for complaint in _contradictions(slope, sledge, ski, clamp_length, start, shear, friction):
         raise ParameterError(complaint).tag("contradiction")
 
 
@@ -50,7 +50,7 @@ def require_skier(skier: Skier | None, sledge: RigidSledge, *, has_boots: bool, 
         ).tag("out_of_range", longest_leg=skier.longest_leg, centre_of_mass=sledge.centre_of_mass[1])
 
 
-def _together(
+def _contradictions(
     slope: Slope,
     sledge: RigidSledge,
     ski: Ski,
@@ -84,15 +84,15 @@ def _together(
             "the friction at the start's speed, μ_0 + μ_1 v, is {friction:.3g}; below 0 it would drive the ski",
             friction=friction,
         )
-    if abs(sledge.edge_angle) < shear.least_edge_angle:
-        least = math.degrees(shear.least_edge_angle)
+    if abs(sledge.edge_angle) < shear.smallest_cutting_angle:
+        least = math.degrees(shear.smallest_cutting_angle)
         yield Message(
             "the edge angle is {edge_angle:.3g}°; machining needs {least:.3g}° or more, β + 2 "
             "shear.least_shear_plane_deg: use a larger edge angle or another shear.law",
             edge_angle=math.degrees(abs(sledge.edge_angle)),
             least=least,
         )
-    for name, place, (first, last) in zip("xy", (start.x, start.y), reach_of(slope), strict=True):
+    for name, place, (first, last) in zip("xy", (start.x, start.y), extent_of(slope), strict=True):
         if not first <= place <= last:
             yield Message(
                 "the start, {name} = {place:g} m, is off the slope, which reaches from {first:g} to {last:g} m there",

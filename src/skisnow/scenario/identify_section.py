@@ -13,14 +13,14 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
-from ..parameters import Allowed, Quantity, checked_table, nearest, quantities
+from ..parameters import Allowed, Quantity, checked_table, quantities, suggest_and_list
 from ..snow import SnowProperties
 from ..snow.mean_snow import log_normal
 from .keys import SCENARIO_KEYS, free_key
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sought:
+class SearchEntry:
     """Entries of ``[identify."KEY"]``, in the unit of that key."""
 
     start: Annotated[float | None, Quantity("start", "where the search begins; default: the scenario's value")] = None
@@ -42,7 +42,7 @@ class Site:
     height_m: Annotated[float | None, Quantity("height_m", "of that place above the ellipsoid")] = None
 
 
-GIVEN: Final = tuple(quantity.name for quantity in quantities(Sought))
+GIVEN: Final = tuple(quantity.name for quantity in quantities(SearchEntry))
 NO_KEYS: Final = ("runs", "site", "clock")
 """Entries of ``[identify]`` other than parameters."""
 SITE: Final = tuple(quantity.name for quantity in quantities(Site))
@@ -60,7 +60,7 @@ def require_known(section: Mapping[str, Any]) -> None:
     for name in _table(section, "site"):
         if name not in SITE:
             raise ParameterError("[identify.site]: unknown name {name!r}. {allowed}").tag(
-                "unknown_name", name=name, allowed=nearest(name, SITE)
+                "unknown_name", name=name, allowed=suggest_and_list(name, SITE)
             )
     for run, entries in _table(section, "runs").items():
         if not isinstance(entries, dict):
@@ -84,7 +84,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
                 'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
                 '[identify."{key}"]. A value of the scenario belongs to its own section, [{section}]'
             ).tag("wrong_kind", word=word, table=table, given=list(GIVEN), key=key, section=key.partition(".")[0])
-        parameters[key] = checked_table(Sought, table, f'[identify."{key}"]')
+        parameters[key] = checked_table(SearchEntry, table, f'[identify."{key}"]')
     return parameters
 
 

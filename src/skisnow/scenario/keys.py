@@ -6,11 +6,11 @@ import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from .._support.errors import ParameterError, most_like, nearest
+from .._support.errors import ParameterError, most_similar, suggest_and_list
 from .._support.messages import Message, joined
 from .._support.spreadsheet_text import is_number
 from .._support.units import without_unit
-from .._support.user_files import GivenError, toml_values
+from .._support.user_files import ContentError, toml_values
 from ..parameters import InputValue, Word, quantities, values_of
 from .scenario import Scenario
 
@@ -41,8 +41,8 @@ def full_name(name: str) -> str:
             "unknown_name", name=name, similar=_FULL_NAMES[key]
         )
     keys = [full for full in SCENARIO_KEYS if full.startswith(f"{section}.")] if section in SECTIONS else []
-    short = most_like(key, _FULL_NAMES)
-    similar = most_like(name, keys) or (_FULL_NAMES[short] if short else most_like(name, SCENARIO_KEYS))
+    short = most_similar(key, _FULL_NAMES)
+    similar = most_similar(name, keys) or (_FULL_NAMES[short] if short else most_similar(name, SCENARIO_KEYS))
     raise ParameterError(_unknown_key(name, similar, keys)).tag("unknown_name")
 
 
@@ -61,7 +61,7 @@ def flatten_sections(sections: Mapping[str, Any]) -> dict[str, object]:
     for section, table in sections.items():
         if section not in SECTIONS:
             raise ParameterError("unknown section [{section}]. {allowed}").tag(
-                "missing", section=section, allowed=nearest(section, SECTIONS)
+                "missing", section=section, allowed=suggest_and_list(section, SECTIONS)
             )
         if not isinstance(table, dict):
             raise ParameterError("{section} is {table!r}; it must be a table, begun by the line [{section}]").tag(
@@ -92,7 +92,7 @@ def parse_change(text: str) -> tuple[str, object]:
     is_text = SCENARIO_KEYS[name].kind == "text"
     try:
         values = toml_values(f"value = {value_text}")
-    except GivenError:
+    except ContentError:
         if not is_text and "," in value_text and is_number(value_text, ","):
             corrected = text.replace(value_text, value_text.replace(",", "."))
             raise ParameterError("{text!r}: numbers are written with a decimal point here. Write {corrected}").tag(
@@ -146,7 +146,7 @@ def short_name(key: str) -> str:
     return without_unit(own.partition(".")[2]) + at + run
 
 
-def _forms(key: str) -> tuple[str, str, str, str]:
+def _spellings(key: str) -> tuple[str, str, str, str]:
     bare = key.partition(".")[2]
     return key, bare, without_unit(key), without_unit(bare)
 
@@ -154,7 +154,7 @@ def _forms(key: str) -> tuple[str, str, str, str]:
 def _by_word() -> Mapping[str, tuple[str, ...]]:
     keys_by_word: dict[str, tuple[str, ...]] = {}
     for key in SCENARIO_KEYS:
-        for word in dict.fromkeys(_forms(key)):
+        for word in dict.fromkeys(_spellings(key)):
             keys_by_word[word] = (*keys_by_word.get(word, ()), key)
     return keys_by_word
 
@@ -179,10 +179,10 @@ def free_key(word: str) -> str:
         return usable[0]
     if meant:
         raise ParameterError("{key} cannot be identified: {reason}. Allowed: {keys}").tag(
-            "not_free", key=meant[0], reason=_why_not(meant[0]), keys=list(FREE_KEYS)
+            "not_free", key=meant[0], reason=_reason_fixed(meant[0]), keys=list(FREE_KEYS)
         )
     raise ParameterError("{word!r} is not a key of a scenario. {allowed}").tag(
-        "unknown_name", word=word, allowed=_near(word)
+        "unknown_name", word=word, allowed=_similar_keys(word)
     )
 
 
@@ -214,7 +214,7 @@ def _key_of_run(word: str) -> str:
     return free_key(own) + at + run.strip()
 
 
-def _why_not(key: str) -> Message:
+def _reason_fixed(key: str) -> Message:
     if key.startswith(_HOW_IT_IS_COMPUTED):
         return Message("it is a setting of the computation, not of the run")
     return _NOT_ONE_NUMBER[SCENARIO_KEYS[key].kind]
@@ -230,8 +230,8 @@ _NOT_ONE_NUMBER: Final = {
 }
 
 
-def _near(word: str) -> Message:
-    small = {form.lower(): form for key in FREE_KEYS for form in (_forms(key)[3], _forms(key)[1], key)}
+def _similar_keys(word: str) -> Message:
+    small = {form.lower(): form for key in FREE_KEYS for form in (_spellings(key)[3], _spellings(key)[1], key)}
     like = difflib.get_close_matches(word.lower(), small, n=4, cutoff=0.5)
     keys = dict.fromkeys(_KEYS_BY_WORD[small[spelling]][0] for spelling in like)
     if keys:

@@ -31,7 +31,7 @@ def implausible_values(scenario: Scenario) -> tuple[str, ...]:
         *_like_radians(scenario),
         *_like_another_unit(scenario),
         *_outside_ranges(scenario),
-        *_beside_rules(scenario),
+        *_course_departures(scenario),
         *_short_boots(scenario),
     )
 
@@ -70,7 +70,7 @@ def _like_another_unit(scenario: Scenario) -> list[str]:
     ]
 
 
-def _beside_rules(scenario: Scenario) -> tuple[str, ...]:
+def _course_departures(scenario: Scenario) -> tuple[str, ...]:
     course = scenario.course
     if course is None:
         return ()

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.environment import needed
+from .._support.environment import import_extra
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.spreadsheet_text import CsvRow, csv_rows
@@ -61,7 +61,7 @@ def read_geotiff(path: str | Path, *, column: str) -> PlacedValues:
 def _rasterio(path: str | Path) -> Any:
     """The module rasterio; without it the error names the file that needs it."""
     grid = Message("Or write the heights as an ESRI ASCII grid, such as by gdal_translate -of AAIGrid.")
-    return needed("rasterio", extra="geotiff", what=Message("The GeoTIFF {path}", path=path), instead=grid)
+    return import_extra("rasterio", extra="geotiff", what=Message("The GeoTIFF {path}", path=path), instead=grid)
 
 
 def _require_one_band(path: str | Path, source: Any) -> None:

@@ -17,7 +17,7 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message
 from .._support.units import ShownFields
 from .._support.user_files import MOST_TOML_BYTES, is_file, plain_text, toml_values
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 from ..ski.ski_file import Sources
 from .building import build, changed_scenario
 from .identify_section import require_known
@@ -126,7 +126,7 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
             "unknown scenario {word!r}. {allowed} Any other scenario is read from a file ending in .toml"
-        ).tag("unknown_name", word=word, allowed=nearest(word, scenario_names()))
+        ).tag("unknown_name", word=word, allowed=suggest_and_list(word, scenario_names()))
     return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
 
 
@@ -249,7 +249,7 @@ def scenario_text(name: str) -> str:
     """
     if name not in scenario_names():
         raise ParameterError("unknown built-in scenario {name!r}. {allowed}").tag(
-            "unknown_name", name=name, allowed=nearest(name, scenario_names())
+            "unknown_name", name=name, allowed=suggest_and_list(name, scenario_names())
         )
     text = (_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     head, *parts = _SECTION.split(text)

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from ..parameters import Quantity, quantities
 from ..parameters.json_schema import DRAFT, Schema, output_schema, table_schema
-from .identify_section import CLOCKS, Site, Sought
+from .identify_section import CLOCKS, SearchEntry, Site
 from .keys import SCENARIO_KEYS, SECTIONS
 
 
@@ -92,7 +92,7 @@ def _identify() -> Schema:
             },
         },
         "additionalProperties": {
-            **table_schema(quantities(Sought)),
+            **table_schema(quantities(SearchEntry)),
             "description": parameter,
             "dependentRequired": {"prior_mean": ["prior_sd"], "prior_sd": ["prior_mean"]},
         },

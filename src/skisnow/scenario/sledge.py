@@ -264,7 +264,7 @@ class Shear:
         return None
 
     @property
-    def least_edge_angle(self) -> float:
+    def smallest_cutting_angle(self) -> float:
         """Edge angle (rad) below which the law is not its own any more."""
         if self.law != "machining":
             return 0.0

@@ -171,13 +171,13 @@ def read_snow_map(path: str | Path) -> SnowMap:
         The file cannot be read, a column is missing, a cell has no number above 0, or places do not form a grid; file,
         row, column and value are named.
     """
-    rows = [_positive(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
+    rows = [_checked_row(row) for row in csv_rows(path, ("x_m",), further=("y_m", *SIZES), action=_ACTION)]
     names = [name for name in SIZES if rows and name in rows[0].cells]
     if not names:
         raise ParameterError("{path}: no column of {columns}, or no row. {action}").tag(
             "missing", path=path, columns=list(SIZES), action=_ACTION
         )
-    grids = _grids(path, names) if "y_m" in rows[0].cells else _along(path, rows, names)
+    grids = _grids(path, names) if "y_m" in rows[0].cells else _grids_along_x(path, rows, names)
     try:
         return SnowMap(
             hardness=grids.get("H_V_N_per_mm3"),
@@ -189,7 +189,7 @@ def read_snow_map(path: str | Path) -> SnowMap:
         raise error.at(path) from error
 
 
-def _positive(row: CsvRow) -> CsvRow:
+def _checked_row(row: CsvRow) -> CsvRow:
     """The row, if its snow properties are above 0."""
     for name in SIZES:
         if name in row.cells and not number_within(row, name) > 0.0:
@@ -202,7 +202,7 @@ def _grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
     return {name: Grid(table.x, table.y, SIZES[name] * values) for name, values in table.columns.items()}
 
 
-def _along(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:
+def _grids_along_x(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:
     """Uneven places are brought to even ones by cubics that do not overshoot."""
     x = np.array([number_within(row, "x_m") for row in rows])
     if len(x) < 2:

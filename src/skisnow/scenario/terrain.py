@@ -176,7 +176,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
     ParameterError
         The file cannot be read or is not a grid; file, row, column and value are named.
     """
-    raster = _placed(Path(path))
+    raster = _read_heights(Path(path))
     require_metres(path, raster, HEIGHT, steepest=math.tan(math.radians(STEEPEST_DEG)))
     try:
         return Terrain(
@@ -187,7 +187,7 @@ def read_terrain(path: str | Path, *, smoothing: float = 0.0, origin_x: float = 
         raise error.at(path) from error
 
 
-def _placed(path: Path) -> PlacedValues:
+def _read_heights(path: Path) -> PlacedValues:
     kind = path.suffix.lower()
     if kind in (".asc", ".agr"):
         return read_esri_ascii(path, column=HEIGHT)
@@ -246,7 +246,7 @@ def down_and_left(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
     return ahead, np.cross(normal, ahead)
 
 
-def reach_of(slope: Slope) -> tuple[tuple[float, float], tuple[float, float]]:
+def extent_of(slope: Slope) -> tuple[tuple[float, float], tuple[float, float]]:
     """The first and last x, and y (m), that the slope has; infinite where it has no end."""
     endless = (-math.inf, math.inf)
     if isinstance(slope, Terrain):

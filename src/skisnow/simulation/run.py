@@ -337,10 +337,10 @@ class Run(Shown):
         """
         potential = self.energies["potential"]
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        taken = sum(max(0.0, -float(self._given(name)[-1])) for name in GIVEN)
+        taken = sum(max(0.0, -float(self._energy(name)[-1])) for name in GIVEN)
         return float(self.energies["kinetic"][0]) + lost + taken + float(potential[0] - potential.min())
 
-    def _given(self, name: str) -> FloatArray:
+    def _energy(self, name: str) -> FloatArray:
         return self.energies.get(name, np.zeros(len(self.time)))
 
     @property
@@ -354,7 +354,7 @@ class Run(Shown):
         """|energy at the end + losses - energy at the start| (J)."""
         change = sum(float(self.energies[name][-1] - self.energies[name][0]) for name in STORED)
         lost = sum(float(self.energies[name][-1]) for name in LOST)
-        return abs(change + lost - sum(float(self._given(name)[-1]) for name in GIVEN))
+        return abs(change + lost - sum(float(self._energy(name)[-1]) for name in GIVEN))
 
     def has_residual_above(self, share: float) -> bool:
         """True if the energy residual exceeds a share of the energy exchanged, and 0.001 J."""

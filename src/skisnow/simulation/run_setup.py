@@ -18,7 +18,7 @@ from ..dynamics.motion import LONGEST_STEP, DynamicsState
 from ..geometry.surfaces import Grid
 from ..geometry.vectors import cross
 from ..scenario import Plane, Scenario, SnowMap, Solver
-from ..scenario.terrain import down_and_left, heights_of, normals_of, reach_of, surface_of
+from ..scenario.terrain import down_and_left, extent_of, heights_of, normals_of, surface_of
 from ..ski.beam import clamped
 from ..skier import BalancedSkier
 from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, TableControl
@@ -179,7 +179,7 @@ class Setup:
         if isinstance(self.scenario.slope, Plane):
             return False
         boots, ahead = self.place[:2], self.attitude[:2, 0]
-        low, high = np.transpose(reach_of(self.scenario.slope))
+        low, high = np.transpose(extent_of(self.scenario.slope))
         tips = boots + float(self.node[0]) * ahead
         aside = np.maximum(low - boots, boots - high).max()
         return bool(np.any(tips < low) or np.any(tips > high) or aside > SET_DOWN)

@@ -91,11 +91,11 @@ def nudged_scenarios(run: Run) -> dict[str, tuple[Scenario, ...]]:
     """
     scenario = run.scenario
     scenarios: dict[str, tuple[Scenario, ...]] = {}
-    displacement = _given(scenario, DISPLACEMENT)
+    displacement = _scenario_number(scenario, DISPLACEMENT)
     if displacement / FINER >= SCENARIO_KEYS[DISPLACEMENT].lowest:
         scenarios[DISPLACEMENT] = (scenario.with_(**{DISPLACEMENT: displacement / FINER}),)
     for key in NUDGED:
-        value = _given(scenario, key)
+        value = _scenario_number(scenario, key)
         if value:
             scenarios[key] = tuple(scenario.with_(**{key: value * (1.0 + sign * NUDGE)}) for sign in (1.0, -1.0))
     return scenarios
@@ -132,7 +132,7 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     ----------
     The page docs/validation/simulated-turn.md.
     """
-    again = simulate or _alike(run)
+    again = simulate or _repeat_with_laws(run)
     finer = refine(run, again)
     return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_nudge(run, again))
 
@@ -145,7 +145,7 @@ def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
         if finer.outcome == "interrupted":
             break
         refinements.append(
-            Refinement(key, _in_force(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome)
+            Refinement(key, _used_setting(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome)
         )
     return tuple(refinements)
 
@@ -157,7 +157,7 @@ def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
             other = simulate(scenario)
             if other.outcome == "interrupted":
                 return
-            was, value = _given(run.scenario, key), _given(scenario, key)
+            was, value = _scenario_number(run.scenario, key), _scenario_number(scenario, key)
             moved.append(Refinement(key, was, value, _distance(run, other), other.outcome))
         yield max(moved, key=lambda refinement: math.inf if refinement.end_moves is None else refinement.end_moves)
 
@@ -178,7 +178,7 @@ def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...
     )
 
 
-def _alike(run: Run) -> Simulate:
+def _repeat_with_laws(run: Run) -> Simulate:
     from .simulated_run import simulate  # which loads the compiled core
 
     return partial(simulate, laws=run.laws, strength_along=run.strength_along)
@@ -197,13 +197,13 @@ def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str
     }
 
 
-def _in_force(run: Run, key: str) -> float:
+def _used_setting(run: Run, key: str) -> float:
     numbers = run.numbers
     chosen = replace(run.scenario.solver, elements=round(numbers["elements"]), line_spacing=numbers["line_spacing_m"])
     return _chosen(chosen, key)
 
 
-def _given(scenario: Scenario, key: str) -> float:
+def _scenario_number(scenario: Scenario, key: str) -> float:
     return float(values_of(scenario)[key])
 
 

@@ -227,7 +227,7 @@ class ClampedSki:
     @functools.cached_property
     def mass(self) -> FloatArray:
         """Banded mass matrix (size, 11) of motions relative to the boot."""
-        at = self.ski.at(places_within(self.node, GAUSS_POINTS))
+        at = self.ski.at(element_places(self.node, GAUSS_POINTS))
         inertia = at.mass_per_length * at.width**2 / 12.0
         matrices = mass_matrices(self.node[:-1] - self.node[1:], at.mass_per_length, inertia)
         return assembled(matrices, self.dof, self.size)
@@ -255,13 +255,13 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     node, dof, size = mesh.node, mesh.dof, mesh.size
     length = node[:-1] - node[1:]
     stiffness = stiffness_matrices(
-        length, *ski.tables_at(places_within(node, GAUSS_POINTS), "bending_stiffness", "torsional_stiffness")
+        length, *ski.tables_at(element_places(node, GAUSS_POINTS), "bending_stiffness", "torsional_stiffness")
     )
     if footprint_stiffness is not None:  # as a mass, which resists in the same shapes
         under = np.where(np.abs(node[:-1] + node[1:]) < clamp_length, footprint_stiffness, 0.0)[:, None]
-        (width,) = ski.tables_at(places_within(node, GAUSS_POINTS), "width")
+        (width,) = ski.tables_at(element_places(node, GAUSS_POINTS), "width")
         stiffness = stiffness + mass_matrices(length, under + 0.0 * width, under * width**2 / 12.0)
-    width, base_height = ski.tables_at(places_within(node, STATION_POINTS), "width", "base_height")
+    width, base_height = ski.tables_at(element_places(node, STATION_POINTS), "width", "base_height")
     stations = replace(mesh.stations, width=width.ravel(), base_height=base_height.ravel())
     return ClampedSki(ski, clamp_length, node, dof, size, assembled(stiffness, dof, size), stations)
 
@@ -286,7 +286,7 @@ def _mesh(front: float, rear: float, clamp_length: float, elements: int, *, bedd
 
     # the elements run from tip to tail, against the station: the slope along the station has the other sign
     stations = Stations(
-        station=flat(places_within(node, STATION_POINTS)),
+        station=flat(element_places(node, STATION_POINTS)),
         weight=np.repeat(length / 2.0, 2),
         width=np.zeros(0),
         base_height=np.zeros(0),
@@ -300,7 +300,7 @@ def _mesh(front: float, rear: float, clamp_length: float, elements: int, *, bedd
     return _Mesh(node, dof, size, stations)
 
 
-def places_within(node: FloatArray, local: FloatArray) -> FloatArray:
+def element_places(node: FloatArray, local: FloatArray) -> FloatArray:
     """Places at local coordinates of each element (n, k); of growths of nodes, those of the places."""
     return np.asarray(node[:-1, None] - (node[:-1] - node[1:])[:, None] * local)
 
@@ -312,7 +312,7 @@ def model_nodes(front: float, rear: float, clamp_length: float, elements: int) -
 
 def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Deflection (m) and twist (rad) of the base relative to the boot at stations (m), for the unknowns u (size,)."""
-    return bent(u, *beam_rows(model, station))
+    return base_motion(u, *beam_rows(model, station))
 
 
 def beam_rows(model: ClampedSki, station: npt.ArrayLike) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -324,7 +324,9 @@ def beam_rows(model: ClampedSki, station: npt.ArrayLike) -> tuple[IntArray, Floa
     return model.dof[element], deflection_shape(local, length), twist_shape(local)
 
 
-def bent(u: FloatArray, dof: IntArray, deflection: FloatArray, twist: FloatArray) -> tuple[FloatArray, FloatArray]:
+def base_motion(
+    u: FloatArray, dof: IntArray, deflection: FloatArray, twist: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Deflection (m) and twist (rad) by rows of `beam_rows`."""
     value = np.where(dof >= 0, u[dof], 0.0)
     return np.sum(deflection * value, axis=-1), np.sum(twist * value, axis=-1)

@@ -16,7 +16,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import MM
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 from .assembling import ArcOutline, moved_stations, stiffness_table
 from .file_keys import BASE, COLUMNS, LISTS, RIGID, SKI_KEYS, STIFFNESSES, TIP_END, WIDTHS, SkiFile
 from .layout import Layout, layout_of_lengths
@@ -58,7 +58,7 @@ class SkiEdit:
             for column in edits:
                 if column not in columns:
                     raise ParameterError("SkiEdit: {field} has no {column!r}. {allowed}").tag(
-                        "unknown_name", field=what, column=column, allowed=nearest(column, columns)
+                        "unknown_name", field=what, column=column, allowed=suggest_and_list(column, columns)
                     )
 
 
@@ -190,7 +190,7 @@ def shape_value(ski: Ski, name: str) -> float:
                 "{allowed}."
             ).tag("no_keys", name=name, ski=ski.name, allowed=list(FACTORS))
         raise ParameterError("the ski has no parameter {name}. {allowed}").tag(
-            "unknown_name", name=name, allowed=nearest(name, allowed)
+            "unknown_name", name=name, allowed=suggest_and_list(name, allowed)
         )
     return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
 
@@ -243,7 +243,7 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
         if column == SIDECUT:
             return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
         return _of_table(EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column])))
-    memos, table = _memos(ski), _table_of(name)
+    memos, table = _growth_caches(ski), _table_of(name)
     memo = memos.get(table, {})
     if name in memo:
         return memo[name]
@@ -258,7 +258,7 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
         units = MM * _unit_widths(parsed, _layout(parsed), ski.station)
         memo |= {f"ski.{width}": _of_table(table, unit) for width, unit in zip(WIDTHS, units, strict=True)}
     elif table == "width":
-        sides = (_with_field(parsed, key, side * step * MM) for side in (1.0, -1.0))
+        sides = (_with_changed_key(parsed, key, side * step * MM) for side in (1.0, -1.0))
         ends = [_outline(side, _layout(side)).width_at(ski.station) for side in sides]
         return _of_table(table, (ends[0] - ends[1]) / (2.0 * step))
     else:
@@ -275,7 +275,7 @@ def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatAr
 
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
     """Growth with a key that changes several tables, or numbers."""
-    parsed, memos, key = parsed_keys(ski), _memos(ski), name.removeprefix("ski.")
+    parsed, memos, key = parsed_keys(ski), _growth_caches(ski), name.removeprefix("ski.")
     tables, numbers = np.zeros((len(_TABLES), len(ski.station))), np.zeros(len(_NUMBERS))
     if key in _OF_NUMBERS:
         numbers[_OF_NUMBERS.index(key)] = SKI_KEYS[key].factor
@@ -301,26 +301,26 @@ def _table_of(name: str) -> str:
 
 
 @functools.lru_cache(maxsize=64)
-def _memos(ski: Ski) -> dict[str, dict[str, Any]]:
+def _growth_caches(ski: Ski) -> dict[str, dict[str, Any]]:
     """By table: growths with parameters, the same for all skis with the same keys and stations of that table."""
     if ski.keys is None:
         return {}
     keys = parsed_keys(ski)
     place = (ski.station.tobytes(), *(getattr(keys, SKI_KEYS[key].field) for key in _LENGTHS))
     return {
-        "width": _memo(*place, _relative_end(keys)),
-        "base_height": _memo(*place, keys.base),
-        "EI_N_m2": _memo(*place, keys.stiffness_station, keys.bending_stiffness, "EI"),
-        "GJ_N_m2": _memo(*place, keys.stiffness_station, keys.torsional_stiffness, "GJ"),
+        "width": _growth_cache(*place, _tip_end_ratio(keys)),
+        "base_height": _growth_cache(*place, keys.base),
+        "EI_N_m2": _growth_cache(*place, keys.stiffness_station, keys.bending_stiffness, "EI"),
+        "GJ_N_m2": _growth_cache(*place, keys.stiffness_station, keys.torsional_stiffness, "GJ"),
     }
 
 
 @functools.lru_cache(maxsize=64)
-def _memo(*_keys: Hashable) -> dict[str, Any]:
+def _growth_cache(*_keys: Hashable) -> dict[str, Any]:
     return {}
 
 
-def _relative_end(keys: SkiFile) -> float | None:
+def _tip_end_ratio(keys: SkiFile) -> float | None:
     """Width of the very tip over that of the tip."""
     return None if keys.tip_end_width is None else keys.tip_end_width / (keys.tip_width or 1.0)
 
@@ -349,7 +349,7 @@ def _outline(keys: SkiFile, layout: Layout) -> ArcOutline:
 def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArray:
     """Widths at stations (m) that the widths of tip, waist and tail are multiplied by, shape (3, n)."""
     pairs = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
-    relative = replace(keys, tip_width=1.0, tip_end_width=_relative_end(keys))
+    relative = replace(keys, tip_width=1.0, tip_end_width=_tip_end_ratio(keys))
     skis = [replace(relative, waist_width=waist, tail_width=tail) for waist, tail in pairs]
     tip, *others = (_outline(ski, layout).width_at(station) for ski in skis)
     return np.array([tip, *(other - tip for other in others)])
@@ -360,7 +360,7 @@ def _stiffness(keys: SkiFile, part: str, layout: Layout) -> StationTable:
     return stiffness_table(RIGID if listed is None else listed, keys.stiffness_station, layout)
 
 
-def _with_field(keys: SkiFile, key: str, change: float) -> SkiFile:
+def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
     """Keys of which one is changed (SI)."""
     row, owner = _ROW.fullmatch(key), keys.base if key in BASE else keys
     name = SKI_KEYS[row[1] if row else key].field
@@ -378,7 +378,7 @@ def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: Float
     """Growth of the stations, and of a table on them, for the width of its three units, with a key."""
     home, ends = _layout(keys), []
     for change in (step, -step):
-        side = _with_field(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)
+        side = _with_changed_key(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)
         layout = _layout(side)
         at = moved_stations(station, home, layout)
         if part == "width":

@@ -16,7 +16,7 @@ from .._support.errors import ParameterError, RangeWarning
 from .._support.messages import Message, joined
 from .._support.units import DEGREE
 from .._support.user_files import read_toml, shown_value
-from ..parameters import InputValue, Quantity, made, nearest
+from ..parameters import InputValue, Quantity, build_declared, suggest_and_list
 from .file_keys import BASE, SKI_KEYS, SkiFile
 from .layout import BaseShape
 
@@ -161,7 +161,7 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
     for key in values:
         if key not in SKI_KEYS:
             raise ParameterError("{path}: the key {key} is not known. {allowed}").tag(
-                "unknown_name", path=path, key=key, allowed=nearest(key, SKI_KEYS)
+                "unknown_name", path=path, key=key, allowed=suggest_and_list(key, SKI_KEYS)
             )
     checked_values = {key: checked(path, value, SKI_KEYS[key]) for key, value in values.items()}
     for key, value in checked_values.items():
@@ -176,4 +176,4 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
 
 @functools.lru_cache(maxsize=32)
 def _base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
-    return made(BaseShape, dict(values))
+    return build_declared(BaseShape, dict(values))

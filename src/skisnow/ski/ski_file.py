@@ -15,7 +15,7 @@ from .._support.errors import OutputError, ParameterError
 from .._support.staging import write_file
 from .._support.units import DEGREE, MM
 from .._support.user_files import is_file, toml_text
-from ..parameters import SMALLEST, nearest
+from ..parameters import SMALLEST, suggest_and_list
 from ..snow import SnowProperties, published_snow, snow_from_results
 from ..snow.measured_range import with_range_warnings
 from .file_keys import COLUMNS, RIGID, SkiFile
@@ -116,7 +116,7 @@ def ski_names() -> tuple[str, ...]:
 
 def _no_such_ski(name: str) -> ParameterError:
     return ParameterError("unknown ski {name!r}. {allowed} Any other ski is read from a file ending in .toml.").tag(
-        "unknown_name", name=name, allowed=nearest(name, ski_names())
+        "unknown_name", name=name, allowed=suggest_and_list(name, ski_names())
     )
 
 

@@ -24,7 +24,7 @@ from .._support.spreadsheet_text import (
     with_decimal_point,
 )
 from .._support.user_files import plain_bytes
-from ..parameters import nearest
+from ..parameters import suggest_and_list
 from .file_keys import COLUMNS
 from .file_values import checked, refuse, warn_of_unusual
 
@@ -45,7 +45,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
     for place, name in enumerate(header):
         if name not in COLUMNS:
             raise ParameterError("{path}, line {line}: the column {name!r} is not known. {allowed}").tag(
-                "unknown_name", path=path, line=first, name=name, allowed=nearest(name, COLUMNS)
+                "unknown_name", path=path, line=first, name=name, allowed=suggest_and_list(name, COLUMNS)
             )
         if name in header[:place]:
             raise ParameterError("{path}, line {line}: the column {name} occurs twice. Remove one.").tag(

@@ -13,7 +13,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.units import MM, N_PER_MM2, N_PER_MM3
-from .._support.user_files import GivenError, read_json
+from .._support.user_files import ContentError, read_json
 from .mean_snow import (
     mean_snow,
     no_used_experiment,
@@ -105,7 +105,7 @@ def _of_site(
 def _results(path: Path) -> dict[str, Any]:
     try:
         results = read_json(path)
-    except GivenError as error:
+    except ContentError as error:
         raise ParameterError("{problem} Needed is the results.json that `skisnow analyse` wrote").tag(
             "wrong_kind", problem=error
         ) from error

@@ -133,13 +133,13 @@ def _bias_reduced(
     adjust = (vector * root[:, None, :]) @ np.swapaxes(vector, 1, 2)
     score = np.einsum("gij,gj->gi", adjust, _cluster_sums(Q * residuals[:, None], cluster, G))
     L = fit.loadings
-    lost = _held_by_one(L, vector, alone)
+    lost = _determined_by_one(L, vector, alone)
     errors = np.sqrt(np.sum((score @ L.T) ** 2, axis=0))
     dof = np.array([_degrees(share, adjust, row) for row in L])
     return np.where(lost, np.nan, errors), np.where(lost, np.nan, dof)
 
 
-def _held_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> BoolArray:
+def _determined_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> BoolArray:
     """True for coefficients of which a part is determined by a single cluster."""
     part = np.abs(np.einsum("jk,gkv->jgv", L, vector)) / np.linalg.norm(L, axis=1)[:, None, None]
     held: BoolArray = np.any(alone[None] & (part > np.sqrt(_WHOLLY)), axis=(1, 2))

@@ -155,13 +155,13 @@ def nonlinear_fit(
         return fitted
 
     require_finite("model at the start", values(b))
-    b = _searched(values, observed, b, scale)
+    b = _search(values, observed, b, scale)
     b, design, uncertainty = _polished(values, observed, b, scale, labels)
     _warn(uncertainty, n > p)
     return NonlinearFit(**spread(b, observed - values(b), design, confidence), names=labels)
 
 
-def _searched(values: Values, observed: FloatArray, start: FloatArray, scale: FloatArray) -> FloatArray:
+def _search(values: Values, observed: FloatArray, start: FloatArray, scale: FloatArray) -> FloatArray:
     from scipy.optimize import least_squares
 
     def missed(b: FloatArray) -> FloatArray:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
-from ..parameters import Allowed, Quantity, checked_table, made
+from ..parameters import Allowed, Quantity, build_declared, checked_table
 
 Point: TypeAlias = dict[str, Any]
 
@@ -255,7 +255,7 @@ class Axis:
             raise ParameterError("{name} has no range; write a list such as {name} = [...]").tag(
                 "no_data", name=key.name
             )
-        limits = made(Range, checked_table(Range, table, key.name))
+        limits = build_declared(Range, checked_table(Range, table, key.name))
         low, high, log = limits.first, limits.last, limits.log
         if log and not (low > 0 and high > 0):
             raise ParameterError("{name}: a logarithmic range needs both ends above 0; they are {low:g}, {high:g}").tag(

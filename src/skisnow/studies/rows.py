@@ -15,11 +15,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, Final, TypeAlias
 
-from .._support.environment import needed
+from .._support.environment import import_extra
 from .._support.errors import ParameterError
 from .._support.messages import Message
 from .._support.processes.kept_rows import Row
-from .._support.spreadsheet_text import guarded, unguarded
+from .._support.spreadsheet_text import protect_from_formulas, remove_protection
 from .._support.sqlite_file import connect, first_damage, place_reason, require_schema, require_sound_pages
 from .._support.user_files import json_value, own_json
 from ..parameters import Quantity
@@ -138,7 +138,7 @@ class DatabaseRows(StoredRows):
 
     def _row(self, place: int, values: Sequence[Any]) -> Row:
         try:
-            row = dict(zip(self.columns, map(_natural, values, self._kinds), strict=True))
+            row = dict(zip(self.columns, map(_as_python, values, self._kinds), strict=True))
         except ValueError as error:
             raise _no_table(self._path, f"row {place}: {error}") from error
         require_kinds(f"{self._path}, row {place}", row, self._texts)
@@ -151,7 +151,7 @@ def _no_table(path: Path, why: object) -> ParameterError:
     ).tag("cannot_read", path=path, reason=why)
 
 
-def _natural(value: Any, kind: str) -> Any:
+def _as_python(value: Any, kind: str) -> Any:
     if value is None:
         return None
     if kind == "BOOLEAN" and value in (0, 1):
@@ -209,7 +209,8 @@ class ParquetRows(StoredRows):
 def require_pyarrow() -> Any:
     """The library of Parquet files."""
     pyarrow, _ = (
-        needed(module, extra="parquet", what=Message("A table in Parquet")) for module in ("pyarrow", "pyarrow.parquet")
+        import_extra(module, extra="parquet", what=Message("A table in Parquet"))
+        for module in ("pyarrow", "pyarrow.parquet")
     )
     return pyarrow
 
@@ -233,7 +234,7 @@ def cell(value: Any) -> str:
     if value is None:
         return ""
     if kind is str:
-        return guarded(value)
+        return protect_from_formulas(value)
     if kind is bool:
         return "true" if value else "false"
     if isinstance(value, list | tuple):
@@ -256,14 +257,14 @@ def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Se
         return {name: read(text) for name, text, read in zip(columns, cells, readers, strict=True)}
     except (ValueError, TypeError):
         name, text = next(
-            (name, text) for name, text, read in zip(columns, cells, readers, strict=True) if _fails(read, text)
+            (name, text) for name, text, read in zip(columns, cells, readers, strict=True) if _is_unreadable(read, text)
         )
         raise ParameterError("{place}: {name} is {text!r}; it must be a number. Correct or remove it").tag(
             "wrong_kind", place=place, name=name, text=text
         ) from None
 
 
-def _fails(read: Reader, text: str) -> bool:
+def _is_unreadable(read: Reader, text: str) -> bool:
     try:
         read(text)
     except (ValueError, TypeError):
@@ -296,7 +297,7 @@ def _is_number(value: object) -> bool:
 def _reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
     if is_text(name, keys):
         empty = "" if name in BLANK else None
-        return lambda text: unguarded(text) if text else empty
+        return lambda text: remove_protection(text) if text else empty
     number = int if name in keys and keys[name].kind == "whole number" else float
 
     def read(text: str) -> Any:

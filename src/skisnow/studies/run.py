@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from .._support.errors import OutputError, ParameterError, SkisnowError
-from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, workers_in_force
+from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, worker_count
 from .._support.processes.kept_rows import KeptRows, Row, json_text
 from .._support.staging import cannot_write
 from .._support.user_files import is_file
@@ -104,7 +104,7 @@ def run_study(
       analysis of output from a computer code", Technometrics 21, 239-245, doi 10.1080/00401706.1979.10489755.
     * The page docs/how-to/study.md.
     """
-    workers = workers_in_force(workers)
+    workers = worker_count(workers)
     require_executor(executor)
     study = study if isinstance(study, Study) else read_study(study)
     writer_of(study.out)
@@ -124,7 +124,7 @@ def run_study(
         rows = StudyRows.of(study)
         compute_missing(study.points, rows, finished_rows, workers=workers, executor=executor, progress=progress)
         previous = study.place_for_previous() if state is StudyState.ANOTHER else None
-        study_table = written(study.out, finished_rows, fingerprint, study.subject.keys, previous=previous)
+        study_table = write_rows(study.out, finished_rows, fingerprint, study.subject.keys, previous=previous)
         finished_rows.remove()
     finally:
         finished_rows.close()
@@ -152,7 +152,7 @@ class FinishedRows(Protocol):
         ...
 
 
-def written(
+def write_rows(
     out: Path,
     finished_rows: FinishedRows,
     fingerprint: str,

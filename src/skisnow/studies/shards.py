@@ -12,12 +12,12 @@ from typing import Any, Final, Self
 
 from .._support.errors import ParameterError
 from .._support.messages import template
-from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, workers_in_force
+from .._support.processes.batch import ExecutorLike, Progress, compute_missing, require_executor, worker_count
 from .._support.processes.crews import own_identity
 from .._support.processes.kept_rows import KeptRows, NumberedText
 from .._support.user_files import own_json
 from ..parameters import Quantity
-from .run import StudyRows, StudyState, kept_rows, table_state, written
+from .run import StudyRows, StudyState, kept_rows, table_state, write_rows
 from .study import Study, place_for_previous, read_study
 from .table import StudyTable
 from .writing import writer_of
@@ -101,7 +101,7 @@ def run_shard(
     ----------
     The page docs/how-to/study.md.
     """
-    workers = workers_in_force(workers)
+    workers = worker_count(workers)
     require_executor(executor)
     shard = Shard.of(shard) if isinstance(shard, str) else shard
     study = study if isinstance(study, Study) else read_study(study)
@@ -163,7 +163,7 @@ def _merged(out: Path, parts: _Parts) -> StudyTable:
     if state is StudyState.FINISHED and table is not None:
         return table
     before = place_for_previous(out) if state is StudyState.ANOTHER else None
-    return written(out, parts, parts.fingerprint, parts.keys, previous=before)
+    return write_rows(out, parts, parts.fingerprint, parts.keys, previous=before)
 
 
 _OF_ANOTHER_STUDY: Final = template("{path} is a part of another study than {other}. Remove one of them")

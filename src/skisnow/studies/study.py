@@ -15,7 +15,7 @@ from .._support.messages import Message
 from .._support.processes.kept_rows import Row
 from .._support.units import Facts, Shown
 from .._support.user_files import is_file, read_toml
-from ..parameters import Allowed, InputValue, Quantity, checked_table, made, nearest
+from ..parameters import Allowed, InputValue, Quantity, build_declared, checked_table, suggest_and_list
 from .points import Axis, ListedPoints, Point, Points, grid_points, hypercube_points
 from .subjects import CarveModel, ScenarioModel
 from .writing import WRITERS
@@ -187,7 +187,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError("{key} is not a key of a study. {allowed}").tag(
-                "unknown_name", key=key, allowed=nearest(key, TOP_KEYS)
+                "unknown_name", key=key, allowed=suggest_and_list(key, TOP_KEYS)
             )
     subject_ = _subject(path, values, subject)
     form = _form(values)
@@ -267,13 +267,13 @@ def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fix
 def _require_key(table: str, name: str, keys: Collection[str]) -> None:
     if name not in keys:
         raise ParameterError("{table}.{name} is not an input. {allowed}").tag(
-            "unknown_name", table=table, name=name, allowed=nearest(name, keys)
+            "unknown_name", table=table, name=name, allowed=suggest_and_list(name, keys)
         )
 
 
 def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
     own = {name: table[name] for name in ("n", "seed") if name in table}
-    sample = made(Sample, checked_table(Sample, own, "[latin_hypercube]"))
+    sample = build_declared(Sample, checked_table(Sample, own, "[latin_hypercube]"))
     return sample.n, sample.seed
 
 

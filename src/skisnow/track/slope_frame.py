@@ -240,7 +240,9 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
     if angle is None:
         return LaidTracks(simulated, measured, warnings=(_unknown(simulated),) if apart else ())
     warnings: tuple[str, ...] = ()
-    if other is not None and abs(other.angle - angle - _own_fall(simulated, own)) > CLEARLY * max(other.error, DEGREE):
+    if other is not None and abs(other.angle - angle - _fall_in_own_axes(simulated, own)) > CLEARLY * max(
+        other.error, DEGREE
+    ):
         warnings = (
             f"{measured.name} falls by {other.angle / DEGREE:.1f}°, the slope by {angle / DEGREE:.1f}° ({source}): "
             "check the slope's angle and the heights, or compare from above",
@@ -248,7 +250,7 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
     return LaidTracks(lay_on_slope(simulated, angle) if angle else simulated, measured, angle, source, warnings)
 
 
-def _own_fall(track: Track, own: Inclination | None) -> float:
+def _fall_in_own_axes(track: Track, own: Inclination | None) -> float:
     """Inclination of a track in its own axes: of a track along a profile, whose z is the height."""
     return own.angle if own is not None and not track.slope_angle else 0.0
 

@@ -22,7 +22,7 @@ from ..ski.ski_file import Sources
 from .elements import Words, button, named
 from .snow_choice import ChosenSnow, SnowChoice
 from .widgets import STYLES, ChartLine, LineChart, add_ski_table, save_buttons
-from .words import number_said, said
+from .words import number_text, said
 
 ALONG: Final = Message("Along the ski (m), boot = 0")
 ENDS: Final = (Message("tail"), Message("tip"))
@@ -100,13 +100,13 @@ class Solver:
         with self._lock:
             self._sources = self._sources or Sources()
             try:
-                questions = taken(asked, self._sources)
+                questions = with_sources(asked, self._sources)
                 return [answer_dict(answered(carve_question(each), sources=self._sources)) for each in questions]
             except SkisnowError as error:
                 return error.message
 
 
-def taken(asked: Asked, sources: Sources) -> list[dict[str, Any]]:
+def with_sources(asked: Asked, sources: Sources) -> list[dict[str, Any]]:
     """Put a chosen snow and a ski of keys into the sources; returns the questions with a word for each ski."""
     snow = asked.snow
     if snow is not None and snow.analysis is not None:
@@ -141,7 +141,7 @@ class Slider:
 
     def _show(self, value: str, shown: str = "") -> None:
         self.value = value
-        self._shown.set_text(f"{self._called}: {number_said(shown or value)}")
+        self._shown.set_text(f"{self._called}: {number_text(shown or value)}")
 
     def put(self, value: float, spec: str) -> None:
         """Take a value between the stops, shown by ``spec``, and move to the nearest stop."""

@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, Final
 from .._support.errors import OutputError, ParameterError
 from .._support.messages import Message
 from .._support.staging import write_file
-from .._support.user_files import GivenError, toml_values
+from .._support.user_files import ContentError, toml_values
 from ..ski import read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
@@ -163,7 +163,7 @@ def texts_of_ski(ski: Ski) -> tuple[str, str]:
 def _require_no_other_file(text: str) -> None:
     try:
         keys = toml_values(text)
-    except GivenError:
+    except ContentError:
         return  # the reader reports it with its line
     if "shape" in keys:
         raise ParameterError(

@@ -13,7 +13,7 @@ from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import joined, template
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
-from .._support.user_files import GivenError, read_record
+from .._support.user_files import ContentError, read_record
 from ..replay.replay import measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
@@ -106,7 +106,7 @@ class TrackFolders:
         """Placing of each undamaged track by its name, the newest first."""
         placings = {}
         for name in self.names():
-            with contextlib.suppress(GivenError):
+            with contextlib.suppress(ContentError):
                 placings[name] = read_record(self._folder / name / ABOUT, Placing)
         return placings
 

@@ -17,7 +17,7 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 
 from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import ENGLISH, Message, joined, translations
-from .._support.user_files import GivenError, read_json, read_record
+from .._support.user_files import ContentError, read_json, read_record
 from ..replay.binary import replay_bytes
 from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
@@ -69,7 +69,7 @@ class RunFolders:
         """Title of a run of the lab, or the name of its folder."""
         try:
             return read_record(self.folder / name / JOB, Job, only_known=False).shown_name
-        except GivenError:
+        except ContentError:
             return name
 
     def folder_of(self, name: str) -> Path:

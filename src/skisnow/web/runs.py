@@ -24,7 +24,7 @@ from typing import Any, Final, Literal, NamedTuple, TypeAlias
 from .._support.errors import ParameterError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, outcome_words, template
 from .._support.staging import write_file
-from .._support.user_files import GivenError, read_json, read_record
+from .._support.user_files import ContentError, read_json, read_record
 from ..simulation.simulated_run import REMEDIES
 
 NamedFile: TypeAlias = tuple[str, bytes]
@@ -134,7 +134,7 @@ class Runs:
         """All jobs, the newest first."""
         jobs = []
         for place in self.folder.glob(f"*/{JOB}"):
-            with contextlib.suppress(GivenError):  # the folder is being removed or damaged
+            with contextlib.suppress(ContentError):  # the folder is being removed or damaged
                 jobs.append(read_record(place, self.kind))
         return sorted(jobs, key=lambda job: job.asked_at, reverse=True)
 
@@ -251,7 +251,7 @@ class Runs:
 
     async def _ended_as(self, job: Job, last: str, took_s: float, *, cancelled: bool) -> Job:
         """Job with its state after the end of its process, given the last message."""
-        over = self._over(job, last, cancelled=cancelled)
+        over = self._finished_job(job, last, cancelled=cancelled)
         return replace(over, took_s=took_s if over.state == "done" else 0.0)
 
     async def _listen(self, process: asyncio.subprocess.Process) -> str:
@@ -267,7 +267,7 @@ class Runs:
         """Progress message of a line from the running job."""
         return line
 
-    def _over(self, job: Job, last: str, *, cancelled: bool) -> Job:
+    def _finished_job(self, job: Job, last: str, *, cancelled: bool) -> Job:
         """Job with its state and a sentence in the language in which it was asked for."""
         summary = self.folder / job.name / "summary.json"
         with in_language(job.language):
@@ -276,7 +276,7 @@ class Runs:
                 return replace(job, state="cancelled" if cancelled else "failed", said=said)
             try:
                 finished = read_record(summary, FinishedRun, only_known=False)
-            except GivenError as error:
+            except ContentError as error:
                 return replace(job, state="failed", said=str(error.message))
             remedy = next((text for code, text in REMEDIES.items() if code == finished.outcome), finished.remedy)
             fields = {"outcome": finished.outcome_in_words, "extent": finished.extent}
@@ -372,5 +372,5 @@ def _run_time(folder: Path, job: Job) -> _RunTime | None:
         summary = read_json(folder / job.name / "summary.json")
         method = str(summary["scenario"]["solver"]["method"])
         return _RunTime(job.took_s, float(summary["wall_s"]), float(summary["simulated_s"]), method)
-    except (GivenError, KeyError, TypeError, ValueError):
+    except (ContentError, KeyError, TypeError, ValueError):
         return None

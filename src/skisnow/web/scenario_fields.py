@@ -12,7 +12,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .elements import choice, field, named
 from .layout import sentence
-from .words import number_said, plain_number, reworded, said
+from .words import number_text, plain_number, reworded, said
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -31,11 +31,11 @@ _DIGITS: Final = 6
 """Significant digits of a value in a field."""
 
 
-def called(key: Quantity) -> str:
+def field_label(key: Quantity) -> str:
     """Name of an input at its field: label, symbol and unit.
 
     >>> from skisnow.scenario.keys import SCENARIO_KEYS
-    >>> called(SCENARIO_KEYS["slope.angle_deg"]), called(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
+    >>> called(SCENARIO_KEYS["slope.angle_deg"]), field_label(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
     ('Slope angle α (°)', 'Snow hardness H_V (N/mm³)')
     """
     label = str(key.label or key.name)
@@ -64,10 +64,10 @@ def _as_sentence(words: str) -> str:
     return f"{words[0].upper()}{words[1:]}." if words[:2].isalpha() and words[:2].isascii() else f"{words}."
 
 
-def written(value: Any) -> str:
+def typed_form(value: Any) -> str:
     """A value as on the command line, rounded for a field.
 
-    >>> written([6.0, 8.0]), written(True), written(0.20669325758298024)
+    >>> written([6.0, 8.0]), written(True), typed_form(0.20669325758298024)
     ('[6, 8]', 'true', '0.206693')
     """
     if value is None:
@@ -75,7 +75,7 @@ def written(value: Any) -> str:
     if isinstance(value, bool):
         return ON if value else OFF
     if isinstance(value, tuple | list):
-        return f"[{', '.join(written(item) for item in value)}]"
+        return f"[{', '.join(typed_form(item) for item in value)}]"
     return f"{value:.{_DIGITS}g}" if isinstance(value, float) else str(value)
 
 
@@ -89,20 +89,20 @@ class ScenarioField:
 
     def __init__(self, key: Quantity, value: Any, typed: str | None) -> None:
         self.key = key
-        self.before = written(value)
+        self.before = typed_form(value)
         with ui.element("div").classes("input") as self.place:
             self.element = self._create(self.before if typed is None else typed)
-            named(self.element, called(key))
+            named(self.element, field_label(key))
             self._range = sentence(range_words(key), "quiet range")
 
     def _create(self, text: str) -> InputField:
         if self.key.kind == "switch":
-            return ui.switch(said(called(self.key)), value=text == ON).classes("field")
+            return ui.switch(said(field_label(self.key)), value=text == ON).classes("field")
         if self.key.choices:
-            return choice(called(self.key), list(self.key.choices), text or None)
+            return choice(field_label(self.key), list(self.key.choices), text or None)
         if self.key.kind in ("number", "whole number"):
-            return field(called(self.key), number_said(text), numeric=True)
-        return field(called(self.key), text)
+            return field(field_label(self.key), number_text(text), numeric=True)
+        return field(field_label(self.key), text)
 
     @property
     def text(self) -> str:
@@ -168,5 +168,5 @@ def in_labels(message: str, *keys: Quantity) -> str:
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
     for key in sorted(keys, key=lambda key: -len(key.name)):
-        message = reworded(message, partial(_replace, key.name, called(key)))
+        message = reworded(message, partial(_replace, key.name, field_label(key)))
     return message

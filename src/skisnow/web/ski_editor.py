@@ -36,7 +36,7 @@ from .layout import error_sentence, heading, sentence
 from .page_requests import add_upload, file_input, submit_button, text_input, upload_form, uploaded_files
 from .settings import Lab
 from .subprocesses import SKI_BOUNDS, confined
-from .words import number_said, said, typed_number
+from .words import number_text, said, typed_number
 
 POSITION: Final = Message("Position (m)")
 ONE: Final = "1"
@@ -136,20 +136,20 @@ class SkiEditor:
             self._draw_table(cells)
         for place, cell in self._cells.items():
             if (cell.value or "") == self._shown[place]:
-                self._shown[place] = number_said(cells[place], cell.client)
+                self._shown[place] = number_text(cells[place], cell.client)
                 cell.set_value(self._shown[place])
 
     def _draw_table(self, cells: Mapping[tuple[str, int], str]) -> None:
         self._table.clear()
         self._cells = {}
-        self._shown = {place: number_said(text, self._table.client) for place, text in cells.items()}
+        self._shown = {place: number_text(text, self._table.client) for place, text in cells.items()}
         with self._table, ui.element("table").classes("cells"):
             add_head((POSITION, *CELLS.values()))
             with ui.element("tbody"):
                 for i, station in enumerate(self._stations):
                     with ui.element("tr"):
                         with ui.element("th").props("scope=row"):
-                            Words(number_said(f"{station:.3f}", self._table.client))
+                            Words(number_text(f"{station:.3f}", self._table.client))
                         for column in CELLS:
                             with ui.element("td"):
                                 self._cell(column, i, station)

@@ -18,8 +18,8 @@ from ..carving.question import CARVE_KEYS
 from ..parameters import Quantity
 from .elements import choice, field, named
 from .layout import sentence
-from .scenario_fields import called, with_point, written
-from .words import number_said, reworded, said, typed_number
+from .scenario_fields import field_label, typed_form, with_point
+from .words import number_text, reworded, said, typed_number
 
 CARVE: Final = "carved-turn"
 """Subject of a study of carved turns, instead of the name of a scenario."""
@@ -45,7 +45,7 @@ class Range:
 
     def words(self) -> str:
         """The range in words."""
-        fields = {"low": number_said(written(self.low)), "high": number_said(written(self.high)), "n": self.n}
+        fields = {"low": number_text(typed_form(self.low)), "high": number_text(typed_form(self.high)), "n": self.n}
         if self.log:
             return Message("{low} to {high}, {n} values, logarithmic", **fields)
         return Message("{low} to {high}, {n} values", **fields)
@@ -97,14 +97,14 @@ class StudyQuestion:
 
     def fixed_words(self) -> dict[str, str]:
         """Fixed numbers as texts by key."""
-        return {name: written(value) for name, value in self.fixed.items() if name in study_keys(self.of)}
+        return {name: typed_form(value) for name, value in self.fixed.items() if name in study_keys(self.of)}
 
     def varied_words(self) -> str:
         """Ranges, and inputs that were chosen by name, in words."""
         keys = study_keys(self.of)
         return "; ".join(
             [
-                *(f"{called(keys[name])}: {values.words()}" for name, values in self.varied.items()),
+                *(f"{field_label(keys[name])}: {values.words()}" for name, values in self.varied.items()),
                 *map(str, self.named),
             ]
         )
@@ -215,7 +215,9 @@ class AxisFields:
         name, n = first or (NOTHING, _USUAL)
         with ui.element("div").classes("inputs varied"):
             with ui.element("div").classes("input"):
-                self._key = choice(place, {**options, **{field_: called(key) for field_, key in keys.items()}}, name)
+                self._key = choice(
+                    place, {**options, **{field_: field_label(key) for field_, key in keys.items()}}, name
+                )
                 self._range = sentence("", "quiet range")
             self._ends = [field(words, "", numeric=True) for words in (FROM, TO)]
             self._n = field(VALUES, n, numeric=True)
@@ -243,7 +245,7 @@ class AxisFields:
     def _set_first_range(self) -> None:
         ends = first_range(self._keys[self.name]) if self.name else None
         for field_, end in zip(self._ends, ends or (None, None), strict=True):
-            field_.set_value("" if end is None else number_said(f"{end:g}"))
+            field_.set_value("" if end is None else number_text(f"{end:g}"))
 
     def _show(self) -> None:
         for field_ in (*self._ends, self._n, self._log):
@@ -256,7 +258,7 @@ class AxisFields:
         Raises ParameterError: the range is not valid for the input.
         """
         key = self._keys[self.name]
-        words = called(key)
+        words = field_label(key)
         if not all(str(field_.value or "").strip() for field_ in self._ends):
             raise ParameterError("{input}: type both ends of its range").tag("missing", input=words)
         low, high = (
@@ -290,6 +292,6 @@ class AxisFields:
         number = natural_number(text)
         if number is None or not 2 <= number <= MOST_POINTS:
             raise ParameterError("{input}: the number of values is {value!r}; it must be from 2 to {most}").tag(
-                "out_of_range", input=called(self._keys[self.name]), value=text, most=MOST_POINTS
+                "out_of_range", input=field_label(self._keys[self.name]), value=text, most=MOST_POINTS
             )
         return number

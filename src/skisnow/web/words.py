@@ -205,10 +205,10 @@ def said(text: str, client: Client | None = None) -> str:
     return text.text(language_of(client)) if isinstance(text, Message) else text
 
 
-def number_said(number: str, client: Client | None = None) -> str:
+def number_text(number: str, client: Client | None = None) -> str:
     """A stored number with the signs of the page's language, which accepts the stored ones, too; other text unchanged.
 
-    >>> number_said("-3.61"), number_said("2026-02-14")
+    >>> number_text("-3.61"), number_text("2026-02-14")
     ('−3.61', '2026-02-14')
     """
     if not _STORED_NUMBER.fullmatch(number):

@@ -325,7 +325,7 @@ def test_it_is_reported_line_by_line() -> None:
     undone = entry(15, "undo", about=2, who="Ada")
     uids = {1: "u1", 2: "u2"}
     found = Divergence("j", (FILE, "7"), (BEGUN,), (DEEPER, stored, CANCELLED, nameless), (late, undone), uids, uids)
-    told = found.told("a day")
+    told = found.in_words("a day")
     assert [line.partition(":")[0] for line in told.here] == ["Bo, 10"] * 3 + ["somebody, 10"]
     for line, parts in zip(told.here, ("'2'", "line 12 '2.5' 'wind'", "it slipped", ""), strict=True):
         assert all(part in line for part in parts.split())
@@ -334,7 +334,7 @@ def test_it_is_reported_line_by_line() -> None:
     assert head.startswith(f"{found.id}  a day (j), ")
     assert lines == [*(f"    here: {line}" for line in told.here), *(f"    there: {line}" for line in told.there)]
     described = entry(3, "describe", cells={"campaign.toml": 'name =\n  "x"'})
-    of_toml = Divergence("j", ("campaign.toml", ""), (), (described,), (described,), {}, {}).told("x")
+    of_toml = Divergence("j", ("campaign.toml", ""), (), (described,), (described,), {}, {}).in_words("x")
     assert of_toml.here[0].endswith('name = "x"')
     assert "(j), campaign.toml: the" in str(of_toml)
 

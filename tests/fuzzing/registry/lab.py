@@ -125,7 +125,8 @@ def _job_files() -> Files:
 def _read_jobs(folder: Path) -> object:
     runs = Runs(folder)
     return [
-        (job, runs._over(Job("run-1", "", {}, ""), "x", cancelled=False), _run_time(folder, job)) for job in runs.jobs()
+        (job, runs._finished_job(Job("run-1", "", {}, ""), "x", cancelled=False), _run_time(folder, job))
+        for job in runs.jobs()
     ], _ski_of_job(folder / "run-1/job.json")
 
 
@@ -181,7 +182,7 @@ READERS = (
     ),
     Reader(
         name="summary.json", target="run-1/summary.json", files=_job_files, read=_read_jobs, mutations=JSON,
-        covers=("web.runs:Runs._over", "web.runs:_run_time"),
+        covers=("web.runs:Runs._finished_job", "web.runs:_run_time"),
     ),
     Reader(
         name="placing of a track", target="tracks/t-1/about.json", files=_track_files, read=_placed, mutations=JSON,

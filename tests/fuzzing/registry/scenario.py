@@ -228,7 +228,7 @@ READERS = (
     _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
     _of(
         "terrain.csv", _TERRAIN, _used_terrain, TABLE,
-        "scenario.raster_formats:read_grid_table", "scenario.terrain:_placed",
+        "scenario.raster_formats:read_grid_table", "scenario.terrain:_read_heights",
     ),
     _of("terrain.asc", _ESRI, _used_terrain, TEXT, "scenario.raster_formats:read_esri_ascii"),
     Reader(

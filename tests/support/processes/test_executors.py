@@ -165,7 +165,7 @@ def test_futures_that_a_lost_scheduler_cancels_are_reported() -> None:
 def test_folder_of_the_parent_is_that_of_a_worker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     executor = Here()
     monkeypatch.chdir(tmp_path)
-    crew = crews.GivenCrew(dict, executor, lambda: 1)
+    crew = crews.ExecutorCrew(dict, executor, lambda: 1)
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     crew.submit([(0, POINTS[0])]).result()
@@ -302,10 +302,10 @@ def test_it_is_looked_after_while_nothing_comes_and_not_while_rows_come(monkeypa
 def test_errors_of_dask_are_reported() -> None:
     crew = DaskCrew(dict, Client())
     for error in (ImportError("x"), RuntimeError("Can't get attribute 'f'"), ValueError("error while deserializing")):
-        told = crew.told(error)
+        told = crew.explain(error)
         assert told is not None and told.fields == {"error": str(error)}
-    assert "worker died" in str(crew.told(LostWorkerError("worker died")))
-    assert crew.told(ValueError("of the function")) is None
+    assert "worker died" in str(crew.explain(LostWorkerError("worker died")))
+    assert crew.explain(ValueError("of the function")) is None
 
 
 def test_the_client_is_closed_at_the_end() -> None:

@@ -15,7 +15,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError, SkisnowError
 from skisnow._support.messages import Message
-from skisnow._support.processes.batch import Pool, run_batch, workers_in_force
+from skisnow._support.processes.batch import Pool, run_batch, worker_count
 from skisnow._support.processes.crews import LARGEST_FOR_A_PIPE, ProcessCrew, _in_worker, begin_worker, compute_rows
 from skisnow._support.processes.kept_rows import KeptRows, NumberedText
 from tests.coded import raises
@@ -64,10 +64,10 @@ def test_a_process_that_is_killed_is_reported_with_advice() -> None:
 
 
 def test_workers_are_at_least_one_and_as_many_as_cores_where_left_out() -> None:
-    assert workers_in_force(3) == 3
-    assert 1 <= workers_in_force(None) <= (os.cpu_count() or 1)
+    assert worker_count(3) == 3
+    assert 1 <= worker_count(None) <= (os.cpu_count() or 1)
     with raises(ParameterError, "too_few_workers", workers=0):
-        workers_in_force(0)
+        worker_count(0)
 
 
 @pytest.mark.parametrize(("counted", "cores"), [(6, 6), (None, 1)])
@@ -76,7 +76,7 @@ def test_cores_of_a_system_that_does_not_say_which_are_ours(
 ) -> None:
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: counted)
-    assert workers_in_force(None) == cores
+    assert worker_count(None) == cores
 
 
 def test_quick_points_are_handed_over_many_at_a_time() -> None:

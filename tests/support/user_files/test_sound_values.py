@@ -16,7 +16,7 @@ import pytest
 import skisnow
 from skisnow._support.errors import SkisnowError
 from skisnow._support.user_files import (
-    GivenError,
+    ContentError,
     json_value,
     plain_bytes,
     plain_text,
@@ -57,11 +57,11 @@ def test_places() -> None:
 
 
 def test_a_message_names_file_and_line_as_far_as_they_are_known() -> None:
-    assert str(GivenError("wrong")) == "wrong"
-    assert str(GivenError("wrong", line=3)) == "line 3: wrong"
-    found = GivenError("wrong", line=3).of("a.toml")
+    assert str(ContentError("wrong")) == "wrong"
+    assert str(ContentError("wrong", line=3)) == "line 3: wrong"
+    found = ContentError("wrong", line=3).of("a.toml")
     assert (str(found), found.what, found.line) == ("a.toml, line 3: wrong", "wrong", 3)
-    assert str(GivenError("wrong", sentence="All of it.")) == "All of it."
+    assert str(ContentError("wrong", sentence="All of it.")) == "All of it."
 
 
 def nested(depth: int) -> object:
@@ -72,7 +72,7 @@ def rejection(value: object, *, infinite: bool = False) -> str | None:
     """Code of the error."""
     try:
         require_sound(value, infinite=infinite)
-    except GivenError as error:
+    except ContentError as error:
         return error.code
     return None
 
@@ -97,7 +97,7 @@ def test_at_the_edge_all_is_sound() -> None:
     ],
 )
 def test_beyond_it_is_not(value: object, told: str | Coded) -> None:
-    with raises(GivenError, told):
+    with raises(ContentError, told):
         require_sound(value, infinite=False)
 
 
@@ -131,7 +131,7 @@ def test_what_is_within_the_limits_is_as_json_reads_it() -> None:
     ],
 )
 def test_beyond_the_limits(text: str, told: str | Coded) -> None:
-    with raises(GivenError, told) as error:
+    with raises(ContentError, told) as error:
         json_value(text, title="some.json")
     assert str(error.value).startswith("some.json")
 
@@ -140,7 +140,7 @@ def test_bytes_up_to_the_limit_are_read_and_not_one_more(tmp_path: Path) -> None
     path = tmp_path / "some"
     path.write_bytes(b"12345678")
     assert plain_bytes(path, most_bytes=8) == b"12345678"
-    with raises(GivenError, "too_large"):
+    with raises(ContentError, "too_large"):
         plain_bytes(path, most_bytes=7)
 
 
@@ -153,7 +153,7 @@ def test_lines_end_with_a_line_feed_however_they_did(tmp_path: Path) -> None:
 def test_text_of_another_encoding_names_its_byte(tmp_path: Path) -> None:
     path = tmp_path / "some"
     path.write_bytes("Höhe".encode("latin-1"))
-    with raises(GivenError, "not_text", byte=2):
+    with raises(ContentError, "not_text", byte=2):
         plain_text(path, most_bytes=100)
 
 
@@ -161,7 +161,7 @@ def test_text_of_another_encoding_names_its_byte(tmp_path: Path) -> None:
     ("path", "told"), [("a\0b", "invalid_character"), ("\ud800", "cannot_read"), ("x" * 300, "cannot_read")]
 )
 def test_names_that_no_file_has(path: str, told: str | Coded) -> None:
-    with raises(GivenError, told):
+    with raises(ContentError, told):
         plain_bytes(path, most_bytes=1)
 
 
@@ -231,7 +231,7 @@ def test_what_is_within_the_limits_is_as_tomllib_reads_it() -> None:
     ],
 )
 def test_toml_beyond_the_limits(text: str, line: int | None, told: str | Coded) -> None:
-    with raises(GivenError, told) as error:
+    with raises(ContentError, told) as error:
         toml_values(text, title="some.toml")
     assert error.value.line == line
     assert str(error.value).startswith("some.toml")
@@ -241,7 +241,7 @@ def test_a_key_of_many_dots_costs_no_memory() -> None:
     text = "a." * 20_000 + "a = 1"
     tracemalloc.start()
     try:
-        with pytest.raises(GivenError):
+        with pytest.raises(ContentError):
             toml_values(text)
         _, most = tracemalloc.get_traced_memory()
     finally:
@@ -288,7 +288,7 @@ def test_a_sound_record(place: Path) -> None:
 )
 def test_a_damaged_record_names_file_and_key(place: Path, text: str, named: str) -> None:
     place.write_text(text)
-    with pytest.raises(GivenError) as caught:
+    with pytest.raises(ContentError) as caught:
         read_record(place, Record)
     assert place.name in str(caught.value)
     assert named in str(caught.value)

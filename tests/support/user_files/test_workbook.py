@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
-from skisnow._support.user_files import GivenError, workbook, workbook_sheets, xml_tree
+from skisnow._support.user_files import ContentError, workbook, workbook_sheets, xml_tree
 from skisnow._support.user_files.json_text import DEEPEST
 from tests.coded import Coded, coded, raises
 
@@ -97,7 +97,7 @@ def test_what_a_table_has_no_need_of_is_rejected(
 ) -> None:
     monkeypatch.setattr(workbook, "MOST_ROWS", 1000)
     monkeypatch.setattr(workbook, "MOST_UNPACKED_BYTES", 1 << 20)
-    with raises(GivenError, told):
+    with raises(ContentError, told):
         read(with_part(packed(A=[["x"]]), part, content))
 
 
@@ -112,7 +112,7 @@ def test_what_a_table_has_no_need_of_is_rejected(
     ],
 )
 def test_an_invalid_workbook_is_rejected(data: bytes, told: str | Coded) -> None:
-    with raises(GivenError, told):
+    with raises(ContentError, told):
         read(data)
 
 
@@ -154,13 +154,13 @@ def nested(depth: int) -> bytes:
 
 def test_what_is_beyond_a_limit_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     assert xml_tree(nested(DEEPEST)).name == "a"
-    with raises(GivenError, "too_large", depth=60):
+    with raises(ContentError, "too_large", depth=60):
         xml_tree(nested(DEEPEST + 1))
     monkeypatch.setattr(
         sys.modules["skisnow._support.user_files.json_text"], "MOST_ELEMENTS", 3
     )  # the function hides it
     assert len(xml_tree(b"<a><b/><b/></a>").children) == 2
-    with raises(GivenError, "too_large", count=3):
+    with raises(ContentError, "too_large", count=3):
         xml_tree(b"<a><b/><b/><b/></a>")
 
 
@@ -173,6 +173,6 @@ def test_what_is_beyond_a_limit_is_rejected(monkeypatch: pytest.MonkeyPatch) -> 
     ],
 )
 def test_an_invalid_xml_is_rejected(data: bytes, line: int | None, told: str | Coded) -> None:
-    with raises(GivenError, told) as error:
+    with raises(ContentError, told) as error:
         xml_tree(data)
     assert error.value.line == line

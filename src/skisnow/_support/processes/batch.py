@@ -11,7 +11,17 @@ from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import LOST, Crew, Done, GivenCrew, Numbered, PointFunction, ProcessCrew, ThreadCrew, lost_workers_message
+from .crews import (
+    LOST,
+    Crew,
+    Done,
+    ExecutorCrew,
+    Numbered,
+    PointFunction,
+    ProcessCrew,
+    ThreadCrew,
+    lost_workers_message,
+)
 from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -91,7 +101,7 @@ def compute_missing(
 
     numbers: requested points; None: all.
     """
-    wanted = workers_in_force(workers)
+    wanted = worker_count(workers)
     numbers = range(len(points)) if numbers is None else numbers
     finished = bytearray(len(points))
     for number in kept.numbers():
@@ -116,7 +126,7 @@ class Pool:
     """Workers that compute rows of points; to be used in a ``with`` statement, which ends them.
 
     function: from a point to a row of JSON values. With several workers it is pickled once for each of them.
-    workers: number of processes or threads, as `workers_in_force` gives it; 1 with no executor: this process itself.
+    workers: number of processes or threads, as `worker_count` gives it; 1 with no executor: this process itself.
     advice: text for the error of a process that ends unexpectedly: which rows are kept, and what to do.
     """
 
@@ -141,7 +151,7 @@ class Pool:
             count = len(points)
         if count == 0:
             return iter(())
-        return self._shared(iter(points), count)
+        return self._compute_chunks(iter(points), count)
 
     def __enter__(self) -> Self:
         """Start nothing yet."""
@@ -158,7 +168,7 @@ class Pool:
             self._crew.end(at_once=kind is not None or bool(unfinished))
         self._crew = None
 
-    def _shared(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
+    def _compute_chunks(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
         """Hand out chunks, two for each worker at a time; their size follows from the time that points take."""
         if self._crew is None:
             self._crew = (
@@ -184,14 +194,16 @@ class Pool:
                     yield done.rows
         except Exception as error:
             message = (
-                lost_workers_message() if isinstance(error, SkisnowError) and error.code == LOST else crew.told(error)
+                lost_workers_message()
+                if isinstance(error, SkisnowError) and error.code == LOST
+                else crew.explain(error)
             )
             if message is None:
                 raise
             raise SkisnowError("{problem} {advice}").tag("pool_failed", problem=message, advice=self._advice) from error
 
 
-def workers_in_force(workers: int | None) -> int:
+def worker_count(workers: int | None) -> int:
     """A number of workers; None: the number of cores available to this process."""
     if workers is None:
         return available_cores()
@@ -220,7 +232,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     workers: number of workers of this computer, or of an executor that does not report its number.
     """
     if isinstance(executor, Executor):
-        return GivenCrew(function, executor, lambda: _workers_of(executor) or workers)
+        return ExecutorCrew(function, executor, lambda: _workers_of(executor) or workers)
     if executor == "processes":
         return ProcessCrew(function, workers)
     if executor == "threads":

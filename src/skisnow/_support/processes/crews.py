@@ -63,7 +63,7 @@ class Crew(ABC):
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Hand out a chunk."""
 
-    def told(self, error: Exception) -> Message | None:
+    def explain(self, error: Exception) -> Message | None:
         """Explanation of an error that the function did not raise; None: it is passed on."""
         if isinstance(error, BrokenExecutor):
             return Message("A worker process ended unexpectedly, perhaps for lack of memory.")
@@ -109,13 +109,13 @@ class ProcessCrew(Crew):
     def end(self, *, at_once: bool) -> None:
         """End the processes."""
         if at_once:
-            self._let_go()
+            self._disconnect()
         if self._executor is not None:
             self._executor.shutdown(wait=True, cancel_futures=True)
-        self._let_go()
+        self._disconnect()
         self._executor = None
 
-    def _let_go(self) -> None:
+    def _disconnect(self) -> None:
         """Close the connection to the workers, on which each of them ends."""
         if self._leash is not None:
             self._leash.close()
@@ -142,7 +142,7 @@ class ThreadCrew(Crew):
         self._executor.shutdown(wait=True, cancel_futures=True)
 
 
-class GivenCrew(Crew):
+class ExecutorCrew(Crew):
     """An executor of the caller, on this computer or others: each chunk carries the function.
 
     function: pickled once.
@@ -167,7 +167,7 @@ class GivenCrew(Crew):
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Hand out a chunk."""
-        return self._executor.submit(computed_elsewhere, self._packed, self._identity, self._folder, points)
+        return self._executor.submit(compute_on_worker, self._packed, self._identity, self._folder, points)
 
     def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - its owner knows how to end it
         """Close the pool that was opened for the work."""
@@ -268,7 +268,7 @@ def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
     return Done(rows, (time.perf_counter() - start) / max(len(rows), 1))
 
 
-def computed_elsewhere(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
+def compute_on_worker(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
     """Rows of points by a pickled function; the worker caches the last four functions.
 
     identity: version and core of the sender's skisnow.

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final
 
-from ..environment import needed
+from ..environment import import_extra
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import LOST, Crew, GivenCrew, PointFunction, lost_workers_message
+from .crews import LOST, Crew, ExecutorCrew, PointFunction, lost_workers_message
 
 _NOT_LOADED: Final = ("Can't get attribute", "deserializ")
 """Texts of Python and Dask where a function is not there."""
@@ -65,7 +65,7 @@ def _unanswered(address: str, error: Exception) -> Message:
     )
 
 
-class DaskCrew(GivenCrew):
+class DaskCrew(ExecutorCrew):
     """Workers of a Dask client. The scheduler gives a chunk of a worker that was lost to another one."""
 
     chunk_s = CHUNK_S
@@ -89,7 +89,7 @@ class DaskCrew(GivenCrew):
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
             raise SkisnowError(lost_workers_message()).tag(LOST)
 
-    def told(self, error: Exception) -> Message | None:
+    def explain(self, error: Exception) -> Message | None:
         """Explanation of an error of Dask."""
         if isinstance(error, ImportError) or any(word in str(error) for word in _NOT_LOADED):
             return Message(
@@ -97,8 +97,8 @@ class DaskCrew(GivenCrew):
             )
         if type(error).__module__.startswith("distributed"):
             return Message("Dask gave up: {kind}: {error}.", kind=type(error).__name__, error=error)
-        return super().told(error)
+        return super().explain(error)
 
 
 def _distributed() -> Any:
-    return needed("distributed", extra="dask", what=Message("A scheduler"))
+    return import_extra("distributed", extra="dask", what=Message("A scheduler"))

@@ -95,17 +95,17 @@ class KeptRows:
         with _errors(path):
             rows = cls(path)
         try:
-            with rows._told():
-                rows._take(about)
+            with rows._named_errors():
+                rows._lock_and_begin(about)
                 entries = rows.about()
             if about is not None and entries["fingerprint"] != about["fingerprint"]:
-                raise _another(path)
+                raise _other_batch_error(path)
         except BaseException:
             rows.close()
             raise
         return rows
 
-    def _take(self, about: Mapping[str, str] | None = None) -> None:
+    def _lock_and_begin(self, about: Mapping[str, str] | None = None) -> None:
         """Lock the file for this process, and begin it where it is new."""
         run = self._database.execute
         run("pragma locking_mode = exclusive")  # before the log: it then needs no memory shared with other processes
@@ -129,13 +129,13 @@ class KeptRows:
         """Entries of the batch from its start."""
         entries = dict(self._selected("select name, value from about"))
         if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
-            raise _damaged(self.path, "the description of the batch has changed")
+            raise _damage_error(self.path, "the description of the batch has changed")
         return entries
 
     def add(self, rows: Iterable[NumberedText]) -> int:
         """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number."""
         new = list(rows)
-        with self._told():
+        with self._named_errors():
             self._database.execute("begin")
             with self._database:
                 self._database.executemany(
@@ -181,14 +181,14 @@ class KeptRows:
     def _checked(self, which: str, *parameters: object) -> Iterator[NumberedText]:
         for number, text, checksum in self._selected(f"select number, row, checksum from rows {which}", *parameters):
             if not isinstance(text, str) or checksum != _checksum(number, text):
-                raise _damaged(self.path, f"the row of point {number + 1} has changed")
+                raise _damage_error(self.path, f"the row of point {number + 1} has changed")
             yield number, text
 
-    def _told(self) -> AbstractContextManager[None]:
+    def _named_errors(self) -> AbstractContextManager[None]:
         return _errors(self.path, self._database)
 
     def _selected(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
-        with self._told():
+        with self._named_errors():
             # `yield from` closes the cursor, which fails behind a closed database
             for record in self._database.execute(query, parameters):  # noqa: UP028
                 yield record
@@ -247,17 +247,17 @@ def _errors(path: Path | None, database: sqlite3.Connection | None = None) -> It
         if place_reason(error) is not None:
             raise cannot_write(path or Path("memory"), OSError(str(error))) from error
         damage = None if database is None else first_damage(database)
-        raise _damaged(path, damage or str(error)) from error
+        raise _damage_error(path, damage or str(error)) from error
 
 
-def _another(path: Path) -> ParameterError:
+def _other_batch_error(path: Path) -> ParameterError:
     return ParameterError(
         "{path} contains the finished points of another study, or of this one before its inputs, one of its files or "
         "skisnow changed. Undo the change to continue them, or remove that file to start again."
     ).tag("another_study", path=path)
 
 
-def _damaged(path: Path | None, why: str) -> ParameterError:
+def _damage_error(path: Path | None, why: str) -> ParameterError:
     return ParameterError(
         "{path} is damaged, or it is not a file of finished points: {reason}. Remove it to compute its points again, "
         "or move it away."

@@ -6,7 +6,7 @@ All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, 
 from .json_text import MOST_JSON_BYTES, Element, json_value, own_json, read_json, read_record, xml_tree
 from .text_files import (
     MOST_TOML_BYTES,
-    GivenError,
+    ContentError,
     is_file,
     natural_number,
     plain_bytes,
@@ -21,8 +21,8 @@ from .workbook import workbook_sheets
 __all__ = [
     "MOST_JSON_BYTES",
     "MOST_TOML_BYTES",
+    "ContentError",
     "Element",
-    "GivenError",
     "is_file",
     "json_value",
     "natural_number",

@@ -11,7 +11,7 @@ from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, get_args, get_origin, get_type_hints
 from xml.parsers import expat
 
-from .text_files import LARGEST_WHOLE, GivenError, plain_text, require_sound, shown, too_deep
+from .text_files import LARGEST_WHOLE, ContentError, plain_text, require_sound, shown, too_deep
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,18 +30,18 @@ def read_json(path: str | Path, *, most_bytes: int = MOST_JSON_BYTES) -> Any:
 def json_value(text: str | bytes, *, title: str = "") -> Any:
     """The value of a JSON text.
 
-    Raises GivenError: the text is not JSON (NaN and infinite numbers included), exceeds a limit (nesting, digits of a
+    Raises ContentError: the text is not JSON (NaN and infinite numbers included), exceeds a limit (nesting, digits of a
         number, length of a text), repeats a key of an object, or contains an invalid character.
     """
     try:
         value = json.loads(text, object_pairs_hook=_object, parse_int=_whole, parse_constant=_refuse_constant)
         require_sound(value, infinite=False)
-    except GivenError as error:
+    except ContentError as error:
         raise error.of(title) from None
     except RecursionError:
         raise too_deep().of(title) from None
     except ValueError as error:
-        raise GivenError("This is not JSON text: {reason}. Correct that place.", title=title).tag(
+        raise ContentError("This is not JSON text: {reason}. Correct that place.", title=title).tag(
             "not_json", reason=str(error)
         ) from error
     return value
@@ -56,20 +56,20 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     entries = dict(pairs)
     if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
-        raise GivenError("the key {key} is twice in one object. Remove one.").tag("repeated_key", key=shown(twice))
+        raise ContentError("the key {key} is twice in one object. Remove one.").tag("repeated_key", key=shown(twice))
     return entries
 
 
 def _whole(digits: str) -> int:
     if len(digits) > _MOST_DIGITS:
-        raise GivenError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
+        raise ContentError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
             "number_too_large", count=len(digits), largest=LARGEST_WHOLE
         )
     return int(digits)
 
 
 def _refuse_constant(word: str) -> None:
-    raise GivenError("{word} is not a number of JSON. Write null or a finite number.").tag("not_json", word=word)
+    raise ContentError("{word} is not a number of JSON. Write null or a finite number.").tag("not_json", word=word)
 
 
 T = TypeVar("T", bound="DataclassInstance")
@@ -82,22 +82,22 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
     """
     values = read_json(path)
     if not isinstance(values, dict):
-        raise GivenError("{path} is damaged: it is not a JSON object. Remove it.").tag("damaged", path=path)
+        raise ContentError("{path} is damaged: it is not a JSON object. Remove it.").tag("damaged", path=path)
     hints = get_type_hints(kind)
     for name in values if only_known else ():
         if name not in hints:
-            raise GivenError("{path} is damaged: {key!r} is not one of its keys. Remove it.").tag(
+            raise ContentError("{path} is damaged: {key!r} is not one of its keys. Remove it.").tag(
                 "damaged", path=path, key=name[:60]
             )
     fields_given = {name: value for name, value in values.items() if name in hints}
     for entry in fields(kind):
         if entry.name not in fields_given and entry.default is MISSING and entry.default_factory is MISSING:
-            raise GivenError("{path} is damaged: the key {key} is missing. Remove it.").tag(
+            raise ContentError("{path} is damaged: the key {key} is missing. Remove it.").tag(
                 "damaged", path=path, key=entry.name
             )
     for name, value in fields_given.items():
         if not _fits(value, hints[name]):
-            raise GivenError("{path} is damaged: {key} is {value!r}, of another type. Remove it.").tag(
+            raise ContentError("{path} is damaged: {key} is {value!r}, of another type. Remove it.").tag(
                 "damaged", path=path, key=name, value=str(value)[:60]
             )
     return kind(**fields_given)
@@ -173,7 +173,7 @@ class _Builder:
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
         self._count += 1
         if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
-            raise GivenError("More than {count} elements, or {depth} within each other, are not read.").tag(
+            raise ContentError("More than {count} elements, or {depth} within each other, are not read.").tag(
                 "too_large", count=MOST_ELEMENTS, depth=DEEPEST
             )
         namespace, _, local = name.rpartition("}")
@@ -192,7 +192,7 @@ class _Builder:
         self._open.pop()
 
     def document_type(self, *_what: object) -> None:
-        raise GivenError("A document type is declared, which is rejected: it may have endless entities.").tag(
+        raise ContentError("A document type is declared, which is rejected: it may have endless entities.").tag(
             "document_type"
         )
 
@@ -206,16 +206,16 @@ def xml_tree(data: bytes) -> Element:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        raise GivenError("This is not XML, or it is damaged ({reason}).", line=error.lineno).tag(
+        raise ContentError("This is not XML, or it is damaged ({reason}).", line=error.lineno).tag(
             "not_xml", reason=expat.ErrorString(error.code)
         ) from error
-    except GivenError:
+    except ContentError:
         raise
     except (LookupError, ValueError) as error:  # Python's codec of the encoding that the first line declares
         what = str(error)[:_LONGEST_REASON]
-        raise GivenError("The text has an encoding that cannot be read ({reason}). Save it as UTF-8.", line=1).tag(
+        raise ContentError("The text has an encoding that cannot be read ({reason}). Save it as UTF-8.", line=1).tag(
             "not_text", reason=what
         ) from error
     if builder.root is None:
-        raise GivenError("The file has no element.").tag("not_xml")
+        raise ContentError("The file has no element.").tag("not_xml")
     return builder.root

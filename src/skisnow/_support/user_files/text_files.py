@@ -11,14 +11,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final, Self, TypeAlias
 
-from ..errors import ParameterError, templated
+from ..errors import ParameterError, as_template
 from ..messages import Message
 
 
 def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
     """Read a file.
 
-    Raises GivenError: it is not there, may not be read, is not a plain file, or has more bytes; or no file can have
+    Raises ContentError: it is not there, may not be read, is not a plain file, or has more bytes; or no file can have
         such a name.
     """
     try:
@@ -30,25 +30,25 @@ def plain_bytes(path: str | Path, *, most_bytes: int) -> bytes:
                     "{path} cannot be read: it is a pipe, a device or the like, no plain file. Check the path.",
                     path=path,
                 )
-            raise GivenError(problem).tag("cannot_read")
+            raise ContentError(problem).tag("cannot_read")
         with place.open("rb") as stream:
             data = stream.read(most_bytes + 1)
-    except GivenError:
+    except ContentError:
         raise
     except OSError as error:
-        raise GivenError("{path} cannot be read: {reason}. Check the path.").tag(
+        raise ContentError("{path} cannot be read: {reason}. Check the path.").tag(
             "cannot_read", path=path, reason=error.strerror or error
         ) from error
     except UnicodeEncodeError as error:
-        raise GivenError("{path!r} cannot be read: its name is not valid text. Correct it.").tag(
+        raise ContentError("{path!r} cannot be read: its name is not valid text. Correct it.").tag(
             "cannot_read", path=path
         ) from error
     except ValueError as error:  # the system's paths end at a NUL character
-        raise GivenError("{path!r} is not a path: it has a NUL character. Correct it.").tag(
+        raise ContentError("{path!r} is not a path: it has a NUL character. Correct it.").tag(
             "invalid_character", path=path
         ) from error
     if len(data) > most_bytes:
-        raise GivenError("{path} is too large: at most {limit:g} MiB are read of such a file.").tag(
+        raise ContentError("{path} is too large: at most {limit:g} MiB are read of such a file.").tag(
             "too_large", path=path, limit=most_bytes / 2**20
         )
     return data
@@ -68,13 +68,13 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise GivenError("{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.").tag(
+        raise ContentError("{path} is not UTF-8 text ({reason}, byte {byte}). Save it as UTF-8.").tag(
             "not_text", path=path, reason=error.reason, byte=error.start + 1
         ) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-class GivenError(ParameterError):
+class ContentError(ParameterError):
     """A file, or a text in its stead, cannot be read.
 
     what, fields: problem and allowed values, without the file.
@@ -89,14 +89,14 @@ class GivenError(ParameterError):
 
     def tag(self, code: str, /, **fields: Any) -> Self:
         """The same error with its code, and with fields in the template of its problem."""
-        self.what = templated(self.what, fields)
+        self.what = as_template(self.what, fields)
         self.args = (self.sentence or _placed(self.what, self.line, self.title),)
         self.code = code
         return self
 
-    def of(self, title: str) -> GivenError:
+    def of(self, title: str) -> ContentError:
         """The same error with the title of the file."""
-        return GivenError(self.what, line=self.line, title=title).tag(self.code)
+        return ContentError(self.what, line=self.line, title=title).tag(self.code)
 
 
 def _placed(what: str, line: int | None, title: str) -> str:
@@ -146,10 +146,10 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
                 place=named(place),
                 largest=LARGEST_WHOLE,
             )
-            raise GivenError(problem).tag("number_too_large")
+            raise ContentError(problem).tag("number_too_large")
     elif isinstance(value, float):
         if not infinite and not math.isfinite(value):
-            raise GivenError("{place} is beyond the numbers, ±1.8e308. Correct it.").tag(
+            raise ContentError("{place} is beyond the numbers, ±1.8e308. Correct it.").tag(
                 "number_too_large", place=named(place)
             )
     elif isinstance(value, dict | list):
@@ -163,16 +163,16 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
             require_sound(inner, infinite=infinite, place=(*place, key))
 
 
-def too_deep(line: int | None = None) -> GivenError:
+def too_deep(line: int | None = None) -> ContentError:
     """The error for brackets within brackets within brackets."""
-    return GivenError("brackets are nested more than {deepest} deep. Remove some.", line=line).tag(
+    return ContentError("brackets are nested more than {deepest} deep. Remove some.", line=line).tag(
         "nested_too_deep", deepest=DEEPEST
     )
 
 
 def _require_text(text: str, place: Place, longest: int) -> None:
     if len(text) > longest:
-        raise GivenError("{place} has {count} characters; allowed are {longest}. Shorten it.").tag(
+        raise ContentError("{place} has {count} characters; allowed are {longest}. Shorten it.").tag(
             "text_too_long", place=named(place), count=len(text), longest=longest
         )
     if text.isascii():
@@ -180,7 +180,7 @@ def _require_text(text: str, place: Place, longest: int) -> None:
     else:
         sound = not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
     if not sound:
-        raise GivenError("{place} has a NUL character or half a letter, which no text has. Remove it.").tag(
+        raise ContentError("{place} has a NUL character or half a letter, which no text has. Remove it.").tag(
             "invalid_character", place=named(place)
         )
 
@@ -249,13 +249,13 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
     """
     try:
         if len(text) > MOST_TOML_BYTES:
-            raise GivenError("the text has {count} characters; allowed are {longest}.").tag(
+            raise ContentError("the text has {count} characters; allowed are {longest}.").tag(
                 "too_large", count=len(text), longest=MOST_TOML_BYTES
             )
         _require_short(text)
         values = tomllib.loads(text)
         require_sound(values, infinite=True)
-    except GivenError as error:
+    except ContentError as error:
         raise error.of(title) from None
     except RecursionError:
         raise too_deep().of(title) from None
@@ -266,7 +266,9 @@ def toml_values(text: str, *, title: str = "") -> dict[str, Any]:
             if title
             else Message("This is not TOML: {reason}. Correct that place.", reason=str(error))
         )
-        raise GivenError(str(error), line=int(line[1]) if line else None, sentence=sentence).tag("not_toml") from error
+        raise ContentError(str(error), line=int(line[1]) if line else None, sentence=sentence).tag(
+            "not_toml"
+        ) from error
     return values
 
 
@@ -287,7 +289,7 @@ def _require_short(text: str) -> None:
         elif first not in "\"'#":
             dots += word.count(".")
             if dots > MOST_DOTS:
-                raise GivenError("a key has more than {count} dots. Shorten it.", line=_line(text, token)).tag(
+                raise ContentError("a key has more than {count} dots. Shorten it.", line=_line(text, token)).tag(
                     "key_too_long", count=MOST_DOTS
                 )
             if len(word) > LONGEST_KEY:
@@ -296,7 +298,7 @@ def _require_short(text: str) -> None:
                     count=len(word),
                     longest=LONGEST_KEY,
                 )
-                raise GivenError(problem, line=_line(text, token)).tag("key_too_long")
+                raise ContentError(problem, line=_line(text, token)).tag("key_too_long")
 
 
 def _line(text: str, token: re.Match[str]) -> int:

@@ -18,7 +18,7 @@ from functools import partial
 from typing import Any, Final, TypeAlias
 from xml.parsers import expat
 
-from .text_files import GivenError
+from .text_files import ContentError
 
 Rows: TypeAlias = list[list[str]]
 """Cells as texts, row 1 first, blank rows as empty lists."""
@@ -55,9 +55,9 @@ def workbook_sheets(
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of parts that are not read: validations, drawings
-        book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
+        book = _call_openpyxl(lambda: load_workbook(io.BytesIO(data), read_only=True, data_only=True, keep_links=False))
         if len(book.worksheets) > MOST_SHEETS:
-            raise GivenError("The workbook has {count} sheets; at most {limit} are read. Remove some.").tag(
+            raise ContentError("The workbook has {count} sheets; at most {limit} are read. Remove some.").tag(
                 "too_large", count=len(book.worksheets), limit=MOST_SHEETS
             )
         places: dict[str, list[tuple[int, int]]] = {} if fractions is None else fractions
@@ -93,8 +93,8 @@ def sheet_layouts(data: bytes) -> dict[str, Layout]:
 
     with warnings.catch_warnings(), zipfile.ZipFile(io.BytesIO(data)) as archive:
         warnings.simplefilter("ignore")
-        book = _undamaged(lambda: load_workbook(io.BytesIO(data), read_only=True, keep_links=False))
-        return {sheet.title: _undamaged(partial(_layout, archive, sheet)) for sheet in book.worksheets}
+        book = _call_openpyxl(lambda: load_workbook(io.BytesIO(data), read_only=True, keep_links=False))
+        return {sheet.title: _call_openpyxl(partial(_layout, archive, sheet)) for sheet in book.worksheets}
 
 
 def _layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
@@ -141,14 +141,14 @@ def _partly_struck(archive: zipfile.ZipFile, sheet: bytes) -> Iterable[tuple[int
             yield row - 1, column - 1
 
 
-def _undamaged(doing: Callable[[], Any]) -> Any:
+def _call_openpyxl(doing: Callable[[], Any]) -> Any:
     """Steps of openpyxl, which raises a dozen kinds of errors for damaged files."""
     try:
         return doing()
-    except GivenError:
+    except ContentError:
         raise
     except Exception as error:
-        raise GivenError(
+        raise ContentError(
             "This is not a workbook that can be read, or it is damaged. Open it in a spreadsheet program, "
             "and save it as .xlsx."
         ).tag("not_readable") from error
@@ -162,7 +162,7 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
     def read() -> None:
         for cells in sheet.iter_rows(values_only=True):
             if len(rows) >= MOST_ROWS:
-                raise GivenError("The sheet {sheet!r} has more than {limit} rows. Remove some.").tag(
+                raise ContentError("The sheet {sheet!r} has more than {limit} rows. Remove some.").tag(
                     "too_large", limit=MOST_ROWS, sheet=sheet.title
                 )
             texts = [_text(value) for value in cells]
@@ -173,13 +173,13 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
             while texts and not texts[-1]:
                 texts.pop()
             if len(texts) > MOST_COLUMNS:
-                raise GivenError(
+                raise ContentError(
                     "Row {row} of the sheet {sheet!r} has {count} cells; at most {limit} columns are read. "
                     "Remove the unused ones."
                 ).tag("too_large", row=len(rows) + 1, sheet=sheet.title, count=len(texts), limit=MOST_COLUMNS)
             rows.append(texts)
 
-    _undamaged(read)
+    _call_openpyxl(read)
     while rows and not rows[-1]:
         rows.pop()
     if like_typed and typed[","] > typed["."]:  # then a reader would take 43.5 for a thousand
@@ -206,18 +206,18 @@ def _moment(value: date | time) -> str:
 
 def _require_sound(data: bytes) -> None:
     if len(data) > MOST_WORKBOOK_BYTES:
-        raise GivenError("The workbook is too large: at most {limit} MiB are read. Save it as CSV.").tag(
+        raise ContentError("The workbook is too large: at most {limit} MiB are read. Save it as CSV.").tag(
             "too_large", limit=MOST_WORKBOOK_BYTES >> 20
         )
     if data.startswith(_OLD_KIND):
-        raise GivenError(
+        raise ContentError(
             "The workbook is protected by a password, or in Excel's old form. Save it as .xlsx without a password."
         ).tag("not_readable")
     if data.count(b"PK\1\2") > MOST_PARTS:
-        raise GivenError("The workbook has more than {limit} parts, which no table has.").tag(
+        raise ContentError("The workbook has more than {limit} parts, which no table has.").tag(
             "too_large", limit=MOST_PARTS
         )
-    archive: zipfile.ZipFile = _undamaged(lambda: zipfile.ZipFile(io.BytesIO(data)))
+    archive: zipfile.ZipFile = _call_openpyxl(lambda: zipfile.ZipFile(io.BytesIO(data)))
     with archive:
         _require_small(archive)
 
@@ -227,11 +227,11 @@ def _require_small(archive: zipfile.ZipFile) -> None:
     for part in archive.infolist():
         looked_at = _Part(part.filename) if part.filename.endswith((".xml", ".rels")) else None
         pieces: Iterable[bytes] = iter(_pieces(archive, part))
-        while piece := _undamaged(lambda pieces=pieces: next(pieces, b"")):  # type: ignore[misc]
+        while piece := _call_openpyxl(lambda pieces=pieces: next(pieces, b"")):  # type: ignore[misc]
             unpacked += len(piece)
             if unpacked > MOST_UNPACKED_BYTES:
                 most = MOST_UNPACKED_BYTES >> 20
-                raise GivenError(
+                raise ContentError(
                     "The workbook has more than {limit} MiB when it is unpacked. Save its sheets as CSV."
                 ).tag("too_large", limit=most)
             if looked_at is not None:
@@ -262,13 +262,13 @@ class _Part:
         self._in_cell: set[str] = set()
 
     def take(self, piece: bytes) -> None:
-        _undamaged(lambda: self._parser.Parse(piece, False))
+        _call_openpyxl(lambda: self._parser.Parse(piece, False))
 
     def finish(self) -> None:
-        _undamaged(lambda: self._parser.Parse(b"", True))
+        _call_openpyxl(lambda: self._parser.Parse(b"", True))
 
     def _refuse_document_type(self, *_: object) -> None:
-        raise GivenError(
+        raise ContentError(
             "The workbook has a document type in its part {part}, which no spreadsheet program writes."
         ).tag("not_readable", part=self._name)
 
@@ -276,7 +276,7 @@ class _Part:
         self._elements += 1
         self._depth += 1
         if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
-            raise GivenError("The part {part} of the workbook is larger than any table. Save its sheets as CSV.").tag(
+            raise ContentError("The part {part} of the workbook is larger than any table. Save its sheets as CSV.").tag(
                 "too_large", part=self._name
             )
         local = name.rpartition(" ")[2]
@@ -296,7 +296,7 @@ class _Part:
         self._depth -= 1
         self._is_value = False
         if name.endswith(" c") and self._in_cell == {"f"}:
-            raise GivenError(
+            raise ContentError(
                 "The cell {cell} ({part}) has a formula without its value. Open the workbook in a "
                 "spreadsheet program and save it."
             ).tag("formula_without_value", cell=self._cell[:20], part=self._name)

@@ -16,10 +16,10 @@ from ..reading.headings import (
     UnitConversion,
     columns_by_synonym,
     conversion,
+    folded_unit,
     known_unit,
     letters,
     named_unit,
-    own_unit,
     stated_column,
     unit_of_column,
     units_for,
@@ -69,7 +69,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
             unit = _unit(section, form, heading, column, place, dialogue, notes)
         elif column in form.further and unit_of_column(column):
             units = _statements(section, heading, column, place, dialogue, table, notes)
-            column = column if units == {own_unit(column)} else heading  # noqa: PLW2901
+            column = column if units == {folded_unit(column)} else heading  # noqa: PLW2901
         choices.append(ColumnChoice(place, heading, "" if column == NONE else column or heading, unit))
     return choices
 
@@ -120,7 +120,7 @@ def _statements(
 ) -> set[str]:
     """Units that answer, heading, row of units and notes state for a column."""
     below = section.units[section.columns.index(place)] if section.units else ""
-    named = own_unit(column) if heading == column else named_unit(heading)
+    named = folded_unit(column) if heading == column else named_unit(heading)
     of_notes = units_in_notes(column, notes) if column in MEASURED else set()
     return {
         *filter(None, (known_unit(dialogue.answers.of_heading("unit", table, heading)), named, known_unit(below))),

@@ -56,7 +56,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
 
     name, data: name and content of a workbook (.xlsx) or a CSV file.
     answers: answers to questions of an earlier proposal, or of a template.
-    Raises GivenError or ParameterError: the file cannot be read.
+    Raises ContentError or ParameterError: the file cannot be read.
     """
     ignored = Ignored(frozenset(answers.ignore), answers.cells.get(HIDDEN) == "no")
     sheets = read_sheets(name, data)

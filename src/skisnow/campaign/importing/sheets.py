@@ -11,7 +11,7 @@ from typing import Final
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
-from ..._support.user_files import GivenError, workbook_sheets
+from ..._support.user_files import ContentError, workbook_sheets
 from ..._support.user_files.workbook import Layout, Rows, sheet_layouts
 from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
@@ -70,7 +70,7 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
     name, data: the file.
     count: number of known headings in a row, by which the separator of a CSV file is found; default: those of
         campaigns.
-    Raises GivenError or ParameterError: it is not a workbook or a CSV file, or is beyond a limit.
+    Raises ContentError or ParameterError: it is not a workbook or a CSV file, or is beyond a limit.
     """
     if not is_workbook(name):
         rows, separator = _csv_rows(name, data, count or _headings)
@@ -79,7 +79,7 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
     try:
         layouts = sheet_layouts(data)
         sheets = workbook_sheets(data, wanted=lambda _: True, fractions=fractions)
-    except GivenError as error:
+    except ContentError as error:
         raise error.of(name) from error
     return [_sheet(title, rows, layouts[title], set(fractions[title])) for title, rows in sheets.items() if rows]
 

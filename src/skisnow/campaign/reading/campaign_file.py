@@ -9,7 +9,7 @@ from typing import Annotated, Any, Final
 
 from ..._support.messages import Message
 from ..._support.units import MM
-from ..._support.user_files import GivenError, toml_values
+from ..._support.user_files import ContentError, toml_values
 from ...geometry import Disc, LyingCylinder, SkiPiece, Tool
 from ...geometry.tools import LIKELY_LENGTH_MM
 from ...parameters import Allowed, Quantity, own_quantities
@@ -151,7 +151,7 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
 def _parsed(text: str, problems: list[Problem]) -> dict[str, Any] | None:
     try:
         return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
-    except GivenError as failure:
+    except ContentError as failure:
         row, what = failure.line, failure.what
     action = Message("Correct the line: write texts in quotes, numbers with a decimal point, and lists in brackets.")
     problems.append(

@@ -50,7 +50,7 @@ class Blocks:
         count = np.add.reduceat(chosen.astype(np.int64), self.start)
         return np.concatenate(([0], np.cumsum(count))).astype(np.int64)
 
-    def first_given(self, mask: BoolArray) -> IntArray:
+    def first_chosen(self, mask: BoolArray) -> IntArray:
         """First row of each block with ``mask``, or the block's first row."""
         chosen = self.start.copy()
         rows = np.flatnonzero(mask)[::-1]
@@ -96,12 +96,12 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
     for name in (*table.form.names, "spot"):
         column = table.names[name]
         if name != table.form.key:
-            reference = blocks.first_given(~column.is_blank)[blocks.of_row]
+            reference = blocks.first_chosen(~column.is_blank)[blocks.of_row]
             differs = (column.code != column.code[reference]) & ~column.is_blank & ~key.is_blank
             for row in np.flatnonzero(differs).tolist():
                 yield _mixed(table, row, int(reference[row]), name, column[row], column[int(reference[row])])
     angle = table.numbers["edge_angle_deg"]
-    reference = blocks.first_given(~np.isnan(angle))[blocks.of_row]
+    reference = blocks.first_chosen(~np.isnan(angle))[blocks.of_row]
     differs = (angle != angle[reference]) & ~np.isnan(angle) & ~key.is_blank
     for row in np.flatnonzero(differs).tolist():
         other = float(angle[reference[row]])
@@ -166,7 +166,7 @@ def penetration_tests(table: Table) -> PenetrationTests:
         experiment=_at(table.names["experiment"], blocks.start),
         site=_at(table.names["site"], blocks.start),
         tool=_at(table.names["tool"], blocks.start),
-        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        spot=_at(spot, blocks.first_chosen(~spot.is_blank)),
         edge_angle=table.numbers["edge_angle_deg"][blocks.start] * DEGREE,
         snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
         drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
@@ -201,14 +201,14 @@ def shear_tests(table: Table) -> ShearTests:
     """
     blocks = shear_blocks(table)
     moment, angle = table.numbers["moment_Nm"], table.numbers["turning_angle_deg"]
-    largest = blocks.first_given(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
+    largest = blocks.first_chosen(moment == np.maximum.reduceat(moment, blocks.start)[blocks.of_row])
     is_turned = ~np.isnan(angle)
     spot = table.names["spot"]
     return ShearTests(
         experiment=_at(table.names["experiment"], largest),
         site=_at(table.names["site"], largest),
         plate=_at(table.names["plate"], largest),
-        spot=_at(spot, blocks.first_given(~spot.is_blank)),
+        spot=_at(spot, blocks.first_chosen(~spot.is_blank)),
         edge_angle=table.numbers["edge_angle_deg"][largest] * DEGREE,
         penetration_depth=table.numbers["depth_mm"][largest] * MM,
         lever_arm=table.numbers["lever_arm_mm"][largest] * MM,

@@ -16,9 +16,9 @@ from .headings import (
     UnitConversion,
     columns_by_synonym,
     conversion,
+    folded_unit,
     known_unit,
     named_unit,
-    own_unit,
     unit_of_column,
     units_for,
 )
@@ -227,7 +227,7 @@ def column_units(form: TableForm, header: Header, headings: Headings, problems: 
         column = headings.name(form, heading)
         if not unit_of_column(column):
             continue
-        named = own_unit(column) if heading == column else named_unit(heading)
+        named = folded_unit(column) if heading == column else named_unit(heading)
         below = header.units[place] if header.units else ""
         stated = list(filter(None, (headings.unit(form, heading), named, below)))
         if any(conversion(unit_given, column) != conversion(stated[0], column) for unit_given in stated):

@@ -235,7 +235,7 @@ def conversion(unit: str, column: str) -> UnitConversion | None:
     return _CONVERSIONS.get((unit_of_column(column), unit))
 
 
-def own_unit(column: str) -> str:
+def folded_unit(column: str) -> str:
     """Unit of a column in the form of headings."""
     return _OWN[unit_of_column(column)][0].casefold()
 

@@ -25,7 +25,7 @@ from ..._support.spreadsheet_text import (
     decoded,
     most_frequent_separator,
     named_separator,
-    unguarded,
+    remove_protection,
 )
 
 __all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "inspect_csv"]
@@ -126,7 +126,7 @@ class CsvText:
                 first = cells[0] if cells else ""
                 if (first and not first.isspace()) or any(map(str.strip, cells)):
                     lines.append(line)
-                    rows.append(list(map(unguarded, cells)) if may_be_guarded else cells)
+                    rows.append(list(map(remove_protection, cells)) if may_be_guarded else cells)
                 line = reader.line_num + 1 + skipped
             line = lines.pop()  # its last cell swallowed the end
             rows.pop()

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, TypeVar
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined
 from ..._support.user_files import shown_value
-from ...parameters import Quantity, made, own_quantities
+from ...parameters import Quantity, build_declared, own_quantities
 from ..problems import Problem, error, warning
 
 _SIMILAR = 0.8  # from here a key is taken for a misspelt one
@@ -148,7 +148,7 @@ class TomlValues:
                 values[key] = quantities[key].in_range(self.values[key])
             except ParameterError:
                 self.refuse(key, quantities[key].allowed, Message("Correct {key}.", key=key), code="bad_toml")
-        return made(owner, values)
+        return build_declared(owner, values)
 
     def refuse_misspelt(self, allowed_keys: Iterable[str]) -> None:
         """Report unknown keys: an error if a key is similar to a known one, otherwise a warning."""

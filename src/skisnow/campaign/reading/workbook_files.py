@@ -13,7 +13,7 @@ from typing import Final
 
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import is_number
-from ..._support.user_files import GivenError, toml_text, workbook_sheets
+from ..._support.user_files import ContentError, toml_text, workbook_sheets
 from ..._support.user_files.workbook import Rows
 from ..problems import Problem, error, warning
 from .campaign_file import CAMPAIGN_KEYS
@@ -110,7 +110,7 @@ def _read_workbook(workbooks: UnfoldedFiles, workbook: str) -> None:
             return
         workbooks.hashes[workbook] = hashlib.sha256(data).hexdigest()
         sheets = workbook_sheets(data, wanted=lambda _: True)
-    except (GivenError, OSError) as failure:
+    except (ContentError, OSError) as failure:
         what = failure.strerror or str(failure) if isinstance(failure, OSError) else str(failure)
         value, _, action = what.partition(". ")
         allowed = Message("a workbook (.xlsx) with a sheet for each table")

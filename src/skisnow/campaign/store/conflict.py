@@ -96,7 +96,7 @@ class Divergence:
         entries = (*self.here, *self.there)
         if all(entry.action == "correct" for entry in entries):
             return not self.contested
-        return not any(entry.action == "add" for entry in entries) and self._said("here") == self._said("there")
+        return not any(entry.action == "add" for entry in entries) and self._contents("here") == self._contents("there")
 
     @property
     def contested(self) -> list[tuple[str, str]]:
@@ -125,7 +125,7 @@ class Divergence:
         together = self.kind == "begun twice" or (self.kind == "cancelled" and not self.contested)
         return ("here", "there", "both") if together else ("here", "there")
 
-    def told(self, name: str) -> Conflict:
+    def in_words(self, name: str) -> Conflict:
         """The conflict in words, with the name of the campaign."""
         entries_by_uid = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
         return Conflict(
@@ -140,7 +140,7 @@ class Divergence:
             choices=self.choices,
         )
 
-    def _said(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
+    def _contents(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
         entries, uids = (self.here, self.uid_here) if side == "here" else (self.there, self.uid_there)
         return Counter(
             (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why)

@@ -139,7 +139,7 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 
 @contextmanager
-def apart(connection: Connection) -> Iterator[None]:
+def savepoint(connection: Connection) -> Iterator[None]:
     """Savepoint: a failure inside leaves the transaction usable, which a server would otherwise abort."""
     if is_file(connection):
         yield

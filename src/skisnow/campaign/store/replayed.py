@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass, field, fields, replace
 from typing import Final, TypeAlias
 
 from ..._support.errors import FieldDataError
-from ..._support.spreadsheet_text import csv_text, guarded
+from ..._support.spreadsheet_text import csv_text, protect_from_formulas
 from ..._support.user_files import toml_text
 from ..problems import AppliedCorrection, Problem
 from ..reading.campaign import campaign_of_cells
@@ -166,7 +166,7 @@ def correction_cells(correction: AppliedCorrection) -> tuple[str, ...]:
 
 def guarded_csv(rows: Iterable[Sequence[str]]) -> str:
     """CSV text whose cells are protected from being read as formulas."""
-    return csv_text(map(guarded, row) for row in rows)
+    return csv_text(map(protect_from_formulas, row) for row in rows)
 
 
 _TIME = "time"

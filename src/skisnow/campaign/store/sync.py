@@ -191,7 +191,7 @@ class _Sync:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             open_ = list(self._open(here, there))
             names = names_of(here).all if open_ else {}
-        return tuple(divergence.told(names.get(divergence.journal_id, "")) for divergence in open_)
+        return tuple(divergence.in_words(names.get(divergence.journal_id, "")) for divergence in open_)
 
     def _open(self, here: Connection, there: Connection) -> Iterator[Divergence]:
         for id_ in shared_journals(here, there):

@@ -10,7 +10,7 @@ from sqlalchemy.exc import DatabaseError
 
 from ..._support.errors import StoreError
 from ..._support.user_files import natural_number
-from .engine import apart, is_file
+from .engine import is_file, savepoint
 from .folder import Progress, manifest_sha256, unsafe_because
 from .journal_entry import as_bytes, damaged_parts, entry_sha256, parse_cells, readable_entry
 from .rows import StoredCampaign, is_sound, stored_campaign
@@ -33,7 +33,7 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
         find_entry_damage,
     ):
         try:
-            with apart(connection):
+            with savepoint(connection):
                 for finding in of_part(connection):
                     damage.append(finding)
         except (DatabaseError, UnicodeDecodeError) as error:
@@ -72,7 +72,7 @@ def _content_damage(connection: Connection, progress: Progress) -> Iterator[Find
 
 def _is_sound(connection: Connection, sha256: object, size: int) -> bool:
     try:
-        with apart(connection):
+        with savepoint(connection):
             return isinstance(sha256, str) and is_sound(connection, sha256, size)
     except (DatabaseError, UnicodeDecodeError):  # the pages that hold it are broken; other files may be whole
         return False

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..._support.errors import ParameterError
 from ..._support.user_files import read_toml
-from ...parameters import Allowed, Quantity, checked_table, made, require_declared
+from ...parameters import Allowed, Quantity, build_declared, checked_table, require_declared
 from ...snow import MeasuredRange
 from .speed_laws import WaterFilmFriction
 
@@ -160,9 +160,9 @@ def read_friction_file(path: str | Path) -> FrictionFile:
     head = checked_table(FrictionFile, values, str(path), further=("state",))
     try:
         states = tuple(
-            made(SnowState, checked_table(SnowState, table, f"state {number}"))
+            build_declared(SnowState, checked_table(SnowState, table, f"state {number}"))
             for number, table in enumerate(tables, start=1)
         )
-        return made(FrictionFile, head, states=states, path=str(path))
+        return build_declared(FrictionFile, head, states=states, path=str(path))
     except ParameterError as error:
         raise error.at(path) from error

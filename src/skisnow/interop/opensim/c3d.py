@@ -15,11 +15,11 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from ..._support.arrays import FloatArray
-from ..._support.environment import needed
+from ..._support.environment import import_extra
 from ..._support.errors import OutputError, ParameterError
 from ..._support.messages import Message
 from ..._support.staging import require_ending, write_file
-from ..._support.user_files import GivenError, plain_bytes
+from ..._support.user_files import ContentError, plain_bytes
 from .markers import METRES, Markers
 from .table import MOST_BYTES, MotionTable
 
@@ -53,7 +53,7 @@ def read_c3d(path: str | Path) -> Markers:
     """
     try:
         content = c3d_content(plain_bytes(path, most_bytes=MOST_BYTES))
-    except GivenError:
+    except ContentError:
         raise
     except ParameterError as error:
         raise ParameterError("{path} cannot be read as .c3d: {error}. Export it again").tag(
@@ -126,7 +126,7 @@ def write_c3d(markers: Markers, path: str | Path, *, forces: MotionTable | None 
     """
     path = Path(path)
     require_ending(path, ENDING)
-    ezc3d = needed("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
+    ezc3d = import_extra("ezc3d", extra="c3d", what=Message("Writing the .c3d file {path}", path=path))
     rate, n = markers.rate, len(markers.time)
     first = round(float(markers.time[0]) * rate)
     _require_frames(path, "markers", markers.time, first / rate, rate)

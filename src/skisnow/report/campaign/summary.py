@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from ..._support.environment import needed
-from ..._support.errors import ParameterError, nearest
+from ..._support.environment import import_extra
+from ..._support.errors import ParameterError, suggest_and_list
 from ..._support.messages import Message
 from ..._support.units import unit_of_name
 from ...estimation.regressions import FEWEST_VALUES
@@ -234,7 +234,7 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
     drawers = {drawer.__name__: drawer for drawer in drawers_of(analysis.campaign)}
     if what not in drawers:
         raise ParameterError("Unknown figure {what!r} of an analysis. {names}").tag(
-            "unknown_figure", what=what, names=nearest(what, drawers)
+            "unknown_figure", what=what, names=suggest_and_list(what, drawers)
         )
     data = ReportData(analysis)
     with journal_style():
@@ -246,17 +246,17 @@ def analysis_figure(analysis: Analysis, what: str) -> Figure:
 
 def analysis_dataframe(analysis: Analysis, kind: str) -> DataFrame:
     """One row per experiment; see `Analysis.to_dataframe`."""
-    pandas = needed("pandas", extra="pandas", what=Message("An analysis as a DataFrame"))
+    pandas = import_extra("pandas", extra="pandas", what=Message("An analysis as a DataFrame"))
     if kind not in KINDS:
         raise ParameterError("No experiments {kind!r}. {names}").tag(
-            "unknown_kind", kind=kind, names=nearest(kind, KINDS)
+            "unknown_kind", kind=kind, names=suggest_and_list(kind, KINDS)
         )
     return pandas.DataFrame(_rows(analysis, kind))
 
 
 def analysis_dataset(analysis: Analysis) -> Dataset:
     """All experiments; see `Analysis.to_xarray`."""
-    xarray = needed("xarray", extra="xarray", what=Message("An analysis as a Dataset"))
+    xarray = import_extra("xarray", extra="xarray", what=Message("An analysis as a Dataset"))
     variables: dict[str, Any] = {}
     for kind in KINDS:
         rows = _rows(analysis, kind)

@@ -12,7 +12,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message, template
 from ..._support.units import DEGREE, MM
 from ..._support.user_files.json_text import json_number
-from ...parameters import nearest
+from ...parameters import suggest_and_list
 from ...simulation.run import Run
 from ..figures.course import run_course
 from ..figures.drawing import Drawing
@@ -166,7 +166,7 @@ def run_figure(run: Run, what: str) -> Figure:
     """One figure of a run by its name, in the style of the reports; see `Run.plot`."""
     if what not in _FIGURES:
         raise ParameterError("unknown figure {figure!r} of a run. {nearest}").tag(
-            "unknown_figure", figure=what, nearest=nearest(what, _FIGURES)
+            "unknown_figure", figure=what, nearest=suggest_and_list(what, _FIGURES)
         )
     if len(run.time) < 2:
         raise ParameterError("the run ended before its first step ({outcome}); no figure can be drawn").tag(

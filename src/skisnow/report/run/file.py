@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scipy.io import netcdf_file
 
 from ..._support.arrays import FloatArray
-from ..._support.environment import needed
+from ..._support.environment import import_extra
 from ..._support.messages import Message
 from ..._support.staging import write_file
 from ...scenario.keys import SCENARIO_KEYS, in_sections, scenario_values
@@ -122,13 +122,13 @@ def _write_variable(file: Any, variable: RunVariable, run: Run) -> None:
 
 def run_dataframe(run: Run) -> DataFrame:
     """DataFrame with the rows of track.csv; see `Run.to_dataframe`."""
-    pandas = needed("pandas", extra="pandas", what=Message("A run as a DataFrame"))
+    pandas = import_extra("pandas", extra="pandas", what=Message("A run as a DataFrame"))
     return pandas.DataFrame(track_table(run), columns=list(track_columns(run)))
 
 
 def run_dataset(run: Run) -> Dataset:
     """Dataset with the variables of run.nc, their units and meanings; see `Run.to_xarray`."""
-    xarray = needed("xarray", extra="xarray", what=Message("A run as a Dataset"))
+    xarray = import_extra("xarray", extra="xarray", what=Message("A run as a Dataset"))
     stored = variables_of(run)
     coordinates = {variable.name for variable in stored if (variable.name,) == variable.dimensions}
     variables = {variable.name: _data_variable(variable, run) for variable in stored}

@@ -10,7 +10,7 @@ from typing import Any, Final
 from ..._support.errors import OutputError, require_language
 from ..._support.messages import ENGLISH, in_language, languages
 from ..._support.staging import prepare_folder, staged, write_file
-from ..._support.user_files import GivenError, plain_text
+from ..._support.user_files import ContentError, plain_text
 from ...scenario.plausibility import implausible_values
 from ...simulation.run import Run
 from ...simulation.run_summary import run_gates, summary_dict
@@ -82,7 +82,7 @@ def link_replay(folder: str | Path) -> Path | None:
         return None
     try:
         page = plain_text(path, most_bytes=MOST_BYTES)
-    except GivenError as error:
+    except ContentError as error:
         raise OutputError("{path} cannot be read: {error}. The replay is written; the report has no link").tag(
             "cannot_read", path=path, error=error
         ) from error

@@ -12,7 +12,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ..._support.messages import Message, local_number
-from ..._support.spreadsheet_text import csv_text, guarded
+from ..._support.spreadsheet_text import csv_text, protect_from_formulas
 from ..._support.units import DEGREE
 from ...track.projection import earth_centred, east_north_up_axes, geodetic
 from ..formatting import aligned_rows, date_words, named_rows, plain
@@ -350,7 +350,7 @@ def _csv(columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> str:
 def _point_cell(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.9g}" if np.isfinite(value) else ""
-    return guarded(str(value))
+    return protect_from_formulas(str(value))
 
 
 def track_gpx(summary: TrackSummary) -> str | None:

@@ -16,7 +16,7 @@ from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import CsvRow, csv_rows
 from ..._support.units import DEGREE
-from ..._support.user_files import Element, GivenError, plain_bytes, xml_tree
+from ..._support.user_files import ContentError, Element, plain_bytes, xml_tree
 from ..projection import GeodeticPoint, east_north_up
 from ..slope_frame import slope_axes
 from .course import Course, Discipline, Gate, Side, course_names, course_place
@@ -233,7 +233,7 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
     data = plain_bytes(path, most_bytes=MOST_BYTES)
     try:
         root = xml_tree(data.lstrip())
-    except GivenError as error:
+    except ContentError as error:
         raise ParameterError("{path} is not a readable GPX file ({error}); export it again").tag(
             "not_gpx", path=path, error=error
         ) from error

@@ -26,7 +26,7 @@ from ...campaign.store.stored_tables import cell_of
 from ..elements import Words, add_items, button, field, folded
 from ..layout import heading
 from ..page_requests import asking_button, form
-from ..words import label, minute_words, number_said, said
+from ..words import label, minute_words, number_text, said
 from .table_view import TableView
 
 USUAL_REASON: Final = Message("typing error")
@@ -166,7 +166,7 @@ def changes(
 
     with ui.element("div").classes("acts"):
         if test.undoable is not None:
-            asking_button(Message("Undo: {done}", done=_done(test.undoable, view)), undo)
+            asking_button(Message("Undo: {done}", done=_entry_words(test.undoable, view)), undo)
         if not test.cancelled and not cancelled and test.rows:
             asks = asking_button(Message("Cancel this test"), ask_cancel)
     _history(test, view)
@@ -177,7 +177,7 @@ def _history(test: ReplayedTest, view: TableView) -> None:
         return
     lines = []
     for entry in test.history:
-        parts = (minute_words(entry.at), entry.who, _done(entry, view))
+        parts = (minute_words(entry.at), entry.who, _entry_words(entry, view))
         words: str = joined([part for part in parts if part], " · ")
         lines.append(Message("{entry} (undone)", entry=words) if entry.sequence in test.undone else words)
     with folded(Message("History of {name}", name=test.name)), ui.element("ol"):
@@ -186,7 +186,7 @@ def _history(test: ReplayedTest, view: TableView) -> None:
 
 def _cell_words(key: str, text: str, view: TableView) -> Message:
     line, column = cell_of(key)
-    shown = number_said(text) or Message("nothing")
+    shown = number_text(text) or Message("nothing")
     return Message("{column} in row {line} to {text}", column=view.label(column), line=line, text=shown)
 
 
@@ -198,8 +198,8 @@ _DONE: Final = {
 }
 
 
-def _done(entry: JournalEntry, view: TableView) -> str:
-    cells = {column: number_said(text) for column, text in entry.cells.items()}
+def _entry_words(entry: JournalEntry, view: TableView) -> str:
+    cells = {column: number_text(text) for column, text in entry.cells.items()}
     if entry.is_from_file:
         return entry.why
     what: str

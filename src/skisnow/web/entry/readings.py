@@ -21,7 +21,7 @@ from ...report.formatting import significant
 from ..edit_session import EditSession
 from ..elements import Words
 from ..page_requests import LONGEST
-from ..words import in_words, label, number_said, plain_number, said
+from ..words import in_words, label, number_text, plain_number, said
 
 CHANGED: Final = Message("changed, not stored")
 STORED: Final = Message("stored")
@@ -36,13 +36,13 @@ class Step(NamedTuple):
     @property
     def words(self) -> Message:
         """The step in words."""
-        load = number_said(self.load)
+        load = number_text(self.load)
         return Message("{load} N on the way back", load=load) if self.branch else Message("{load} N", load=load)
 
     @property
     def field_name(self) -> Message:
         """Name of the field of the step's depth."""
-        load = number_said(self.load)
+        load = number_text(self.load)
         if self.branch:
             return Message("Depth back under {load} N (mm)", load=load)
         return Message("Depth under {load} N (mm)", load=load)
@@ -51,7 +51,7 @@ class Step(NamedTuple):
 def add_load(load: str) -> None:
     """Label of a load in N; lab.js shows it in kg if the user says so."""
     in_kilograms = significant(float(load) / KILOGRAM_FORCE)
-    Words(f"{number_said(load)} N").classes("load").props["data-kg"] = f"{in_kilograms} kg"
+    Words(f"{number_text(load)} N").classes("load").props["data-kg"] = f"{in_kilograms} kg"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,13 +84,13 @@ class ReadingField:
         elif self.differs(row):
             show_state(self.state, CHANGED)
         elif row.cells["depth_mm"] != row.entered.cells["depth_mm"]:
-            show_state(self.state, Message("corrected from {depth}", depth=number_said(row.entered.cells["depth_mm"])))
+            show_state(self.state, Message("corrected from {depth}", depth=number_text(row.entered.cells["depth_mm"])))
         else:
             show_state(self.state, STORED)
 
     def restore(self, row: Reading | None) -> None:
         """Put the stored depth back into the field."""
-        self.depth.set_value(number_said(stored_depth(row), self.depth.client))
+        self.depth.set_value(number_text(stored_depth(row), self.depth.client))
 
 
 def stored_depth(row: Reading | None) -> str:
@@ -130,11 +130,11 @@ def checked_fields(
         try:
             cells[column] = checked_cell(form, column, str(field.value or ""), conversion=units.get(column))
         except CellError as error:
-            field.error = problem_said(error, name=_translated_name(field))
+            field.error = error_text(error, name=_translated_name(field))
     return cells if len(cells) == len(fields) else None
 
 
-def problem_said(error: SkisnowError, *, name: str = "") -> str:
+def error_text(error: SkisnowError, *, name: str = "") -> str:
     """An error in the language of the page; ``name`` of the field (default: the label of the column)."""
     if not isinstance(error, CellError):
         return f"{said(in_words(error.message)).rstrip('.')}."
@@ -180,7 +180,7 @@ def receive_offline_readings(session: EditSession, changed: Callable[[set[str]],
             except (StoreError, ParameterError) as error:
                 refusal = said(
                     Message(
-                        "Not stored: {reading}: {problem}", reading=_reading_words(record), problem=problem_said(error)
+                        "Not stored: {reading}: {problem}", reading=_reading_words(record), problem=error_text(error)
                     )
                 )
             answers.append((once, refusal))
@@ -207,7 +207,7 @@ def _reading_words(record: Any) -> Message:
     cells = _sent_cells(record)
     if not cells:
         return Message("a reading")
-    depth, load, series = number_said(cells["depth_mm"]), number_said(cells["load_N"]), cells["experiment"]
+    depth, load, series = number_text(cells["depth_mm"]), number_text(cells["load_N"]), cells["experiment"]
     return Message("{depth} mm under {load} N in series {series}", depth=depth, load=load, series=series)
 
 

@@ -14,7 +14,7 @@ from ...campaign.store import ReplayedTest
 from ..elements import Words, button, choice, field, folded, named
 from ..layout import heading, sentence
 from ..page_requests import answering, asking_button, current_request, entering, form
-from ..words import label, number_said
+from ..words import label, number_text
 from .changes import changes, focus_button
 from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
 from .series_corrections import DepthsAfterWaiting, SeriesCorrections
@@ -127,7 +127,7 @@ class SeriesForm:
         with self._places.form:
             with ui.element("div").classes("series-head"):
                 heading(Message("Series {name}", name=test.name))
-                angle = number_said(self._head["edge_angle_deg"])
+                angle = number_text(self._head["edge_angle_deg"])
                 sentence(f"{self._head['site']} · {self._head['tool']} · {angle}°", "quiet")
             if test.cancelled:
                 sentence(Message("Cancelled: {cancelled}", cancelled=test.cancelled), "bad")
@@ -181,7 +181,7 @@ class SeriesForm:
         if self._corrections.is_unanswered():
             return False
         if self._waiting is not None and self._waiting.unstored:
-            loads = [Message("{load} N after waiting", load=number_said(load)) for load in self._waiting.unstored]
+            loads = [Message("{load} N after waiting", load=number_text(load)) for load in self._waiting.unstored]
             self._view.say(
                 Message("Not stored yet: {loads}. Store it or empty the field, then continue.", loads=loads), "bad"
             )
@@ -223,7 +223,7 @@ class SeriesForm:
             holder.props["data-load"] = step.load
             holder.props["data-branch"] = step.branch
             add_load(step.load)
-            stored = number_said(stored_depth(row))
+            stored = number_text(stored_depth(row))
             typed = stored if unstored is None or test.cancelled else unstored
             depth = field(label("depth_mm"), typed, numeric=True)
             named(depth, step.field_name)
@@ -298,7 +298,7 @@ class SeriesForm:
                 load,
                 Message(
                     "there is a reading under {load_n} N already; correct it in its own field",
-                    load_n=number_said(cells["load_N"]),
+                    load_n=number_text(cells["load_N"]),
                 ),
             )
             cells = None
@@ -309,7 +309,7 @@ class SeriesForm:
         branch = {BRANCH: step.branch} if step.branch else {}
         cells = {**self._head, "load_N": step.load, **cells, **branch}
         said = Message(
-            "Stored: {depth_mm} mm under {words}.", depth_mm=number_said(cells["depth_mm"]), words=step.words
+            "Stored: {depth_mm} mm under {words}.", depth_mm=number_text(cells["depth_mm"]), words=step.words
         )
         stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
         if stored:

@@ -12,7 +12,7 @@ from ...campaign.store import ReplayedTest
 from ..elements import Words, field, folded, named
 from ..entry.readings import STORED
 from ..page_requests import asking_button, form
-from ..words import label, number_said
+from ..words import label, number_text
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
 from .readings import (
     CHANGED,
@@ -90,8 +90,8 @@ class SeriesCorrections:
             Message(
                 "{step}: {old} mm becomes {new} mm.",
                 step=step.words,
-                old=number_said(stored),
-                new=number_said(depth),
+                old=number_text(stored),
+                new=number_text(depth),
             )
             for step, depth in depths.items()
             for stored in [stored_depth(test.row_under(*step))]
@@ -165,7 +165,7 @@ class DepthsAfterWaiting:
             form("readings", sends=lambda: self._store(ask)),
         ):
             for load, text in stored.items():
-                typed = unstored.get(load, number_said(text))
+                typed = unstored.get(load, number_text(text))
                 self._fields[load] = self._field(load, text, typed, closed=bool(test.cancelled))
             if not test.cancelled:
                 asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
@@ -178,7 +178,7 @@ class DepthsAfterWaiting:
         with ui.element("div").classes("reading") as made:
             add_load(load)
             depth = field(label(AFTER), text, numeric=True, optional=True)
-            named(depth, Message("Depth after waiting under {load} N (mm)", load=number_said(load)))
+            named(depth, Message("Depth after waiting under {load} N (mm)", load=number_text(load)))
             depth.props("readonly" if closed else "")
             state = Words("").classes("stored")
             if stored:
@@ -201,7 +201,7 @@ class DepthsAfterWaiting:
         new = {load: text for load, text in depths.items() if not _stored(self._test, load)}
         others = {load: text for load, text in depths.items() if load not in new}
         listed = [
-            Message("{depth} mm under {load} N", depth=number_said(text), load=number_said(load))
+            Message("{depth} mm under {load} N", depth=number_text(text), load=number_text(load))
             for load, text in new.items()
         ]
         if not self._correct(new, WAITED, Message("Stored after waiting: {listed}.", listed=listed)):
@@ -223,7 +223,7 @@ class DepthsAfterWaiting:
         for load, depth in typed.items():
             cells = checked_fields(self._view.form, {AFTER: depth})
             if cells is not None and self._test.row_under(load) is None:
-                refuse(depth, Message("the first depth under {load} N comes before it", load=number_said(load)))
+                refuse(depth, Message("the first depth under {load} N comes before it", load=number_text(load)))
             elif cells is not None:
                 depths[load] = cells[AFTER]
         if len(depths) == len(typed):
@@ -250,16 +250,16 @@ class DepthsAfterWaiting:
         lines = [
             Message(
                 BECOMES if text else IS_EMPTIED,
-                load=number_said(load),
-                old=number_said(_stored(test, load)),
-                new=number_said(text),
+                load=number_text(load),
+                old=number_text(_stored(test, load)),
+                new=number_text(text),
             )
             for load, text in depths.items()
         ]
 
         def leave() -> None:
             for load in depths:
-                self._fields[load].set_value(number_said(_stored(self._test, load), self._fields[load].client))
+                self._fields[load].set_value(number_text(_stored(self._test, load), self._fields[load].client))
             self._view.say(LEFT_AS_IT_WAS)
             self._shown()
 

@@ -12,7 +12,7 @@ from ...campaign.store import Reading, ReplayedTest
 from ..elements import choice, field
 from ..layout import heading, sentence
 from ..page_requests import asking_button, entering, form
-from ..words import label, number_said
+from ..words import label, number_text
 from .changes import UNANSWERED, ask_correction, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
 from .table_view import EntryList, LiveResults, Places, TableView
@@ -202,7 +202,7 @@ class SingleForm:
         stored = row.cells
         changed = {column: text for column, text in cells.items() if text != stored.get(column, "")}
         lines = [
-            change_message(label(column), number_said(stored.get(column, "")), number_said(new))
+            change_message(label(column), number_text(stored.get(column, "")), number_text(new))
             for column, new in changed.items()
         ]
         return ask_correction(

@@ -28,7 +28,7 @@ from ..words import (
     in_words,
     label,
     minute_words,
-    number_said,
+    number_text,
     said,
     stress_words,
     unloading_words,
@@ -238,10 +238,10 @@ class EntryList:
         """Text of the link, such as "2 · 45°"; then result, measured value of one row, writer, time and flags."""
         value, flags = self._results.get(test.name, ("", []))
         angle, repeat = (row.cells.get(key, "") for key in ("edge_angle_deg", "repeat"))
-        words = f"{test.name} · {number_said(angle)}°" if angle else test.name
+        words = f"{test.name} · {number_text(angle)}°" if angle else test.name
         words += f" · {said(label('repeat'))} {repeat}" if repeat else ""
         measured = [column.name for column in self._view.form.numbers if column.needed][-1]
-        read = f"{said(self._view.label(measured))} {number_said(row.cells[measured])}" if self.open_row else ""
+        read = f"{said(self._view.label(measured))} {number_text(row.cells[measured])}" if self.open_row else ""
         last = test.history[-1]
         marks = (said(QUALITY_FLAGS[flag].name) for flag in flags)
         about = " · ".join(filter(None, (value, read, last.who, minute_words(last.at), *marks)))

@@ -25,7 +25,7 @@ from ..entry.table_view import LiveResults, Places, TableView, table_links, tabl
 from ..layout import framed, heading, sentence
 from ..page_requests import analysis, asking_button, correcting, export, form, required_id
 from ..settings import BUILD_S, Lab
-from ..words import number_said
+from ..words import number_text
 
 HERE = "/"
 UNREAD = Message("no table of this campaign can be read; its errors are listed under Analysis in the list of campaigns")
@@ -154,7 +154,7 @@ class ImportedTestForm:
         columns = {key: self._view.label(key.split("/", 1)[1]) for key in changed}
         lines = list(
             dict.fromkeys(
-                change_message(columns[key], number_said(stored[key]), number_said(new)) for key, new in changed.items()
+                change_message(columns[key], number_text(stored[key]), number_text(new)) for key, new in changed.items()
             )
         )
         row, show = (test, test.rows[0]), lambda: self.show(name)

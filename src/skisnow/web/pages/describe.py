@@ -20,7 +20,7 @@ from ..elements import StatusLine, TypedField, choice, field
 from ..layout import framed, heading, sentence
 from ..page_requests import asking_button, current_request, entering, form, go_on, required_id, row_button
 from ..settings import Lab
-from ..words import language_of, number_said, said, typed_number
+from ..words import language_of, number_text, said, typed_number
 
 HERE: Final = "/"
 NUMBERS: Final = {
@@ -143,7 +143,7 @@ class DescriptionForm:
             self._name.run_method("focus")
         heading(Message("Discs and gauges"))
         sentence(Message("Empty fields count as 0, with a note in the report."), "quiet")
-        loads = " ".join(number_said(f"{load:g}") for load in values.get("load_steps_N", ()))
+        loads = " ".join(number_text(f"{load:g}") for load in values.get("load_steps_N", ()))
         with ui.element("div").classes("fields"):
             self._loads = field(Message("Disc loads (N), with blanks between"), loads, wide=True)
             self._numbers = {
@@ -263,4 +263,4 @@ def _default_description() -> dict[str, Any]:
 
 
 def _number_text(value: float | None) -> str:
-    return "" if value is None else number_said(f"{value:.12g}")
+    return "" if value is None else number_text(f"{value:.12g}")

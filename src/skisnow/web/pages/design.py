@@ -12,7 +12,7 @@ from ..._support.messages import Message, joined
 from ...carving.edge_line import BOOT_REACH
 from ...design import Design
 from ...ski.ski_file import keys_text
-from ..carved_turn import NUMBERS, SLIDERS, Asked, CarvedTurn, Solver, taken
+from ..carved_turn import NUMBERS, SLIDERS, Asked, CarvedTurn, Solver, with_sources
 from ..elements import Outcome, button, choice, field, option_texts
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
 from ..layout import error_sentence, framed
@@ -91,7 +91,7 @@ def found_design(asked: Asked, target: float) -> Design:
     from ...ski.ski_file import Sources
 
     sources = Sources()
-    question = taken(asked, sources)[0]
+    question = with_sources(asked, sources)[0]
     bounds = {key: [float(SHAPES[key][1][0]), float(SHAPES[key][1][-1])] for key in (SIDECUT, STIFFNESS)}
     task = {
         "ski": question.pop("ski"),

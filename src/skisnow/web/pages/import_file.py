@@ -22,7 +22,7 @@ from ..layout import error_sentence, framed, heading, sentence
 from ..settings import BUILD_S, Lab
 from ..subprocesses import BOUNDS, confined
 from ..transfer import FileImports, TriedImport, try_import
-from ..words import TABLES, label, number_said, said
+from ..words import TABLES, label, number_text, said
 
 PATH: Final = "/import/{id_}"
 HERE: Final = "/"
@@ -309,7 +309,7 @@ def _show_rows(table: ImportedTable) -> None:
                     for name in names:
                         with ui.element("td"):
                             text = row.cells.get(name, "")
-                            ui.label(number_said(_five_digits(text)) if name in numbers else text)
+                            ui.label(number_text(_five_digits(text)) if name in numbers else text)
 
 
 def _five_digits(number: str) -> str:

@@ -11,7 +11,7 @@ from nicegui import app, ui
 
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message
-from ..._support.user_files import GivenError, read_record
+from ..._support.user_files import ContentError, read_record
 from ...report.formatting import counted
 from ...report.track.summary import GPX_FILE, TURNS_FILE
 from ..elements import Outcome, Words, button, folded, link, named
@@ -111,7 +111,7 @@ def _in_words(place: Path) -> str:
     try:
         run = read_record(place / "summary.json", FinishedRun, only_known=False)
         return f"{run.extent}, {run.outcome_in_words}"
-    except GivenError:
+    except ContentError:
         return Message("without a readable summary")
 
 

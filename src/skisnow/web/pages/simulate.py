@@ -20,10 +20,10 @@ from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import add_upload, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
 from ..runs import Job, Runs, duration_words, estimated_s
-from ..scenario_fields import ScenarioField, called, in_labels
+from ..scenario_fields import ScenarioField, field_label, in_labels
 from ..snow_choice import SnowChoice, require_scenario, results_and_snow_words, snow_words
 from ..widgets import JobCard, JobList
-from ..words import language_of, number_said
+from ..words import language_of, number_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -114,8 +114,10 @@ class _Form:
         with ui.element("div").classes("fields"):
             is_known = course in self._courses.names()
             self._scenario = choice(Message("Scenario"), names, _FOR_COURSE if is_known else names[0])
-            self._course = choice(Message("Course"), with_given(self._courses.names()), course if is_known else GIVEN)
-            self._ski = choice(Message("Ski"), with_given(self._skis.names()), GIVEN)
+            self._course = choice(
+                Message("Course"), menu_with_default(self._courses.names()), course if is_known else GIVEN
+            )
+            self._ski = choice(Message("Ski"), menu_with_default(self._skis.names()), GIVEN)
             self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
         self._scenario.on_value_change(self._draw)
         with redrawn_by(self._scenario):
@@ -312,7 +314,7 @@ def _course_form() -> None:
             submit_button(Message("Add the course"))
 
 
-def with_given(names: Sequence[str]) -> dict[str, str]:
+def menu_with_default(names: Sequence[str]) -> dict[str, str]:
     """Options of a menu whose first entry leaves the scenario as it is."""
     return {GIVEN: Message("as in the scenario"), **{name: name for name in names}}
 
@@ -320,7 +322,7 @@ def with_given(names: Sequence[str]) -> dict[str, str]:
 def _changes_in_words(changes: dict[str, str]) -> str:
     from ...scenario.keys import SCENARIO_KEYS
 
-    return ", ".join(f"{called(SCENARIO_KEYS[key])}: {number_said(value)}" for key, value in changes.items())
+    return ", ".join(f"{field_label(SCENARIO_KEYS[key])}: {number_text(value)}" for key, value in changes.items())
 
 
 def _rename(runs: Runs, title: ui.input, name: str) -> None:

@@ -17,13 +17,13 @@ from ..lab_skis import FILE, TABLE, LabSkis
 from ..layout import error_sentence, framed, heading, sentence
 from ..page_requests import redrawn_by
 from ..runs import Runs
-from ..scenario_fields import ScenarioField, called, in_labels
+from ..scenario_fields import ScenarioField, field_label, in_labels
 from ..snow_choice import SnowChoice
 from ..studies import Studies, StudyJob, estimate_words, unit_s
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
 from ..widgets import JobCard, JobList
 from ..words import language_of, said, typed_number
-from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, with_given
+from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, menu_with_default
 from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address
 
@@ -65,7 +65,7 @@ class _CarveField(ScenarioField):
 
     def typed_value(self) -> object:
         """The number, which can be "inf"."""
-        return float("inf") if self.text == "inf" else typed_number(called(self.key), self.text)
+        return float("inf") if self.text == "inf" else typed_number(field_label(self.key), self.text)
 
 
 class _Form:
@@ -107,7 +107,7 @@ class _Form:
     def _draw(self) -> None:
         of = str(self._of.value)
         skis = self._skis.names()
-        names = {name: name for name in skis} if self._is_carve else with_given(skis)
+        names = {name: name for name in skis} if self._is_carve else menu_with_default(skis)
         self._ski.set_options(option_texts(names), value=next(iter(names)))
         self._further.set_visibility(self._is_carve)
         for place in (self._varied, self._inputs):
@@ -224,7 +224,7 @@ class _Form:
             if from_snow.get(name):
                 raise ParameterError(
                     "{input} varies, but the chosen snow fixes it; choose the numbers below as the snow"
-                ).tag("given_by_snow", input=called(study_keys(str(self._of.value))[name]))
+                ).tag("given_by_snow", input=field_label(study_keys(str(self._of.value))[name]))
         fixed = {name: field.check() for name, field in self._fields.items() if self._counts(name, field)}
         files, named_words = dict[str, bytes](), list[str]()
         for values, further_files, words in (self._chosen_skis(), self._chosen_snow()):

@@ -17,13 +17,13 @@ from ...studies import Study, StudyTable
 from ..elements import Words, add_head, choice, link, named
 from ..layout import error_sentence, framed, heading, plain_page, sentence
 from ..runs import Job
-from ..scenario_fields import called, written
+from ..scenario_fields import field_label, typed_form
 from ..settings import Lab
 from ..studies import FIGURE, Studies
 from ..study_fields import CARVE, STUDY, TABLE, study_keys
 from ..uploads import zip_download, zip_of
 from ..widgets import BEHIND, ChartLine, LineChart
-from ..words import language_of, number_said, said
+from ..words import language_of, number_text, said
 
 HERE: Final = "/study"
 FILES: Final = f"{HERE}/files"
@@ -97,7 +97,8 @@ def _show_inputs(job: Job | None) -> None:
         keys = study_keys(job.scenario)
         sentence(job.given, "quiet")
         sentence(
-            "; ".join(f"{called(keys[name])}: {number_said(value)}" for name, value in job.changes.items()), "quiet"
+            "; ".join(f"{field_label(keys[name])}: {number_text(value)}" for name, value in job.changes.items()),
+            "quiet",
         )
 
 
@@ -130,7 +131,7 @@ class _ResultsView:
 
     def _draw(self) -> None:
         result = str(self._shown.value)
-        x, y = called(self._keys[self._x]), self._results[result]
+        x, y = field_label(self._keys[self._x]), self._results[result]
         self._chart.clear()
         with self._chart:
             chart = LineChart(x, y, Message("Chart of {y} over {x}", y=y, x=x), height=320)
@@ -141,7 +142,7 @@ class _ResultsView:
         return tuple(row["ski_name" if name == SKI else name] for name in self._others)
 
     def _called(self, name: str) -> str:
-        return Message("Ski") if name == SKI else called(self._keys[name])
+        return Message("Ski") if name == SKI else field_label(self._keys[name])
 
     def _order(self) -> list[int]:
         """Order of drawing: the first, middle and last lines, which have names, are on top."""
@@ -184,7 +185,7 @@ class _ResultsView:
 
 def _short(value: Any) -> str:
     """A value of a varied input with four digits as in the map."""
-    return number_said(f"{value:.4g}") if isinstance(value, float) else written(value)
+    return number_text(f"{value:.4g}") if isinstance(value, float) else typed_form(value)
 
 
 def _add_row(row: dict[str, Any], columns: list[str]) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from skisnow._support.errors import ParameterError
 from skisnow.scenario.keys import SCENARIO_KEYS
-from skisnow.web.scenario_fields import ScenarioField, called
+from skisnow.web.scenario_fields import ScenarioField, field_label
 from tests.coded import raises
 
 from ..desk import Desk, Sheet, values
@@ -63,7 +63,7 @@ def test_a_skier_sets_the_edge_angle_itself_and_has_inputs_of_its_own(desk: Desk
     assert not any("Edge angle" in name for name in shown)
     found = names_by_heading(page)
     of_skier = found.pop("Skier")
-    first = [called(SCENARIO_KEYS[f"skier.{name}"]) for name in ("first_turn_s", "turn_angle_deg")]
+    first = [field_label(SCENARIO_KEYS[f"skier.{name}"]) for name in ("first_turn_s", "turn_angle_deg")]
     every = sum(name.startswith("skier.") for name in SCENARIO_KEYS)
     assert (of_skier[:2], len(of_skier)) == (first, every - 4)
     assert "70 s" in page.shows("Takes about")  # 60 s and 8 s
