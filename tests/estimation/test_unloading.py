@@ -25,7 +25,7 @@ from skisnow.estimation.hardness import (
 )
 from skisnow.estimation.readings import ReadingUncertainty, readings_of
 from skisnow.estimation.screening import quality_flags, series_estimates
-from skisnow.estimation.unloading import Unloading, _reciprocal, site_unloading, unloading
+from skisnow.estimation.unloading import Unloading, _stiffness_ratio, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
 from tests.key_names import SHEAR_DISPLACEMENT_INTERVAL
 
@@ -260,7 +260,7 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
 
 
 def test_an_interval_that_reaches_zero_has_no_reciprocal() -> None:
-    ratio, ends = _reciprocal(np.array([0.1, 0.1]), np.array([[-0.1, 0.3], [0.05, 0.2]]))
+    ratio, ends = _stiffness_ratio(np.array([0.1, 0.1]), np.array([[-0.1, 0.3], [0.05, 0.2]]))
     assert ratio.tolist() == [10.0, 10.0]
     assert np.isnan(ends[0]).all()
     assert ends[1].tolist() == [5.0, 20.0]

@@ -44,7 +44,7 @@ def test_paper_depths_at_490_newton_and_45_degrees() -> None:
 
 
 def test_at_five_degrees_the_base_goes_under_at_5_4_mm() -> None:
-    rim = float(PlainWedge(0.2, 0.062).greatest_depth(math.radians(5.0)))
+    rim = float(PlainWedge(0.2, 0.062).maximum_depth(math.radians(5.0)))
     assert rim * 1e3 == pytest.approx(5.4, abs=0.05)
     above, below = PAPER_TOOL.contact_area(np.array([0.999, 1.001]) * rim, math.radians(5.0))
     assert above < below == pytest.approx(0.2 * 0.062 * math.cos(math.radians(5.0)))
@@ -94,7 +94,7 @@ def test_area_is_the_derivative_of_volume_and_growth_that_of_area(tool: Tool, an
     slope = (tool.displaced_volume(e + h, angle) - tool.displaced_volume(e - h, angle)) / (2 * h)
     np.testing.assert_allclose(slope, tool.contact_area(e, angle), rtol=1e-5)
     growth = (tool.contact_area(e + h, angle) - tool.contact_area(e - h, angle)) / (2 * h)
-    smooth = np.abs(e - tool.greatest_depth(angle)) > 2e-5
+    smooth = np.abs(e - tool.maximum_depth(angle)) > 2e-5
     smooth &= np.abs(e - 0.062 * math.sin(angle)) > 2e-5
     np.testing.assert_allclose(growth[smooth], tool.area_growth(e, angle)[smooth], rtol=1e-5, atol=1e-8)
 

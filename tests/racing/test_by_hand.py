@@ -16,9 +16,9 @@ from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate
-from skisnow.racing.line import first_gates, ways
+from skisnow.racing.line import first_gates, turn_lengths
 from skisnow.racing.point import Racer, run_score, ski_line
-from skisnow.racing.quickest import _require, _search, _start_line, _window
+from skisnow.racing.quickest import _require, _search, _start_line, _window_and_step
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.surrogate import BATCH, PointChoice, SurrogateSearch, _best_within
@@ -112,8 +112,8 @@ def test_failures_are_no_centre() -> None:
 
 def test_numbers_of_a_place() -> None:
     alike = np.tile(np.eye(2), (3, 1))
-    assert SurrogateSearch._numbers(alike, np.array([0.2, 0.6] * 3)) == pytest.approx([0.2, 0.6])
-    assert SurrogateSearch._numbers(alike, np.array([0.1, 0.6, 0.2, 0.6, 0.6, 0.9])) == pytest.approx([0.3, 0.7])
+    assert SurrogateSearch._steps_along(alike, np.array([0.2, 0.6] * 3)) == pytest.approx([0.2, 0.6])
+    assert SurrogateSearch._steps_along(alike, np.array([0.1, 0.6, 0.2, 0.6, 0.6, 0.9])) == pytest.approx([0.3, 0.7])
     assert SurrogateSearch.first_of(3) == 8
 
 
@@ -214,11 +214,11 @@ def test_values_at_the_limits_are_accepted() -> None:
     for wrong in ({"spread": 1.01}, {"settled": 1000.0}, {"room": -0.1}):
         with pytest.raises(ParameterError):
             _require(**({"evaluations": 1, "population": None, "spread": 0.1, "settled": 0.0, "room": 0.0} | wrong))  # type: ignore[arg-type]
-    assert _window(6, None, 1, 0) == (6, 1)
-    assert (_window(6, 2, 2, 9), _window(6, 6, 6, 0)) == ((2, 2), (6, 6))
+    assert _window_and_step(6, None, 1, 0) == (6, 1)
+    assert (_window_and_step(6, 2, 2, 9), _window_and_step(6, 6, 6, 0)) == ((2, 2), (6, 6))
     for window, step in ((1, 1), (7, 1), (3, 0)):
         with pytest.raises(ParameterError):
-            _window(6, window, step, 0)
+            _window_and_step(6, window, step, 0)
     assert (_search(None, "skier"), _search(None, "point"), _search("cma", "skier")) == ("surrogate", "cma", "cma")
 
 
@@ -279,7 +279,7 @@ def test_evaluations_are_those_that_were_asked_for() -> None:
 
 def test_the_nearer_neighbour_of_a_gate() -> None:
     x = [gate.turning[0] for gate in FOLLOWED.course.gates]
-    found = ways(FOLLOWED.course, (x[0] - 4.0, 0.0))
+    found = turn_lengths(FOLLOWED.course, (x[0] - 4.0, 0.0))
     assert found[0] == pytest.approx(min(4.0, x[1] - x[0]))
     assert found[5] == pytest.approx(min(x[5] - x[4], x[6] - x[5]))
     assert found[-1] == pytest.approx(x[-1] - x[-2])

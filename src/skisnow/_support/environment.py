@@ -15,7 +15,7 @@ from .messages import Message, joined
 
 
 def import_extra(module: str, *, extra: str, what: Message, instead: Message | None = None) -> Any:
-    """The module of a package that an extra installs.
+    """Import a module of a package that an extra of skisnow installs.
 
     what: work that is impossible without it, a noun phrase.
     instead: another way, a whole sentence.
@@ -35,7 +35,7 @@ def import_extra(module: str, *, extra: str, what: Message, instead: Message | N
 
 @contextmanager
 def paused_collector() -> Iterator[None]:
-    """No search for reference cycles: it would walk over the millions of cells of a large campaign again and again."""
+    """Pause Python's cyclic garbage collector: it searches the millions of cells of a large campaign repeatedly."""
     running = gc.isenabled()
     gc.disable()
     try:

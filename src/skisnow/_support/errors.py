@@ -15,13 +15,13 @@ from .messages import ENGLISH, Message, count_message, joined, languages, templa
 
 
 def as_template(message: str, fields: Mapping[str, Any]) -> str:
-    """A `Message` of a template; messages, and texts with braces and no fields, as they are."""
+    """A `Message` from a template and its fields; a `Message`, or a text with braces but no fields, is unchanged."""
     is_template = not isinstance(message, Message) and (fields or not {*"{}"} & {*message})
     return Message(message, **fields) if is_template else message
 
 
 class _Coded(Exception):  # noqa: N818 -- of errors and warnings
-    """A message, or a template of one, and a code that does not change with the wording.
+    """Base of errors: a message, or a template with fields, and a code that does not change with the wording.
 
     >>> print(ParameterError("{name} is {value:g}; it must be above 0").tag("out_of_range", name="load", value=-1.0))
     load is -1; it must be above 0
@@ -126,15 +126,15 @@ class RangeWarning(SkisnowWarning):
 
 
 class ModelLimitWarning(SkisnowWarning):
-    """The model is known to be wrong for an input; `code` is one of those of `skisnow.scenario.plausibility`."""
+    """The model is known to be wrong for an input; `skisnow.scenario.plausibility` lists the codes."""
 
 
 class FitWarning(SkisnowWarning):
-    """A fit has an answer of which fewer digits are known than a reader would take for granted."""
+    """A fit succeeded, but fewer digits of its answer are certain than a reader would expect."""
 
 
 def suggest_and_list(word: str, words_allowed: Iterable[str]) -> Message:
-    """The known word most like a misspelt one as a question, and all of them; sentences with their full stop."""
+    """Question with the known word most similar to a misspelt one, and the list of all known words."""
     words = list(words_allowed)
     like = most_similar(word, words)
     if like is None:
@@ -143,7 +143,7 @@ def suggest_and_list(word: str, words_allowed: Iterable[str]) -> Message:
 
 
 def suggest(word: str, words_allowed: Iterable[str]) -> str:
-    """The known word most like a misspelt one as a question with a space behind; empty where none is like it.
+    """Question with the known word most similar to a misspelt one, followed by a space; empty without a similar one.
 
     >>> suggest("angel", ["angle", "mass"])
     'Did you mean angle? '
@@ -153,7 +153,7 @@ def suggest(word: str, words_allowed: Iterable[str]) -> str:
 
 
 def most_similar(word: str, words_allowed: Iterable[str]) -> str | None:
-    """The known word most like a misspelt one; None where none is like it."""
+    """The known word most similar to a misspelt one; None without a similar one."""
     by_small = {name.lower(): name for name in words_allowed}
     like = difflib.get_close_matches(word.lower(), by_small, n=1, cutoff=0.5)
     return by_small[like[0]] if like else None

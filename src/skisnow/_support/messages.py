@@ -145,7 +145,7 @@ def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Messa
 
 
 class _Printed(str):
-    """Text of an object that stays behind: another process may not have its class, and an error has its frames."""
+    """Text that replaces an object in a pickled message: the other process may lack its class."""
 
     printed: str
 
@@ -166,7 +166,7 @@ def _printed(text: str, printed: str) -> _Printed:
 
 
 def _plain(value: Any) -> Any:
-    """The value, or the text of an object that cannot go to every process."""
+    """The value, or its text if it cannot be pickled for every process."""
     if isinstance(value, BaseException):
         return getattr(value, "message", None) or _Printed(value)
     if isinstance(value, list | tuple | set | frozenset):

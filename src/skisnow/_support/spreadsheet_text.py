@@ -146,7 +146,7 @@ def _count(cells: Iterable[str], mark: str) -> int:
 
 
 def with_decimal_point(cell: str) -> str:
-    """A number with a decimal comma as one with a point; a cell with a point becomes no number: it could be a thousand.
+    """A number with a decimal point instead of a comma; a number that has a point is invalid: it may be a thousand.
 
     >>> with_decimal_point("1,5"), with_decimal_point("1.500,5")
     ('1.5', '1·500.5')
@@ -180,7 +180,7 @@ def csv_text(rows: Iterable[Iterable[object]]) -> str:
 
 
 def protect_from_formulas(text: str) -> str:
-    """The cell of a text in a table that people open: no spreadsheet program takes it for a formula.
+    """Cell for a text in a table that people open: spreadsheet programs do not read it as a formula.
 
     A text that begins with = + - @, a tab or a carriage return, and is not a number, gets an apostrophe in front.
     So does one that begins so behind apostrophes, so that `remove_protection` gives every text back.
@@ -194,7 +194,7 @@ def protect_from_formulas(text: str) -> str:
 
 
 def remove_protection(cell: str) -> str:
-    """The text that `protect_from_formulas` made a cell of.
+    """Text of a cell that `protect_from_formulas` wrote.
 
     >>> [remove_protection(cell) for cell in ("'=1+1", "-1.5", "''=a", "'tis")]
     ['=1+1', '-1.5', "'=a", "'tis"]
@@ -230,7 +230,7 @@ class CsvRow:
         return value
 
     def refused(self, column: str, problem: Message, *, code: str, action: Message | None = None) -> ParameterError:
-        """Error of a cell: whole sentences for the problem and for the action."""
+        """Error of a cell, with one sentence for the problem and one for the fix."""
         return ParameterError("{path}, row {row}, column {column}: {value!r}: {problem} {action}").tag(
             code,
             path=self.path,

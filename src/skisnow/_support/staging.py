@@ -89,6 +89,7 @@ def prepare_folder(folder: Path) -> list[str]:
 
 
 def _finish_or_remove(hidden: Path) -> str | None:
+    """Complete or remove the stage of a killed process; returns a note, None while its process still runs."""
     lock = _locked(hidden)
     if lock is None and not _is_old(hidden):
         return None
@@ -112,7 +113,7 @@ def _new_hidden(folder: Path) -> tuple[Path, int | None]:
 
 
 def _carry_out(hidden: Path) -> None:
-    """Take all old files away, then move the new ones; where it is stopped it can be begun again."""
+    """Remove all old files, then move the new ones into place; after an interruption it can be repeated."""
     folder, stage = hidden.parent, hidden / _FILES
     try:
         last, *stale = (hidden / _PLAN).read_text(encoding="utf-8").split("\n")
@@ -161,7 +162,7 @@ def _is_old(hidden: Path) -> bool:
 
 @contextmanager
 def _lock_folder(folder: Path) -> Iterator[None]:
-    """Wait while another process makes or tidies a stage in the same folder."""
+    """Wait until no other process creates or removes a stage in the folder."""
     if sys.platform == "win32":
         yield
         return
@@ -208,7 +209,7 @@ def write_file(path: str | Path, content: str | bytes | Iterable[bytes]) -> None
 
 @contextmanager
 def place_to_write(path: str | Path) -> Iterator[Path]:
-    """An empty file to be filled by its name, which has its name when the block ends well, and else nowhere."""
+    """Empty temporary file, which is renamed to the path if the block succeeds and removed otherwise."""
     path = Path(path)
     temporary: Path | None = None
     try:
@@ -230,7 +231,7 @@ def place_to_write(path: str | Path) -> Iterator[Path]:
 
 
 def require_writable(folder: str | Path) -> None:
-    """Make a folder where it is missing and try a file in it, so that long work is not done for nothing."""
+    """Create a folder if needed and write a trial file, so that long work does not fail at its end."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

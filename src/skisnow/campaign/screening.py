@@ -138,7 +138,7 @@ def maximum_depths(campaign: Campaign, tests: PenetrationTests, geometry: Geomet
     names = np.array(tests.tool, dtype=object)
     for name, tool in campaign.tools.items():
         of_tool = np.flatnonzero(names == name)
-        limit[of_tool] = in_form(tool, geometry).greatest_depth(tests.edge_angle[of_tool])
+        limit[of_tool] = in_form(tool, geometry).maximum_depth(tests.edge_angle[of_tool])
     return limit
 
 

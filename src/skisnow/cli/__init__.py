@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _report_end(error: Exception | KeyboardInterrupt) -> int:
-    """Say why a command ended; returns its exit status."""
+    """Print why a command ended; returns its exit status."""
     if isinstance(error, KeyboardInterrupt):
         print("skisnow: interrupted; nothing half-written was left behind.", file=sys.stderr)
         return 143 if isinstance(error, Ended) else 130
@@ -111,7 +111,7 @@ def _short(message: str) -> str:
 
 
 def _stdout_lost() -> int:
-    """Nothing reads the output, or the output cannot be written: keep Python from saying so again when it ends."""
+    """Replace standard output if it cannot be written, so that Python prints no second error at its end."""
     try:
         sys.stdout.flush()
     except OSError:

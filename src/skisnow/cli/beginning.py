@@ -15,7 +15,7 @@ def add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     """Add ``skisnow new`` to the program."""
     about = "Write templates to be filled in."
     parser = commands.add_parser(
-        "new", help="write the templates of a campaign, or a ski file of what was measured", description=about
+        "new", help="write the templates of a campaign, or a ski file from measurements", description=about
     )
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
     campaign = kinds.add_parser(
@@ -91,7 +91,7 @@ def add_ski(kinds: argparse._SubParsersAction[Parser]) -> None:
     ski = kinds.add_parser(
         "ski",
         help="a ski file of tables, bend and torsion tests, or of three widths alone",
-        description="Write a ski file of what was measured: tables of widths and stiffness in any layout, three-point "
+        description="Write a ski file from measurements: tables of widths and stiffness in any layout, three-point "
         "bend tests, torsion tests, or three widths and a length. What is not measured is taken from another ski and "
         "named.",
     )
@@ -132,7 +132,7 @@ def run_ski(options: argparse.Namespace) -> int:
     def in_si(value: float | None, unit: float = MM) -> float | None:
         return None if value is None else value * unit
 
-    given = {
+    options_by_name = {
         "boot": in_si(options.boot_mm),
         "length": in_si(options.length_mm),
         "running_length": in_si(options.running_length_mm),
@@ -150,7 +150,7 @@ def run_ski(options: argparse.Namespace) -> int:
             mapped=Mapped(_pairs("--column", options.column), _pairs("--unit", options.unit)),
             stations_from=options.stations_from,
             like=options.like,
-            **{name: value for name, value in given.items() if value is not None},
+            **{name: value for name, value in options_by_name.items() if value is not None},
         )
     )
     write_ski(made.ski, options.ski)
@@ -159,8 +159,8 @@ def run_ski(options: argparse.Namespace) -> int:
             print(f"{'station mm':>10}  {name + ' N m²':>10}  {'error':>8}")
             for station, value, error in zip(stiffness.station, stiffness.value, stiffness.error, strict=True):
                 print(f"{station / MM:10.0f}  {value:10.4g}  {f'{error:8.2g}' if error >= 0.0 else ''}".rstrip())
-    for each in made.assumed:
-        print(f"Assumed: {each}")
+    for assumption in made.assumed:
+        print(f"Assumed: {assumption}")
     snow = "--published race-piste --unloading-ratio 10"
     print(f"Then: skisnow carve --ski {options.ski} --edge-angle-deg 45 --load-N 800 {snow}")
     return 0

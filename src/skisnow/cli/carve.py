@@ -228,12 +228,14 @@ def _front(options: argparse.Namespace, task: DesignTask) -> int:
     with announced("searching"):
         front = design_front(task, points=options.front)
     rows = [["first_percent", "second_percent", *front[0].values]]
-    rows += [[f"{n:.9g}" for n in (each.first_percent, each.second_percent, *each.values.values())] for each in front]
+    rows += [
+        [f"{n:.9g}" for n in (point.first_percent, point.second_percent, *point.values.values())] for point in front
+    ]
     path = (options.out or options.design.parent) / "front.csv"
     path.parent.mkdir(parents=True, exist_ok=True)
     write_file(path, "".join(f"{','.join(row)}\n" for row in rows))
     if options.json:
-        print_json([asdict(each) for each in front])
+        print_json([asdict(point) for point in front])
     else:
         print(f"written: {path}")
     return 0

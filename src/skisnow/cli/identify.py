@@ -97,7 +97,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _prepare(options: argparse.Namespace) -> ScenarioFile:
-    """Reject wrong options before the work."""
+    """Check the options and load the scenario before the work."""
     with announced("loading"):
         from ..identification.intervals import require_bootstrap, require_emcee
 

@@ -81,7 +81,7 @@ LINES_AT_ONCE: Final = "SKISNOW_PROGRESS_LINES"
 
 
 class MovingLine:
-    """One line of stderr that is written over and at last wiped; elsewhere than on a terminal each text is a line."""
+    """One line of stderr that each text overwrites; elsewhere than on a terminal each text is a line."""
 
     def __init__(self) -> None:
         self.moves = sys.stderr.isatty()
@@ -183,12 +183,12 @@ LATER: Final = "writing the computed results first; a second request stops at on
 
 
 class Ended(KeyboardInterrupt):
-    """The system requested the end of this process."""
+    """Interrupt by the system, which asked this process to end (SIGTERM)."""
 
 
 @dataclass(slots=True)
 class Ending:
-    """Requests to end this process, kept also if the interrupt was caught.
+    """State of requests to end this process; a caught interrupt stays recorded.
 
     requested: True after a request of the system.
     pressed: True after Ctrl-C during `finishing`.

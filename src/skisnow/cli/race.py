@@ -188,7 +188,7 @@ def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None
 def _scores_by_method(
     fastest: QuickestLine, scenario: Scenario, progress: Progress
 ) -> tuple[list[tuple[str, Score]], Run | None]:
-    """Scores of both lines by the scenario's method if the search used a quicker one; run on the quickest line."""
+    """Scores of both lines by the scenario's method, if the search used another, and the run on the quickest line."""
     from ..racing.point import run_score, ski_line
 
     if fastest.model == "point":

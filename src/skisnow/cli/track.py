@@ -113,7 +113,7 @@ def _course(options: argparse.Namespace) -> Course:
 
 
 def _course_origin(course: Course) -> GeodeticPoint | None:
-    """One plane for the track and a course in degrees."""
+    """Origin of the projection for the track and a course in degrees; None for a course in metres."""
     from ..track.projection import GeodeticPoint
 
     if course.latitude_deg is None or course.longitude_deg is None:
@@ -242,7 +242,7 @@ def _offsets(options: argparse.Namespace) -> list[str]:
 
 
 def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | None) -> Track:
-    """A track in east, north and up as a simulated run sees it; another one as it is."""
+    """A track in east, north and up in the axes of a simulated run; another track is unchanged."""
     from ..track.slope_frame import in_slope_frame
 
     azimuth = options.fall_line_azimuth_deg

@@ -154,6 +154,7 @@ def _require_options(
 
 
 def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
+    """Number of coordinates to compare, and the reason in words."""
     if from_above:
         return 2, "from above, as asked"
     if not heights_agree:
@@ -226,6 +227,7 @@ def _fit_and_compare(plain: Comparison, fit: set[str], clock: Clock) -> Comparis
 
 
 def _fit_time(simulated: Polyline, plain: Comparison) -> float:
+    """Time offset (s) that fits best; an error if a track has no place at each time."""
     reason = missing_time_reason(simulated, plain.names[0]) or missing_time_reason(plain.measured, plain.names[1])
     if reason:
         raise ParameterError("{reason}; remove time from the fit").tag("no_times", reason=reason)
@@ -233,6 +235,7 @@ def _fit_time(simulated: Polyline, plain: Comparison) -> float:
 
 
 def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str]) -> None:
+    """Reject tracks that are nowhere within `FARTHEST` of each other."""
     places = measured.at_arc_length(np.linspace(0.0, measured.length, 1001))
     nearest = float(Path(simulated.place).nearest(places).distance.min())
     if nearest > FARTHEST:

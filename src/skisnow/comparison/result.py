@@ -80,7 +80,7 @@ class FittedOffsets(Shown):
     rms
         Root mean square (m) of the minimised nearest distances; None if only the time was fitted.
     rival
-        Another motion that fits nearly as well; None if there is none.
+        Another motion that fits nearly as well, or None.
     before
         Comparison without the fit.
     slope_angle

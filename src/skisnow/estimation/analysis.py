@@ -217,7 +217,7 @@ class Analysis(Shown):
 
 
 def _relation_facts(row: dict[str, Any]) -> tuple[str, str]:
-    """Hardness of a site without plate tests, by its relation."""
+    """Name and text of the hardness of a site without plate tests, by a published relation."""
     resistance, index = row["penetration_resistance_kPa"], row["hand_hardness_index"]
     measured = "" if resistance is None else f"{amount(resistance, 'kPa')}, "
     hand = "outside of the range" if index is None else f"{row['hand_hardness']} (index {index:.2g})"
@@ -225,7 +225,7 @@ def _relation_facts(row: dict[str, Any]) -> tuple[str, str]:
 
 
 def _mean_words(mean: CampaignMean, unit: str) -> str:
-    """A mean over the campaign with its interval, if it has one, in the unit that it is held in."""
+    """Text of a mean over the campaign with its unit and its interval."""
     interval = "no interval" if math.isnan(mean.low) else span(mean.low, mean.high)
     return f"{amount(mean.value, unit)} ({interval})"
 

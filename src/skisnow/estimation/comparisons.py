@@ -22,7 +22,7 @@ FEWEST_SITES: Final = 4
 
 @dataclass(frozen=True, slots=True)
 class CampaignMean:
-    """A mean of the campaign: value and 95 % interval, NaN if unknown or withheld; minimum and maximum.
+    """Mean over the campaign: value and 95 % interval, NaN if unknown or withheld; minimum and maximum.
 
     With several sites the interval takes them as clusters; under four sites it is withheld.
     """

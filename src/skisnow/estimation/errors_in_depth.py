@@ -9,10 +9,10 @@ fitted to these depths, each reading weighed by its effective variance (Orear 19
 
 with the campaign's own relative scatter s. Rows, bounds and units are those of `models`.
 
-The factor b of F = b H_V V with H_V of Eqn 1: x = H_V V of a reading carries errors of its own depth and of the last
-one, which defines H_V. With the variance w of ln x the mean of x F is exp(w/2) times too large and that of x² exp(2 w)
-times, so that least squares give a b below 1 even where the law holds: *regression dilution*. Layering changes x by the
-factor u = (F/F₇)^(g_0 - 1). Both are corrected:
+The factor b of F = b H_V V with H_V of Eqn 1: x = H_V V of a reading carries errors of two depths: that of the reading
+and that of the last one, which defines H_V. With the variance w of ln x the mean of x F is exp(w/2) times too large and
+that of x² exp(2 w) times, so that least squares give a b below 1 even where the law holds: *regression dilution*.
+Layering changes x by the factor u = (F/F₇)^(g_0 - 1). Both are corrected:
 
     b = Σ (x/u) F exp(-w/2) / Σ (x/u)² exp(-2 w)
 
@@ -118,7 +118,7 @@ def fit_models_with_depth_errors(
 
 
 def _weighted_ends(basis: EndBasis, model: Model, load: FloatArray, weight: FloatArray) -> FloatArray:
-    """End values of a weighted fit by its normal equations: good enough before the final factorised fit."""
+    """End values (4,) of the coefficients by a weighted fit; its normal equations suffice before the final fit."""
     projection, fixed = basis.projection(model), basis.offset(model)
     products = np.zeros((4, 5))
     for first in range(0, len(load), _BLOCK):

@@ -231,7 +231,7 @@ def second_moment(readings: Readings, penetration_depth: FloatArray) -> FloatArr
 
 
 class _GrowthFit:
-    """The linearised fit of (ln H, γ, δ), all series that are not at their end yet at once."""
+    """Linearised fit of (ln H, γ, δ) of all series that have not converged."""
 
     def __init__(self, readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> None:
         self._readings, self._uncertainty = readings, uncertainty
@@ -257,13 +257,14 @@ class _GrowthFit:
         return estimates
 
     def _keep(self, going_on: BoolArray) -> None:
+        """Continue with the masked series only."""
         of_reading = going_on[self._readings.series]
         self._readings, self._depth = self._readings.of(going_on), self._depth[of_reading]
         self._deepest, self._k = self._deepest[going_on], self._k[going_on]
         self._b, self._scatter2 = self._b[:, going_on], self._scatter2[going_on]
 
     def _step(self) -> tuple[BoolArray, FloatArray]:
-        """One step in the three and in the scatter; which series are at their end, and the answers (3, m) before it."""
+        """One step of all series; returns the mask of converged ones, and H_0, γ and its error (3, m) before it."""
         residual, J, slope, weight, moved = self._line()
         low, high = _LIMITS
         step, inverse = _gauss_newton_step(self._readings, J, residual, weight, self._b[2])

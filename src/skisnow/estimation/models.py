@@ -178,7 +178,7 @@ def end_basis(readings: Readings, hardness: FloatArray) -> EndBasis:
 
 
 def weighted_columns(readings: Readings, hardness: FloatArray, of_a: FloatArray, of_b: FloatArray) -> FloatArray:
-    """(n, 4) H x (1-t), H x t for x of a and x of b: A and V, or their derivatives with depth."""
+    """Columns (n, 4) H a (1-t), H a t, H b (1-t), H b t; a and b are area and volume or their growth with depth."""
     low, high = readings.edge_angle.min(), readings.edge_angle.max()
     t = (readings.angle_of_reading - low) / (high - low) if high > low else np.zeros(readings.n)
     H = hardness[readings.series]
@@ -268,7 +268,7 @@ FEWEST_ANGLES: Final = 2
 
 
 def reason_without_choice(readings: Readings) -> str:
-    """Why no law can be selected from these readings, in a sentence; nothing where one can."""
+    """Reason why these readings cannot select a law, as a sentence; empty if they can."""
     angles = len(np.unique(np.round(readings.edge_angle, 9)))
     if readings.n_series >= FEWEST_SERIES and angles >= FEWEST_ANGLES:
         return ""

@@ -101,7 +101,7 @@ def _observations(
 
 
 def _own_or_site(own: FloatArray, site: tuple[str, ...], means: Mapping[str, float]) -> FloatArray:
-    """Value of each experiment: its own, otherwise the mean of its site, otherwise NaN."""
+    """Value of each experiment: the measured one, otherwise the mean of its site, otherwise NaN."""
     of_site = np.array([means.get(name, np.nan) for name in site])
     return np.where(np.isfinite(own), own, of_site)
 
@@ -159,7 +159,7 @@ RECORDING_PLANS: Final = (
 
 @dataclass(frozen=True, repr=False)
 class Regression(ShownFields):
-    """A regression with intercept on one predictor; ``fit`` is None where the data do not determine it.
+    """Regression with intercept on one predictor; ``fit`` is None if the data do not determine it.
 
     ``predictor_values`` counts the different values that the predictor takes. ``interval_by_site`` (2, 2) treats sites
     as clusters; None for a single site, NaN where the sites leave it open.
@@ -174,7 +174,7 @@ class Regression(ShownFields):
 
     @property
     def withheld(self) -> str | None:
-        """Why the F test of a slope is not given; None where it is, or without a slope."""
+        """Reason why the F test of the slope is withheld; None if it is given, or without a slope."""
         if self.fit is None or self.predictor_values >= FEWEST_VALUES:
             return None
         return Message(

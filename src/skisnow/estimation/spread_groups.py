@@ -159,18 +159,18 @@ def _two_classes(sums: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatAr
     """
     noisier = np.where(sums[0][0] / sums[0][1] > np.median(sums[0][0] / sums[0][1]), 0.9, 0.1)
     for _ in range(_EM_ROUNDS):
-        large, small = _scales(sums, noisier), _scales(sums, 1.0 - noisier)
+        large, small = _class_variances(sums, noisier), _class_variances(sums, 1.0 - noisier)
         share = float(np.clip(noisier.mean(), 0.01, 0.99))
         in_large = np.log(share) + _log_density(sums, large)
         in_small = np.log1p(-share) + _log_density(sums, small)
         noisier = expit(in_large - in_small)
-    one = _log_density(sums, _scales(sums, np.ones_like(noisier)))
+    one = _log_density(sums, _class_variances(sums, np.ones_like(noisier)))
     gain = 2.0 * float(np.sum(np.logaddexp(in_large, in_small) - one))
     return noisier, gain, float(np.sqrt(large[0] / small[0]))
 
 
-def _scales(sums: Sequence[tuple[FloatArray, FloatArray]], weight: FloatArray) -> list[float]:
-    """Variance of each kind of sum over the series with these weights."""
+def _class_variances(sums: Sequence[tuple[FloatArray, FloatArray]], weight: FloatArray) -> list[float]:
+    """Variance of each kind of residual over the series, weighted by their probability of the class."""
     return [float(weight @ squares) / max(float(weight @ degrees), 1e-300) for squares, degrees in sums]
 
 

@@ -52,7 +52,7 @@ _LARGEST_SHARE: Final = 0.9
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Unloading(ShownFields):
-    """Unloading of m series; NaN where a series has none.
+    """Unloading of m series; NaN for a series without a result.
 
     n_readings: readings of the unloading branch, one number per series.
     rebound_ratio, rebound_ratio_error, rebound_ratio_interval: s = H_V/k_u, 0 for rigid-plastic and 1 for elastic snow,
@@ -86,7 +86,7 @@ class Unloading(ShownFields):
 
 @dataclass(frozen=True, slots=True)
 class SiteUnloading:
-    """The unloading of the n used series of a site (None: of all sites together, taken for draws from one snow).
+    """Mean unloading of the n used series of a site (None: of all sites, as draws from one snow).
 
     ratio, low, high: k_u/H_V, the harmonic mean over the series, which keeps the mean rebound, and its 95 % interval,
         NaN where the rebound could be 0 or one series leaves it open; the ratio is NaN where nothing came back on
@@ -133,7 +133,7 @@ def unloading(
     below_step = np.abs(s) < bound
     half = np.where(below_step & np.isfinite(half), bound, half)
     ends = np.stack((s - half, s + half), axis=-1)
-    ratio, ratio_ends = _reciprocal(s, ends)
+    ratio, ratio_ends = _stiffness_ratio(s, ends)
     return Unloading(
         n_readings=np.zeros(m, dtype=np.int64) if back is None else back.count,
         rebound_ratio=s,
@@ -142,7 +142,7 @@ def unloading(
         unloading_ratio=ratio,
         unloading_ratio_interval=ratio_ends,
         unloading_stiffness=ratio * hardness.value,
-        unloading_stiffness_interval=_of_product((ratio, ratio_ends), (hardness.value, hardness.interval)),
+        unloading_stiffness_interval=_product_interval((ratio, ratio_ends), (hardness.value, hardness.interval)),
         below_step=below_step,
         rebound_scatter=scatter,
         rebound_freedom=freedom,
@@ -264,16 +264,16 @@ def _line(branch: Readings, g: FloatArray, weight: FloatArray) -> tuple[FloatArr
     return s, spread, de + s[branch.series] * dg
 
 
-def _reciprocal(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """1/s where that is above 0, and its interval where both ends are."""
+def _stiffness_ratio(s: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """k_u/H_V = 1/s and its interval; NaN where s or an end of its interval is not above 0."""
     ratio = np.divide(1.0, s, out=np.full(s.shape, np.nan), where=s > 0)
     positive = (ends[..., 0] > 0)[..., None]
     turned = np.divide(1.0, ends[..., ::-1], out=np.full(ends.shape, np.nan), where=positive & (ends > 0))
     return ratio, turned
 
 
-def _of_product(first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, FloatArray]) -> FloatArray:
-    """Interval of a product of two independent values with theirs: half-widths of logarithms add as squares."""
+def _product_interval(first: tuple[FloatArray, FloatArray], second: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Interval of a product of two independent values: the half-widths of the logarithms add as squares."""
     with np.errstate(invalid="ignore", divide="ignore"):
         half = np.hypot(*(np.log(ends / value[:, None]) for value, ends in (first, second)))
         return np.asarray((first[0] * second[0])[:, None] * np.exp(half * np.array([-1.0, 1.0])))
@@ -303,7 +303,7 @@ def _mean(series: Unloading, chosen: BoolArray, names: npt.NDArray[np.object_], 
         low, high = series.rebound_ratio_interval[with_error][0].tolist()
     else:
         s, low, high, _ = random_effects_mean(series.rebound_ratio[with_error], series.rebound_ratio_error[with_error])
-    ratio, ends = _reciprocal(np.array([s]), np.array([[low, high]]))
+    ratio, ends = _stiffness_ratio(np.array([s]), np.array([[low, high]]))
     back = chosen & np.isfinite(series.unloading_stiffness)
     own = own_mean(series.unloading_stiffness[back], names[back].tolist(), geometric=True)
     n = int(with_error.sum() or chosen.sum())

@@ -91,6 +91,7 @@ class Grid(ShownFields):
         return value.reshape(shape), slopes[0].reshape(shape), slopes[1].reshape(shape), beyond.reshape(shape)
 
     def _extrapolated(self, x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Value and slopes; beyond the border they continue with the slope of the border."""
         value, along_x, along_y, beyond = self._patched(x, y)
         return value + beyond, along_x, along_y
 
@@ -131,7 +132,7 @@ class _Weights(NamedTuple):
 
 
 def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Patched:
-    """Values (n, m) between their places.
+    """Interpolate values (n, m) of a grid at places u, v in cells, with slopes along both axes.
 
     values: (n, m) at the places 0 to n - 1 and 0 to m - 1.
     u, v: places (k,) in steps of the grid, inside it.
@@ -221,7 +222,7 @@ def smoothed(values: FloatArray, steps: tuple[float, float], *, cutoff: float) -
 
 
 def _local_lines(values: FloatArray, step: float, cutoff: float) -> FloatArray:
-    """A straight line of weighted least squares through the neighbours of each place, taken at the place."""
+    """Values along the first axis, each replaced by the line fitted to its neighbours by weighted least squares."""
     count = len(values)
     reach = min(math.ceil(cutoff / step), count - 1)
     sums, moments = np.zeros((3, count)), np.zeros((2, *values.shape))

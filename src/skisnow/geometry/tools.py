@@ -35,7 +35,7 @@ _FLAT: Final = 1e-300
 
 
 def _tangent(angle: FloatArray) -> FloatArray:
-    """Tan ϑ, of the angles' own shape; 1 where the tool is flat and no wedge is."""
+    """Value of tan ϑ in the shape of the angles; 1 for a flat tool, which has no wedge."""
     return np.where(angle > _FLAT, np.tan(angle), 1.0)
 
 
@@ -63,8 +63,8 @@ class Tool(abc.ABC):
         """Penetration depth e (m) at which the volume V (m³, ≥ 0) is displaced: the inverse of `displaced_volume`."""
 
     @abc.abstractmethod
-    def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """Depth (m) beyond which this tool does not have the shape of its name; readings deeper are marked."""
+    def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
+        """Depth (m) up to which the tool has the shape of its name; deeper readings are flagged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +130,8 @@ class SkiPiece(Tool):
         plain: FloatArray = np.sqrt(2.0 * _tangent(angle) * V / self.length)
         return np.where(wedge, plain, V / base + rim / 2.0)
 
-    def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.greatest_depth`: the width, beyond which snow closes over any real piece of ski."""
+    def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.maximum_depth`: the width, beyond which snow closes over any real piece of ski."""
         return np.full(np.shape(edge_angle), self.width)
 
 
@@ -174,8 +174,8 @@ class PlainWedge(Tool):
         flat: FloatArray = V / (self.length * self.width)
         return np.where(angle > _FLAT, plain, flat)
 
-    def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.greatest_depth`: W sin ϑ edged, where the base goes under; the width when flat."""
+    def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.maximum_depth`: W sin ϑ edged, where the base goes under; the width when flat."""
         angle = np.asarray(edge_angle, float)
         return np.where(angle > _FLAT, self.width * np.sin(angle), self.width)
 
@@ -213,8 +213,8 @@ class Disc(Tool):
         """See `Tool.depth_at_volume`."""
         return np.asarray(displaced_volume, float) / self._face
 
-    def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.greatest_depth`: the diameter."""
+    def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.maximum_depth`: the diameter."""
         return np.full(np.shape(edge_angle), self.diameter)
 
 
@@ -281,8 +281,8 @@ class LyingCylinder(Tool):
                 break
         return e
 
-    def greatest_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
-        """See `Tool.greatest_depth`: the radius."""
+    def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
+        """See `Tool.maximum_depth`: the radius."""
         return np.full(np.shape(edge_angle), self.radius)
 
 

@@ -48,7 +48,7 @@ def unit(a: Vector) -> Vector:
 
 
 def combined(numbers: Vector, axes: Sequence[Vector]) -> Vector:
-    """Vector that has these numbers along three axes: their row times the matrix of the axes as rows.
+    """Vector with these components along three axes (rows).
 
     >>> combined((2.0, 3.0, 4.0), ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
     (3.0, 2.0, 4.0)
@@ -58,7 +58,7 @@ def combined(numbers: Vector, axes: Sequence[Vector]) -> Vector:
 
 
 def applied(rows: Iterable[Vector], a: Vector) -> Vector:
-    """Matrix, as rows, times a vector.
+    """Product of a matrix, given by rows, and a vector.
 
     >>> applied(((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), (2.0, 3.0, 4.0))
     (3.0, 2.0, 4.0)

@@ -179,7 +179,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     profiles = tuple(_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
     assumed = [_NO_DEPTH.format("Temperatures")] if temperatures else []
-    assumed += [_NO_DEPTH.format("Densities")] if not all(each.top or each.thickness for each in densities) else []
+    assumed += [_NO_DEPTH.format("Densities")] if not all(layer.top or layer.thickness for layer in densities) else []
     assumed += [_NO_THICKNESS] if any(density.top and density.thickness is None for density in densities) else []
     return SnowPit(
         name=site,
@@ -237,12 +237,12 @@ def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
     """Every sample of density.csv; then densities of experiments that are not among them, each once."""
     sampled = () if campaign.density is None else tuple(_samples(campaign.density, site))
     yield from sampled
-    known = {sample.snow_density for sample in sampled}
+    sampled_densities = {sample.snow_density for sample in sampled}
     for tests in (campaign.penetration, campaign.shear):
         if tests is not None:
             for name, density, reason in zip(tests.site, tests.snow_density.tolist(), tests.cancelled, strict=True):
-                if name == site and not reason and math.isfinite(density) and density not in known:
-                    known.add(density)
+                if name == site and not reason and math.isfinite(density) and density not in sampled_densities:
+                    sampled_densities.add(density)
                     yield LayerDensity(0.0, density)
 
 

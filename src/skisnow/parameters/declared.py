@@ -117,7 +117,7 @@ def _conditional_quantities(owner: type) -> tuple[Quantity, ...]:
 
 
 def build_declared(owner: type[T], values: Mapping[str, Any], *, section: str = "", **parts: Any) -> T:
-    """A dataclass from values by name, in the units in the names, with its nested dataclasses.
+    """Build a dataclass and its nested dataclasses from values by name, in the units of the names.
 
     values: values in their ranges; None and missing ones leave the default.
     section: section for names without one.
@@ -143,7 +143,7 @@ def build_declared(owner: type[T], values: Mapping[str, Any], *, section: str = 
 
 
 def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") -> T:
-    """The same dataclass with other values, by name, in the units of their names; also in nested dataclasses.
+    """Copy of a dataclass with other values by name, in the units of the names; also in nested dataclasses.
 
     >>> @dataclass(frozen=True)
     ... class Step:
@@ -256,7 +256,7 @@ def _slot(owner: type, field: Field[Any]) -> _Slot:
     if isinstance(hint, str):  # postponed; `get_type_hints` needs all names, also those imported for type checking only
         hint = eval(hint, dict(vars(sys.modules[owner.__module__])))
     marks = hint.__metadata__ if get_origin(hint) is Annotated else ()
-    members = _members(get_args(hint)[0] if marks else hint)
+    members = _union_members(get_args(hint)[0] if marks else hint)
     section = next((mark for mark in marks if isinstance(mark, Section)), Section(""))
     declared = [mark for mark in marks if isinstance(mark, Quantity)]
     otherwise = any(isinstance(declaration, Word) for declaration in declared)
@@ -279,8 +279,8 @@ def _slot(owner: type, field: Field[Any]) -> _Slot:
     )
 
 
-def _details(marks: tuple[Any, ...]) -> dict[str, Any]:
-    """Fields of a quantity that further marks of its annotation state."""
+def _fields_of_marks(marks: tuple[Any, ...]) -> dict[str, Any]:
+    """Fields of a `Quantity` from the other marks of its annotation."""
     details: dict[str, Any] = {}
     for mark in marks:
         if isinstance(mark, Label | Allowed):
@@ -300,7 +300,7 @@ _KINDS: Final[dict[Any, Kind]] = {
 }
 
 
-def _members(hint: Any) -> tuple[Any, ...]:
+def _union_members(hint: Any) -> tuple[Any, ...]:
     return get_args(hint) if get_origin(hint) in (Union, UnionType) else (hint,)
 
 
@@ -318,7 +318,7 @@ def _resolved(
         choices=choices,
         field=field.name,
         needed=quantity.needed and needed and default is None,
-        **_details(marks),
+        **_fields_of_marks(marks),
     )
     if default is None and field.default is not MISSING:
         return replace(resolved, default=resolved.in_unit(field.default))

@@ -24,7 +24,7 @@ InputValue: TypeAlias = float | int | str | bool | tuple[float, ...]
 
 
 def beyond_reason(values: FloatArray) -> BoolArray:
-    """True where a value, not 0 or NaN, has no size from `SMALLEST` to `LARGEST`.
+    """True for values, except 0 and NaN, with a magnitude outside `SMALLEST` to `LARGEST`.
 
     >>> import numpy as np
     >>> beyond_reason(np.array([0.0, 1e-300, -2.0, 1e300, np.nan])).tolist()
@@ -209,18 +209,18 @@ class Quantity:
         low = values <= self.lowest if self.above else values < self.lowest
         return low | (values >= self.highest if self.below else values > self.highest) | beyond_reason(values)
 
-    def of_kind(self, value: object) -> InputValue:
-        """Give the value in its kind, a number as float; its range is not looked at."""
+    def in_kind(self, value: object) -> InputValue:
+        """The value converted to the kind of the quantity, a number to float; its range is not checked."""
         if self.kind == "switch" and isinstance(value, bool):
             return value
         if self.kind == "text" and isinstance(value, str):
             return value.strip()
         if self.kind == "three numbers" and isinstance(value, list | tuple) and len(value) == 3:
             one = replace(self, kind="number")
-            return tuple(float(one.of_kind(number)) for number in value)  # type: ignore[arg-type]
+            return tuple(float(one.in_kind(number)) for number in value)  # type: ignore[arg-type]
         if self.kind == "numbers" and isinstance(value, list | tuple) and (value or self.default is not None):
             usual = all(type(number) in (float, int) and SMALLEST <= abs(number) <= LARGEST for number in value)
-            numbers = value if usual else [one.of_kind(number) for one, number in self.numbered(value)]
+            numbers = value if usual else [one.in_kind(number) for one, number in self.single_quantities(value)]
             return tuple(float(number) for number in numbers)  # type: ignore[arg-type]
         if self.infinite and value == "inf":
             return math.inf
@@ -245,16 +245,16 @@ class Quantity:
             )
         return int(value)
 
-    def numbered(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
-        """Values of a list, each with this quantity for one number, named ``name[1]`` and so on."""
+    def single_quantities(self, values: Iterable[object]) -> Iterator[tuple[Quantity, object]]:
+        """Pairs of quantity and value for each number of a list; their names are ``name[1]`` and so on."""
         for place, value in enumerate(values, start=1):
             yield replace(self, kind="number", name=f"{self.name}[{place}]"), value
 
     def in_range(self, value: object) -> InputValue:
-        """Give the value in its kind."""
-        checked = self.of_kind(value)
+        """The value converted to the kind of the quantity and checked against its range."""
+        checked = self.in_kind(value)
         if self.kind == "numbers" and isinstance(value, list | tuple) and not self._allows(checked):
-            for one, element in self.numbered(value):
+            for one, element in self.single_quantities(value):
                 one.in_range(element)
         if not self._allows(checked):
             raise ParameterError(_NOT_ALLOWED_IN_UNIT if self.unit else _NOT_ALLOWED).tag(
@@ -264,7 +264,7 @@ class Quantity:
 
     @property
     def _unit_of_field(self) -> float:
-        """Size in SI of the unit of the field: a field with the whole name stores the value as stated."""
+        """Factor from the unit of the name to that of the field: 1 if the field has the whole name, else to SI."""
         return 1.0 if self.field == self.name.rpartition(".")[2] else self.factor
 
     def in_si(self, value: Any) -> Any:

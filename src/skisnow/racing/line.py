@@ -95,7 +95,7 @@ class RacingLine(Shown):
             raise ParameterError("the line has {n_turns} turns and the course {n_gates} gates; give one each").tag(
                 "wrong_shape", n_turns=len(self.turns), n_gates=len(gates)
             )
-        way = ways(self.course, self.start)
+        way = turn_lengths(self.course, self.start)
         x, y, share = [self.start[0]], [self.start[1]], [0.5]
         for gate, turn, reach in zip(gates, self.turns, way, strict=True):
             if not LEAST_TURNING <= turn.turning <= 1.0:
@@ -142,10 +142,10 @@ class RacingLine(Shown):
         steepest = rise / way / (1.0 - (1.0 - 2.0 / math.pi) * (first + last))
         u = (x - self._x[i]) / way
         if u < first:
-            aside, slope, bend = _wave(u, first, steepest, way)
+            aside, slope, bend = _turn_shape(u, first, steepest, way)
             return self._y[i] + aside, slope, bend
         if u > 1.0 - last:
-            aside, slope, bend = _wave(1.0 - u, last, steepest, way)
+            aside, slope, bend = _turn_shape(1.0 - u, last, steepest, way)
             return self._y[i + 1] - aside, slope, -bend
         return self._y[i] + way * steepest * (2.0 * first / math.pi + u - first), steepest, 0.0
 
@@ -167,15 +167,15 @@ class RacingLine(Shown):
         return Facts(f"{len(self.turns)} turns", rows)
 
 
-def _wave(u: float, share: float, steepest: float, way: float) -> tuple[float, float, float]:
-    """Aside (m), slope and bend (1/m) at the share u of the way from an apex, of a turn that ends at `share`."""
+def _turn_shape(u: float, share: float, steepest: float, way: float) -> tuple[float, float, float]:
+    """Sideways place (m), slope and second derivative (1/m) at the share u of the way; the turn ends at `share`."""
     rate = math.pi / (2.0 * share)
     sine, cosine = math.sin(rate * u), math.cos(rate * u)
     return way * steepest / rate * (1.0 - cosine), steepest * sine, steepest * rate / way * cosine
 
 
-def ways(course: Course, start: tuple[float, float]) -> list[float]:
-    """Down the slope, from each gate to the nearer of its neighbours (m); the start is that of the first."""
+def turn_lengths(course: Course, start: tuple[float, float]) -> list[float]:
+    """Distance (m) down the slope from each gate to its nearer neighbour; the start counts as a neighbour."""
     x = [start[0], *(gate.turning[0] for gate in course.gates)]
     before = [b - a for a, b in pairwise(x)]
     return [min(pair) for pair in zip(before, [*before[1:], math.inf], strict=True)]
@@ -204,7 +204,7 @@ def follower_line(scenario: Scenario) -> RacingLine:
 
 
 def with_numbers(line: RacingLine, numbers: Sequence[Sequence[float]], first: int) -> RacingLine:
-    """The same line with other numbers from a gate on: a row for each turn, in the order of `LineTurn`."""
+    """Copy of a line with new numbers from a gate on: one row for each turn, in the order of `LineTurn`."""
     new = [
         replace(turn, **dict(zip(NUMBERS, row, strict=False)))
         for turn, row in zip(line.turns[first:], numbers, strict=False)

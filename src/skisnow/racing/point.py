@@ -115,13 +115,13 @@ class PointRacer:
             count = math.ceil((high - low) / STEP - 1e-9)
             for i in range(count):
                 x, step = low + i * (high - low) / count, (high - low) / count
-                square, time = self._stepped(line, x, square, time, step)
+                square, time = self._runge_kutta_step(line, x, square, time, step)
                 if not square > SLOWEST**2:
                     return _columns(rows)
                 rows.append((x + step, square, time))
         return _columns(rows)
 
-    def _stepped(self, line: Line, x: float, square: float, time: float, step: float) -> tuple[float, float]:
+    def _runge_kutta_step(self, line: Line, x: float, square: float, time: float, step: float) -> tuple[float, float]:
         inside = 1e-9 * step  # a line bends differently before and behind a break
         a, first = self.rates(line, x + inside, square)
         b, second = self.rates(line, x + 0.5 * step, square + 0.5 * step * a)
@@ -239,7 +239,7 @@ class LinePoint:
 
 @dataclass(frozen=True, slots=True)
 class ScoredLine:
-    """From a point to its row; for worker processes."""
+    """Function from a point of the search to its row; for worker processes."""
 
     racer: Racer
 

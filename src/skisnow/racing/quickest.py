@@ -170,7 +170,7 @@ def quickest_line(
     """
     require_choice("model", model, get_args(RacerModel))
     begun = _start_line(scenario, gates, start)
-    window, step = _window(len(begun.turns), window, step, ahead)
+    window, step = _window_and_step(len(begun.turns), window, step, ahead)
     _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
     search = _search(search, model)
     if evaluations > 1:
@@ -198,6 +198,7 @@ def quickest_line(
 
 
 def _start_line(scenario: Scenario, gates: int | None, start: RacingLine | None) -> RacingLine:
+    """Line at the start of the search, cut to the number of gates; each of its numbers must be in its range."""
     course = course_of(scenario)
     line = follower_line(scenario) if start is None else start
     if start is not None and len(start.turns) != len(course.gates) and gates is None:
@@ -215,7 +216,8 @@ def _start_line(scenario: Scenario, gates: int | None, start: RacingLine | None)
     return first_gates(line, count)
 
 
-def _window(gates: int, window: int | None, step: int, ahead: int) -> tuple[int, int]:
+def _window_and_step(gates: int, window: int | None, step: int, ahead: int) -> tuple[int, int]:
+    """Checked window and step of the search, in gates."""
     window = gates if window is None else window
     require_range("window", window, 2, gates)
     require_range("step", step, 1, window)

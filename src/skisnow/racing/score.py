@@ -76,7 +76,7 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
 
 
 def with_room(score: Score, room: float) -> Score:
-    """The same score where each gate has to be passed by `room` (m): margins are less by it, and may fail."""
+    """Score if each gate must be passed with `room` (m) to spare: margins are smaller by it, and gates may fail."""
     if room == 0.0:
         return score
     margins = tuple(

@@ -43,7 +43,7 @@ class Evaluated:
 
 @dataclass(slots=True)
 class Evaluations:
-    """Evaluates batches of points in several processes, and keeps finished ones.
+    """Evaluates batches of points in several processes and stores the results.
 
     pool: computes rows of points (frozen numbers, place).
     kept: finished rows; each contains its point.
@@ -55,7 +55,7 @@ class Evaluations:
     done: list[Evaluated]
 
     def of(self, candidates: Sequence[tuple[Any, FloatArray]]) -> Iterator[int]:
-        """Evaluate points, each with its place, telling how many are finished; at the end they are in `done`."""
+        """Evaluate pairs of point and place; yields the number of finished ones, and appends the results to `done`."""
         first = len(self.done)
         points = {first + i: point for i, (point, _) in enumerate(candidates)}
         missing = [(number, point) for number, point in points.items() if number not in self.kept]
@@ -75,7 +75,7 @@ class Evaluations:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Batches:
-    """The evaluations of one search among all, batch by batch.
+    """Evaluations of one search, batch by batch.
 
     point_of: input of the function for a point.
     told: called as evaluations come.

@@ -126,7 +126,7 @@ def _kernel(first: FloatArray, second: FloatArray, lengths: FloatArray) -> Float
 
 @dataclass(frozen=True, slots=True)
 class Prospects:
-    """Two processes: of the time at the last gate, failures among them, and of the margins that all have to be above 0.
+    """Two processes: the time at the last gate, failures included, and the margins, which must all be above 0.
 
     time, margins: `margins` is None if no failure is known.
     least: distribution of the times that the process expects where a race came through (s).
@@ -154,7 +154,7 @@ class Prospects:
         return cls(time, Surrogate.of(places, margins, kinds) if varied else None, least)
 
     def through(self, places: FloatArray) -> FloatArray:
-        """Logarithm of the probability (m,) of coming through at places (m, d)."""
+        """Logarithm of the probability (m,) of passing all gates at places (m, d)."""
         if self.margins is None:
             return np.zeros(len(places))
         mean, deviation = self.margins.at(places)
@@ -241,7 +241,7 @@ ALIKE: Final = 0.25
 
 @dataclass(frozen=True, slots=True)
 class PointChoice:
-    """Choice of a point of a batch.
+    """Settings for the choice of one point of a batch.
 
     curiosity: times the deviation of a time, by which it may come out other than expected.
     caution: power of the probability of coming through: with 1 most races fail by millimetres in the end.
@@ -288,21 +288,21 @@ class SurrogateSearch:
         * Eriksson and others (2019), "Scalable global optimization via local Bayesian optimization", Advances in Neural
           Information Processing Systems 32, doi 10.48550/arXiv.1910.01739.
         """
-        if alike and self.begins_alike(start):
-            self.least_alike(start, math.ceil(ALIKE * self.count))
+        if alike and self.starts_with_equal_turns(start):
+            self.minimise_equal_turns(start, math.ceil(ALIKE * self.count))
         else:
             self.batches.evaluate([np.asarray(start, float)])
         self._narrow(np.eye(len(start)), len(start) // 2, self.count, 1)
         return self.batches.least
 
-    def least_alike(self, start: FloatArray, count: int) -> Evaluated:
-        """Minimum of about `count` evaluations with the same numbers for all turns, as in the start."""
+    def minimise_equal_turns(self, start: FloatArray, count: int) -> Evaluated:
+        """Minimum of about `count` evaluations in which all turns have the same numbers, as at the start."""
         directions = np.tile(np.eye(self.kinds), (len(start) // self.kinds, 1))
         self.batches.evaluate([np.asarray(start, float)])
         self._narrow(directions, self.first_of(self.kinds), count, 0)
         return self.batches.least
 
-    def begins_alike(self, start: FloatArray) -> bool:
+    def starts_with_equal_turns(self, start: FloatArray) -> bool:
         """True if several turns have the same numbers."""
         turns = len(start) // self.kinds
         return turns > 1 and np.array_equal(np.tile(start[: self.kinds], turns), start)
@@ -313,10 +313,10 @@ class SurrogateSearch:
         return 2 * numbers + 2
 
     def _narrow(self, directions: FloatArray, drawn: int, count: int, phase: int) -> None:
-        """Go on until `count`, moving by directions (n, m) from the best."""
+        """Continue until `count` evaluations, with steps along directions (n, m) from the best point."""
         box, size = min(2.0 * self.spread, BOX[1]) / (1 + phase), directions.shape[1]
         shares = qmc.LatinHypercube(size, rng=np.random.default_rng([*self.seed, phase])).random(drawn)
-        begin = self._numbers(directions, np.array(self.batches.least.place))
+        begin = self._steps_along(directions, np.array(self.batches.least.place))
         if len(self.batches.found) < count:
             self.batches.evaluate(
                 [directions @ np.clip(begin + box * (2.0 * share - 1.0), 0.0, 1.0) for share in shares]
@@ -335,7 +335,7 @@ class SurrogateSearch:
         """A batch; for each point the earlier points of the batch count with their predicted values."""
         evaluations = self.batches.found
         prospects = Prospects.of(evaluations, self.kinds)
-        centre = self._numbers(directions, np.array(self._centre(prospects).place))
+        centre = self._steps_along(directions, np.array(self._centre(prospects).place))
         chosen: list[FloatArray] = []
         for daring in BATCH:
             seed = (*self.seed, phase, len(evaluations), len(chosen))
@@ -359,8 +359,8 @@ class SurrogateSearch:
         return evaluations[int(np.argmin(np.where(passed, expected, np.inf)))]
 
     @staticmethod
-    def _numbers(directions: FloatArray, place: FloatArray) -> FloatArray:
-        """By how much of each direction a place is reached, or the nearest to it."""
+    def _steps_along(directions: FloatArray, place: FloatArray) -> FloatArray:
+        """Coordinates along the directions that reach a place, or come nearest to it (least squares)."""
         return np.asarray(np.linalg.lstsq(directions, place)[0], np.float64)
 
 

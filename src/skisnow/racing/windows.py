@@ -27,7 +27,7 @@ _LOW: Final = np.array([low for low, _ in RANGES.values()])
 
 @dataclass(frozen=True, slots=True)
 class WindowSettings:
-    """Settings of a window's search: the arguments of `quickest_line`."""
+    """Settings of the search in one window: the arguments of `quickest_line`."""
 
     search: Search
     evaluations: int
@@ -40,7 +40,7 @@ class WindowSettings:
 
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """A search over a course.
+    """Search over a course, window by window.
 
     how: each window is searched.
     window, step, ahead: see `quickest_line`.
@@ -81,8 +81,8 @@ class Windows:
         """Candidates for the whole course: all turns alike if the start has that, else the start."""
         batches = self._batches(begun, 0, len(begun.turns), len(begun.turns))
         search, place = self._surrogate(batches, 0), self._place(begun, 0, len(begun.turns))
-        if self.how.search == "surrogate" and search.begins_alike(place):
-            return search.least_alike(place, self.how.evaluations)
+        if self.how.search == "surrogate" and search.starts_with_equal_turns(place):
+            return search.minimise_equal_turns(place, self.how.evaluations)
         batches.evaluate([place])
         return batches.least
 

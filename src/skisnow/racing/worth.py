@@ -85,17 +85,17 @@ class Worth(Shown):
 
     @property
     def verdict(self) -> str:
-        """Whether it is faster here: only where the whole interval is on one side of 0."""
+        """Verdict whether the variant is faster here: certain only if the whole interval is on one side of 0."""
         low, high = self.interval or (-math.inf, math.inf)
         return "faster" if high < 0.0 else "slower" if low > 0.0 else "undecided"
 
     @property
     def faster(self) -> int:
-        """On how many snows it is faster."""
+        """Number of snows on which the variant is faster."""
         return int(np.sum(self.differences < 0.0))
 
     def gaps(self, names: Sequence[str]) -> tuple[GateGap, ...]:
-        """Its gap in time to the scenario as it is at each gate, by the gates' names, on the scenario's own snow."""
+        """Time gap to the scenario at each gate, by the gates' names, on the scenario's own snow."""
         own, base = (
             [
                 {"gate": name, "outcome": outcome, "time_s": time}
@@ -183,7 +183,7 @@ def compare_variants(
 
 @dataclass(frozen=True, slots=True)
 class ScoredScenario:
-    """From a scenario and a line to the row of its race; for worker processes."""
+    """Function from a scenario and a line to the row of its race; for worker processes."""
 
     model: RacerModel
 
@@ -249,7 +249,7 @@ def wider(ski: Ski, more: float) -> Ski:
 
 
 def _on_snow(variant: Scenario, base: Scenario, snow: SnowProperties) -> Scenario:
-    """A variant on another snow: where it changes H_V or S_f it changes them there as much."""
+    """Variant on another snow; its ratios of H_V and S_f to those of the base stay."""
     own, its = base.contact.snow, variant.contact.snow
     share = its.snow_hardness / own.snow_hardness
     stress = None

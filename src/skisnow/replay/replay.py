@@ -317,6 +317,6 @@ def quaternions(matrices: FloatArray) -> FloatArray:
 
 
 def without_sign_jumps(turns: FloatArray) -> FloatArray:
-    """The same rotations by quaternions (n, 4) of which none is opposite to the one before."""
+    """The same rotations (n, 4) with signs such that consecutive quaternions are not opposite."""
     turned = np.sum(turns[1:] * turns[:-1], axis=1) < 0.0
     return np.asarray(turns * np.cumprod(np.append(1.0, np.where(turned, -1.0, 1.0)))[:, None])

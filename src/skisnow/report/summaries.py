@@ -170,8 +170,8 @@ def rank_warnings(contents: Json) -> Iterator[SkisnowWarning]:
     answers = answers_of(contents)
     for (one, first), (two, second) in itertools.combinations(zip(ski_titles(answers), answers, strict=True), 2):
         radii = [(name, of(first), of(second)) for name, of in _ROWS if "radius" in name]
-        known = [(name, a, b) for name, a, b in radii if isinstance(a, float) and isinstance(b, float)]
-        tighter, wider = ([(n, a, b) for n, a, b in known if (b - a) * side > 0.0] for side in (1.0, -1.0))
+        finite = [(name, a, b) for name, a, b in radii if isinstance(a, float) and isinstance(b, float)]
+        tighter, wider = ([(n, a, b) for n, a, b in finite if (b - a) * side > 0.0] for side in (1.0, -1.0))
         if tighter and wider:
             (name, a, b), (other, c, d) = tighter[0], wider[0]
             yield SkisnowWarning(

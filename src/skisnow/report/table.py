@@ -95,8 +95,8 @@ def record_table(
     name: str, caption: str, columns: tuple[Column, ...], records: Iterable[Mapping[str, Any]], **options: Any
 ) -> Table:
     """Table with one row for each record; the keys of the columns are those of the records."""
-    kept = list(records)
-    return Table(name, caption, columns, list(zip(*(column.cells(kept) for column in columns), strict=True)), **options)
+    rows = list(records)
+    return Table(name, caption, columns, list(zip(*(column.cells(rows) for column in columns), strict=True)), **options)
 
 
 def table_csv(table: Table) -> str:

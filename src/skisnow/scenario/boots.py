@@ -289,10 +289,12 @@ def _behind_head(path: Path, lines: list[str]) -> tuple[list[Row], dict[str, str
 
 
 def _is_input_column(name: str) -> bool:
+    """True for columns that `read_boots` reads: forces and moments of a run are results."""
     return not name.endswith(_RESULTS)
 
 
 def _known_columns(head: list[str]) -> tuple[str, ...]:
+    """Columns of a table in the frame of the slope or of the sledge."""
     places = OF_SLOPE if "left_x_m" in head else OF_SLEDGE
     return (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in (*places, *ANGLES)))
 

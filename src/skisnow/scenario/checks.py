@@ -24,7 +24,7 @@ def require_sound(
     shear: Shear,
     friction: float,
 ) -> None:
-    """Refuse parts that do not go together."""
+    """Reject parts of a scenario that contradict each other."""
     for complaint in _contradictions(slope, sledge, ski, clamp_length, start, shear, friction):
         raise ParameterError(complaint).tag("contradiction")
 

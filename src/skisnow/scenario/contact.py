@@ -315,7 +315,7 @@ class Contact:
         return self.friction + self.friction_by_speed * speed  # may be below 0
 
     def require_linear_friction(self) -> None:
-        """Reject a law file where μ_0 and μ_1 are all that is used.
+        """Reject a friction law file where only μ_0 and μ_1 are used.
 
         Raises ParameterError: the scenario has a law file.
         """
@@ -332,7 +332,7 @@ class Contact:
 
     @property
     def penetration(self) -> PointLaw | None:
-        """The law of layered snow; None: H_V and k_u alone."""
+        """Penetration law of layered snow; None for snow with only H_V and k_u."""
         if not self.is_layered:
             return None
         if self.layers is not None:

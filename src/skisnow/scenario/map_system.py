@@ -157,7 +157,7 @@ def utm_zone(longitude_deg: float, latitude_deg: float) -> str:
 
 
 def raster_errors() -> tuple[type[Exception], ...]:
-    """What rasterio raises for a damaged file or system: also GDAL's errors, whose base it keeps private."""
+    """Errors of rasterio for a damaged file or map system, and those of GDAL, whose base class is private."""
     from rasterio._err import CPLE_BaseError
     from rasterio.errors import CRSError, RasterioError
 

@@ -54,7 +54,7 @@ class Start:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Stop:
-    """When a run is done: after a time (s) or a run length (m), one of them or both, whichever comes first."""
+    """End of a run: after a time (s), a run length (m), or the first of both."""
 
     duration: Annotated[
         float | None,

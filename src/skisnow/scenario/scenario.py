@@ -191,7 +191,7 @@ class Scenario(Shown):
         require_skier(self.skier, self.sledge, has_boots=self.boots is not None, has_course=self.course is not None)
 
     def with_(self, **changes: Any) -> Scenario:
-        """The same scenario with other parts or other values; this one stays as it is.
+        """Copy of the scenario with other parts or values.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class Scenario(Shown):
 
     @property
     def flexing_ski(self) -> Ski:
-        """The ski with the stiffness that is computed with."""
+        """The ski with the stiffness of the computation."""
         return self.ski.stiffened(self.stiffness_factor)
 
     def _repr_facts(self) -> Facts:

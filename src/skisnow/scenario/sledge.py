@@ -248,7 +248,7 @@ class Shear:
             )
 
     def of(self, failure_shear_stress: float) -> ShearLaw | None:
-        """The law of a snow with this S_f (N/m²); None: S_f as it is."""
+        """Shear law in snow with this S_f (N/m²); None for a constant S_f."""
         with warnings.catch_warnings():  # a scenario has separate warnings about unmeasured ranges
             warnings.simplefilter("ignore", RangeWarning)
             if self.law == "by-angle":
@@ -265,7 +265,7 @@ class Shear:
 
     @property
     def smallest_cutting_angle(self) -> float:
-        """Edge angle (rad) below which the law is not its own any more."""
+        """Edge angle (rad) below which the shear plane of the machining law is at its limit; 0 for other laws."""
         if self.law != "machining":
             return 0.0
         return math.atan(self.transverse_friction) + 2.0 * self.least_shear_plane

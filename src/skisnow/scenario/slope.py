@@ -183,7 +183,7 @@ def _require_no_gap(x: FloatArray) -> None:
 
 
 def _require_no_cliff(x: FloatArray, coefficients: FloatArray) -> None:
-    """The slope of a cubic is greatest at an end of its piece or where its curvature vanishes."""
+    """Reject a slope that is too steep at an end of a cubic piece or where its curvature vanishes."""
     a, b, c, _ = coefficients
     width = np.diff(x)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -218,7 +218,8 @@ def read_profile(path: str | Path, *, gap: Gap = "error") -> Profile:
     ------
     ParameterError
         The file cannot be read, a column is missing, a cell is not a finite number or an impossible one (the message
-        names file, row, column and value), or the points are no profile: too few, x that does not rise, a gap, a cliff.
+        names file, row, column and value), or the points do not form a profile: too few, x that does not rise, a gap, a
+        cliff.
     """
     limits = profile_limits(COLUMNS)
     rows = csv_rows(path, COLUMNS, action=_ACTION)

@@ -108,7 +108,7 @@ class SnowMap(Shown):
 
 
 def _require_positive(name: str, grid: Grid) -> None:
-    """At the places, and between them, where smooth patches may swing below the values that they join."""
+    """Reject values of 0 or less, at the places and between them, where smooth patches may overshoot."""
     i, j = np.unravel_index(int(np.argmin(grid.values)), grid.values.shape)
     if grid.values[i, j] <= 0.0:
         raise ParameterError("{name} of the snow map is {value:g} at x = {x:g} m, y = {y:g} m; it must be above 0").tag(
@@ -190,7 +190,7 @@ def read_snow_map(path: str | Path) -> SnowMap:
 
 
 def _checked_row(row: CsvRow) -> CsvRow:
-    """The row, if its snow properties are above 0."""
+    """The row, after a check that its snow properties are above 0."""
     for name in SIZES:
         if name in row.cells and not number_within(row, name) > 0.0:
             raise row.refused(name, Message("A number above 0 is needed."), code="out_of_range")
@@ -203,7 +203,7 @@ def _grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
 
 
 def _grids_along_x(path: str | Path, rows: Sequence[CsvRow], names: Sequence[str]) -> dict[str, Grid]:
-    """Uneven places are brought to even ones by cubics that do not overshoot."""
+    """Grids over x only; cubics without overshoot convert uneven places to even ones."""
     x = np.array([number_within(row, "x_m") for row in rows])
     if len(x) < 2:
         raise ParameterError("{path}: there are {n_x} rows; snow that varies needs two or more").tag(
@@ -245,7 +245,7 @@ def read_snow_layers(path: str | Path) -> SnowLayers:
     """Read the hardness over the depth.
 
     path: CSV with ``depth_mm``, the top of each layer, the first 0, and ``hardness_share`` (hardness over H_V) or
-        ``force_N``, whose mean over the depth of the file stands for H_V.
+        ``force_N``, whose mean over the depth of the file corresponds to H_V.
     """
     every = csv_rows(path, ("depth_mm",), further=("hardness_share", "force_N"), action=_LAYERS_ACTION)
     rows = list(islice(every, MOST_LAYERS + 1))

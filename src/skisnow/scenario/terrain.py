@@ -138,7 +138,7 @@ class Terrain(Shown):
 
 
 def _require_no_cliff(surface: Grid) -> None:
-    """At the places and in the middles between them."""
+    """Reject terrain that is too steep at the places or halfway between them."""
     for shift in (0.0, 0.5):
         x, y = (places + shift * step for places, step in zip((surface.x, surface.y), surface.steps, strict=True))
         rows = [np.hypot(*surface.gradients(column, y)) for column in x]
@@ -247,7 +247,7 @@ def down_and_left(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def extent_of(slope: Slope) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The first and last x, and y (m), that the slope has; infinite where it has no end."""
+    """Ends (first, last) of x and of y (m) of a slope; infinite for a slope without end."""
     endless = (-math.inf, math.inf)
     if isinstance(slope, Terrain):
         x, y = slope.surface.x, slope.surface.y

@@ -154,7 +154,7 @@ class StrengthDrive:
 
 @dataclass(frozen=True, slots=True)
 class TableControl:
-    """Boots where a table has them."""
+    """Control that moves the boots as a table states."""
 
     table: Boots
 

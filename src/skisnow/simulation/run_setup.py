@@ -63,7 +63,7 @@ _UP: Final = np.array([0.0, 0.0, 1.0])
 
 @dataclass(slots=True)
 class Setup:
-    """A run under way."""
+    """State of a run in progress."""
 
     scenario: Scenario
     dynamics: Dynamics
@@ -151,7 +151,7 @@ class Setup:
 
     @property
     def touches(self) -> bool:
-        """Whether any ski is in contact with the snow."""
+        """True if a ski is in contact with the snow."""
         return self.dynamics.touches
 
     @property
@@ -209,7 +209,7 @@ def set_up(
     boots: BootControl | None = None,
     strength_along: Strength | None = None,
 ) -> Setup:
-    """Choose the solver's numbers, lay the snow out, or take this one, and set the sledge down on it."""
+    """Choose the settings of the solver, create the snow or reuse the given one, and set the sledge down on it."""
     setup = laid_out(scenario, snow, laws=laws)
     setup.drive = _drive(scenario, boots)
     setup.strength = None if strength_along is None else StrengthDrive(strength_along, setup.snow)
@@ -249,7 +249,7 @@ def _balances(control: BootControl) -> bool:
 
 
 def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | None = None) -> Setup:
-    """The sledge above the snow, before anything moves; above this one, with the tracks in it, where it is given."""
+    """Setup with the sledge above the snow, before any motion; `snow` is reused with its tracks if given."""
     load, depth, wavelength = _contact(scenario)
     solver, air = scenario.solver, scenario.air
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])

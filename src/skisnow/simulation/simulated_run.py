@@ -348,7 +348,7 @@ def _through_gates(run: Run, records: Sequence[BalanceRecord] = ()) -> Run:
     if fault is None:
         return run
     outcome: Outcome = "straddled" if fault.outcome == "straddled" else "missed_gate"
-    cause = [] if fault.time is None else _cause(run, [each for each in records if each.seen.time <= fault.time])
+    cause = [] if fault.time is None else _cause(run, [record for record in records if record.seen.time <= fault.time])
     return replace(run, outcome=outcome, remedy=joined([fault.words, *cause, REMEDIES[outcome]]))
 
 

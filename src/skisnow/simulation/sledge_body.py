@@ -134,7 +134,7 @@ def sledge_body(
     sides = (sledge.stance_width / 2.0, -sledge.stance_width / 2.0) if asides is None else asides
     inertia = sledge_inertia(sledge, ski, sides)
     axes = np.array([[1.0, 0.0, 0.0], base_lateral(sledge.edge_angle), base_normal(sledge.edge_angle)])
-    mass, stiffness = _lower(ski.mass), _lower(ski.stiffness)
+    mass, stiffness = _lower_band(ski.mass), _lower_band(ski.stiffness)
     deflection = np.where(np.arange(ski.size) % 3 == 0, np.linspace(-1.0, 1.0, ski.size), 0.0)
     start = np.stack([np.maximum(deflection, 0.0), np.minimum(deflection, 0.0)], axis=1)  # forebody and afterbody
     damping = 2.0 * damping_ratio / float(np.sqrt(lowest_eigenvalue(ski.stiffness, ski.mass, start)))
@@ -156,7 +156,7 @@ def _first_unknowns(ski: ClampedSki) -> FloatArray:
     return np.append(ski.dof[:, 0], ski.dof[-1, 3]).astype(float)
 
 
-def _lower(matrix: FloatArray) -> FloatArray:
+def _lower_band(matrix: FloatArray) -> FloatArray:
     """Lower half of a symmetric band: from (n, 11) to (n, 6)."""
     lower = np.ascontiguousarray(matrix[:, 5::-1])
     for i in range(5):

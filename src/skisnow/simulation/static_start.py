@@ -45,7 +45,7 @@ _BESIDE: Final = {
 
 
 def no_start(setup: Setup) -> SolverError:
-    """The error for a sledge that found no equilibrium, with a value that lets it stand.
+    """Error for a sledge without an equilibrium, with a value with which it does not fall.
 
     Where the weight passes between the skis, the snow below them may still give way: the sledge leans, which moves its
     weight further out. Above some height of the centre of mass nothing stops that.
@@ -85,7 +85,7 @@ def no_start(setup: Setup) -> SolverError:
 
 
 def largest_standing(setup: Setup, value: float, sledge_with: Callable[[float], RigidSledge]) -> float | None:
-    """Largest share of a value with which the sledge stands, by halving, to two digits; None if it stands with none.
+    """Largest fraction of a value with which the sledge does not fall, by bisection, to two digits; None without one.
 
     Sledges with boots that move are not tried: their control decides where the weight is.
     """
@@ -106,7 +106,7 @@ def _stands(setup: Setup, sledge: RigidSledge) -> bool:
 
 
 def _two_digits(value: float) -> float:
-    """Rounded towards 0, so that the sledge stands with it."""
+    """Value rounded to two digits towards 0, so that the sledge does not fall with it."""
     step = 10.0 ** (math.floor(math.log10(abs(value))) - 1)
     return float(f"{math.trunc(value / step) * step:.2g}")
 

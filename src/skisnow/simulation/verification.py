@@ -36,7 +36,7 @@ move by once)."""
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Refinement(Shown):
-    """Change of a run's end by one finer choice.
+    """Shift of the end of a run by one finer setting or one changed input.
 
     Attributes
     ----------
@@ -179,6 +179,7 @@ def limit_sentences(moves: Mapping[str, float], length: float) -> tuple[str, ...
 
 
 def _repeat_with_laws(run: Run) -> Simulate:
+    """Simulation function with the laws of a run."""
     from .simulated_run import simulate  # which loads the compiled core
 
     return partial(simulate, laws=run.laws, strength_along=run.strength_along)

@@ -301,7 +301,7 @@ def _mesh(front: float, rear: float, clamp_length: float, elements: int, *, bedd
 
 
 def element_places(node: FloatArray, local: FloatArray) -> FloatArray:
-    """Places at local coordinates of each element (n, k); of growths of nodes, those of the places."""
+    """Places (m) at local coordinates of each element, (elements, k); for node growths, the growths of the places."""
     return np.asarray(node[:-1, None] - (node[:-1] - node[1:])[:, None] * local)
 
 
@@ -327,7 +327,7 @@ def beam_rows(model: ClampedSki, station: npt.ArrayLike) -> tuple[IntArray, Floa
 def base_motion(
     u: FloatArray, dof: IntArray, deflection: FloatArray, twist: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Deflection (m) and twist (rad) by rows of `beam_rows`."""
+    """Deflection (m) and twist (rad) of the base for the unknowns u, by rows of `beam_rows`."""
     value = np.where(dof >= 0, u[dof], 0.0)
     return np.sum(deflection * value, axis=-1), np.sum(twist * value, axis=-1)
 

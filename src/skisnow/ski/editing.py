@@ -293,7 +293,7 @@ def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
 
 @functools.lru_cache(maxsize=256)
 def _table_of(name: str) -> str:
-    """The table that a parameter changes alone; empty where it changes several, or numbers."""
+    """Name of the only table that a parameter changes; empty if it changes several tables, or numbers."""
     key, _, row = name.removeprefix("ski.").partition("[")
     if row:
         return key if key in STIFFNESSES else ""
@@ -302,7 +302,7 @@ def _table_of(name: str) -> str:
 
 @functools.lru_cache(maxsize=64)
 def _growth_caches(ski: Ski) -> dict[str, dict[str, Any]]:
-    """By table: growths with parameters, the same for all skis with the same keys and stations of that table."""
+    """Caches of growths by table, shared by all skis with the same keys and stations of that table."""
     if ski.keys is None:
         return {}
     keys = parsed_keys(ski)
@@ -321,7 +321,7 @@ def _growth_cache(*_keys: Hashable) -> dict[str, Any]:
 
 
 def _tip_end_ratio(keys: SkiFile) -> float | None:
-    """Width of the very tip over that of the tip."""
+    """Width at the front end of the ski over the width of the tip."""
     return None if keys.tip_end_width is None else keys.tip_end_width / (keys.tip_width or 1.0)
 
 
@@ -361,7 +361,7 @@ def _stiffness(keys: SkiFile, part: str, layout: Layout) -> StationTable:
 
 
 def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
-    """Keys of which one is changed (SI)."""
+    """Copy of the keys with one value changed by ``change`` (SI)."""
     row, owner = _ROW.fullmatch(key), keys.base if key in BASE else keys
     name = SKI_KEYS[row[1] if row else key].field
     value: Any = getattr(owner, name)

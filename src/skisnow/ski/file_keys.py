@@ -18,7 +18,7 @@ under 500 N."""
 class SkiFile:
     """A ski file in SI; None for missing keys without a default. Lists go from tip to tail."""
 
-    name: Annotated[str | None, Quantity("name", "what it is called", origin="the file's name")] = None
+    name: Annotated[str | None, Quantity("name", "name of the ski", origin="the file's name")] = None
     source: Annotated[str | None, Quantity("source", "where the numbers come from", origin="the file's name")] = None
     length: Annotated[
         float | None,

@@ -286,13 +286,13 @@ class _End:
             ).tag("contradiction", name=self.name, rocker_height=self.rocker_height * 1e3)
         share = np.minimum(distance, self.rocker_length) / self.rocker_length if self.rocker_length > 0 else 0.0
         beyond = np.maximum(distance - self.rocker_length, 0.0)
-        return np.asarray(self.rocker_height * share**2 + self._slope * beyond + self._bend() * beyond**2)
+        return np.asarray(self.rocker_height * share**2 + self._slope * beyond + self._outer_curvature() * beyond**2)
 
     @property
     def _slope(self) -> float:
         return 2.0 * self.rocker_height / self.rocker_length if self.rocker_length > 0 else 0.0
 
-    def _bend(self) -> float:
+    def _outer_curvature(self) -> float:
         """Coefficient c (1/m) of the rise c x² beyond the rocker that reaches the height of the tip or tail."""
         if self.length <= 1e-9:
             if self.given_height and abs(self.given_height - self.rocker_height) > 1e-9:

@@ -31,7 +31,7 @@ _OUTSIDE_WITHOUT_UNIT: Final = template(
     "computed all the same"
 )
 _ONE_AT_A_TIME: Final = threading.RLock()
-"""What becomes of warnings is a setting of the whole process."""
+"""Lock for the warning filters, which are a setting of the whole process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ def with_range_warnings(act: Callable[[], T]) -> tuple[T, tuple[str, ...]]:
 
 @contextmanager
 def without_range_warnings() -> Iterator[None]:
-    """Range warnings are not shown meanwhile. One thread at a time."""
+    """Suppress range warnings inside the block. One thread at a time."""
     with _ONE_AT_A_TIME, warnings.catch_warnings():
         warnings.simplefilter("ignore", RangeWarning)
         yield

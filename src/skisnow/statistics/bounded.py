@@ -35,7 +35,7 @@ class Solved(NamedTuple):
 
 @dataclass(frozen=True)
 class Condensed:
-    """A design of p columns and a response as least squares see them: of their n rows no more than p + 1 are left.
+    """Design of p columns and a response, reduced to at most p + 1 rows with the same least squares.
 
     design: shape (m, p), columns of length one or zero.
     response: shape (m,).

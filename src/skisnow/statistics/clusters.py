@@ -140,14 +140,14 @@ def _bias_reduced(
 
 
 def _determined_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> BoolArray:
-    """True for coefficients of which a part is determined by a single cluster."""
+    """True for coefficients of which a single cluster determines a part."""
     part = np.abs(np.einsum("jk,gkv->jgv", L, vector)) / np.linalg.norm(L, axis=1)[:, None, None]
     held: BoolArray = np.any(alone[None] & (part > np.sqrt(_WHOLLY)), axis=(1, 2))
     return held
 
 
 def _degrees(share: FloatArray, adjust: FloatArray, row: FloatArray) -> float:
-    """Satterthwaite: (tr M)²/tr(M²), M_gh = a_gᵀ(I - H)_gh a_h with a_g = A_g Q_g l for β = lᵀ Qᵀy.
+    """Degrees of freedom by Satterthwaite: (tr M)²/tr(M²), M_gh = a_gᵀ(I - H)_gh a_h, a_g = A_g Q_g l for β = lᵀ Qᵀy.
 
     The diagonal of M is lᵀ S_g l, S_g = Q_gᵀQ_g; the other elements are -P_gᵀP_h with P_g = S_g (I - S_g)^-½ l.
     """

@@ -149,7 +149,7 @@ def _spread_variance(x: FloatArray, variance: FloatArray) -> float:
 
 
 _BEYOND = 1e300
-"""Stands for an unknown sample; a quantile between it and any other number is still far beyond all numbers in use."""
+"""Replaces an unknown sample; a quantile between it and any other number is still far beyond all numbers in use."""
 _DRAWS_AT_ONCE = 2**18
 """Draws of one chunk, some MB: what stays in the processor's cache."""
 
@@ -190,6 +190,7 @@ def resampling_counts(
 
 
 def _drawn(n_units: int, n_resamples: int, rng: np.random.Generator, chunk: int) -> Iterator[FloatArray]:
+    """Draw chunks of bootstrap counts."""
     for start in range(0, n_resamples, chunk):
         b = min(chunk, n_resamples - start)
         # 64-bit integers: narrower ones are drawn in words whose rest is thrown away at the end of each call, and the

@@ -289,7 +289,7 @@ def _power(n: int, effect: float, alpha: float) -> float:
         return float(ndtr(shift - critical) + ndtr(-shift - critical))
     critical = float(stdtrit(dof, 1.0 - 0.5 * alpha))
     missed, reversed_ = nctdtr(dof, shift, [critical, -critical]).tolist()
-    # far out scipy gives NaN for values that are zero to all digits: seen from 4.9 on for one, from 37 on for the other
+    # far out scipy gives NaN for values that are zero to all digits: seen above 4.9 for one, above 37 for the other
     if shift > _FAR and math.isnan(reversed_):
         reversed_ = 0.0
     if shift > _VERY_FAR and math.isnan(missed):

@@ -263,7 +263,7 @@ def variance_shares(output: npt.ArrayLike, inputs: npt.ArrayLike, *, confidence:
     -------
     VarianceShares
         b² Var(x)/Var(y) of the linear regression, minus the value that noise alone would give (the squared standard
-        error in place of 0), and not below 0; intervals from those of b by Student's t. All 0 if the output does not
+        error instead of 0), and not below 0; intervals from those of b by Student's t. All 0 if the output does not
         vary.
 
     Raises

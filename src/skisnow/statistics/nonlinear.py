@@ -31,7 +31,7 @@ _SETTLED = 1e-6
 """A last step above this share of parameter and standard error together is not a solution."""
 _PARAMETER_DIGITS = 1e-8
 _ERROR_DIGITS = 1e-6
-"""Relative uncertainty of parameters and of standard errors from which on a warning is given."""
+"""Relative uncertainty of parameters and of standard errors above which a warning is given."""
 _EXACT = 10.0
 """Residuals not above so many roundings of the fitted values are zero: the data lie on the curve."""
 _EPS = float(np.finfo(float).eps)
@@ -197,7 +197,7 @@ def _search(values: Values, observed: FloatArray, start: FloatArray, scale: Floa
 def _polished(
     values: Values, observed: FloatArray, b: FloatArray, scale: FloatArray, names: tuple[str, ...]
 ) -> tuple[FloatArray, Factorisation, _Known]:
-    """Gauss-Newton steps until they are lost in rounding: parameters, derivatives, how well both are known."""
+    """Gauss-Newton steps until rounding dominates; returns parameters, derivatives, and the accuracy of both."""
     least = np.inf
     for _ in range(_MOST_STEPS):
         slopes = jacobian(values, b, scale)
@@ -283,12 +283,12 @@ class Jacobian:
 
 
 def coarse_jacobian(values: Values, b: FloatArray, scale: FloatArray) -> FloatArray:
-    """Half the digits, at two evaluations for each parameter: good enough on the way to a solution."""
+    """Derivatives accurate to half the digits, with two evaluations for each parameter; for the way to a solution."""
     return np.stack([_central(values, b, j, _COARSE_STEP * size) for j, size in enumerate(_sizes(b, scale))], axis=-1)
 
 
 def jacobian(values: Values, b: FloatArray, scale: FloatArray) -> Jacobian:
-    """All but the last digits, at up to 20 evaluations for each parameter.
+    """Derivatives accurate to all but the last digits, with up to 20 evaluations for each parameter.
 
     values: function of the parameters that returns the n values of the model.
     b: the parameters, shape (p,).

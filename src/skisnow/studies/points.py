@@ -241,7 +241,7 @@ class Axis:
         values = value if isinstance(value, list) and not _is_one(key, value) else [value]
         if not values:
             raise ParameterError("{name} is an empty list; write at least one value").tag("out_of_range", name=key.name)
-        checked = tuple(key.of_kind(value) for value in values)
+        checked = tuple(key.in_kind(value) for value in values)
         repeated = next((value for place, value in enumerate(checked) if value in checked[:place]), None)
         if repeated is not None:
             raise ParameterError("{name} contains {repeated!r} twice; write each value once").tag(

@@ -152,6 +152,7 @@ def _no_table(path: Path, why: object) -> ParameterError:
 
 
 def _as_python(value: Any, kind: str) -> Any:
+    """Python value of a cell of the database, by the declared type of its column."""
     if value is None:
         return None
     if kind == "BOOLEAN" and value in (0, 1):

@@ -160,7 +160,7 @@ def write_rows(
     *,
     previous: Path | None = None,
 ) -> StudyTable:
-    """The table of all rows; it is not written if no point could be computed.
+    """Write the table of all rows and return it; it is not written if no point could be computed.
 
     fingerprint: for the column `study`.
     previous: where a table in its place goes; None: no table is there.
@@ -188,7 +188,7 @@ def write_rows(
 
 
 class _Rows:
-    """Rows as lists of values; with each beginning they are counted, and held where they are few, again."""
+    """Rows as lists of values, which can be read repeatedly; each pass counts them, and stores them if they are few."""
 
     def __init__(self, finished_rows: FinishedRows, columns: tuple[str, ...], fingerprint: str) -> None:
         self._kept, self._columns, self._fingerprint = finished_rows, columns, fingerprint
@@ -209,7 +209,7 @@ class _Rows:
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
-    """Another one where a file was written again."""
+    """Inode, size and time of change of a file, which identify its version; None without the file."""
     try:
         status = path.stat()
     except OSError:

@@ -62,7 +62,7 @@ class Shard:
         return range(self.number - 1, count, self.count)
 
     def place(self, study: Study) -> Path:
-        """Path of its finished points, next to the table."""
+        """Path of the file with the part's finished points, next to the table."""
         return study.out.with_name(f"{study.out.name}.shard-{self.number}-of-{self.count}")
 
 

@@ -27,7 +27,7 @@ TOP_KEYS: Final = ("out", "scenario", "fixed", *FORMS)
 
 
 class StudyModel(Protocol):
-    """Model of a study. It is pickled for each worker; one more subject is one more class."""
+    """Interface of a model whose points a study computes; pickled for each worker."""
 
     @property
     def keys(self) -> Mapping[str, Quantity]:

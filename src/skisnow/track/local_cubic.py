@@ -124,7 +124,7 @@ def _shift_fits(
 
 
 class _Moments:
-    """Sums over windows of weights times powers of τ, and of these times values (relative to the point) and rates."""
+    """Sums over the windows of all points for the normal equations of the local cubics: weights, values and rates."""
 
     def __init__(self, count: int, coordinates: int) -> None:
         self.place = np.zeros((2 * TERMS - 1, count))

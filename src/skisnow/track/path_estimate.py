@@ -318,6 +318,6 @@ def estimate_place_noise(track: Track, smoothed: SmoothedTrack) -> PlaceNoise | 
 def _squares(runs: list[FloatArray], order: int) -> FloatArray:
     """Squared differences of both coordinates over the variance that white noise of 1 m gives each of them."""
     differences = [np.diff(run, order, axis=0) for run in runs if len(run) > order]
-    return np.concatenate([np.zeros(0), *(np.sum(each**2, axis=1) for each in differences)]) / math.comb(
+    return np.concatenate([np.zeros(0), *(np.sum(difference**2, axis=1) for difference in differences)]) / math.comb(
         2 * order, order
     )

@@ -251,7 +251,7 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
 
 
 def _fall_in_own_axes(track: Track, own: Inclination | None) -> float:
-    """Inclination of a track in its own axes: of a track along a profile, whose z is the height."""
+    """Inclination of a track in its own axes, as along a profile, whose z is the height; 0 in a slope's axes."""
     return own.angle if own is not None and not track.slope_angle else 0.0
 
 

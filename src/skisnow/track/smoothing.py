@@ -198,7 +198,7 @@ def _noises(
 ) -> tuple[float, float | None]:
     """Standard deviation (m) of places about cubics through the places, and (m/s) of velocities likewise.
 
-    That of velocities is None if no window contains enough of them.
+    The deviation of velocities is None if no window contains enough of them.
     """
     fits = local_cubic(time, windows, half, place, None)
     place_noise = max(_noise(fits.place_misfit, fits.place_count - TERMS), _LOWEST_PLACE_NOISE)

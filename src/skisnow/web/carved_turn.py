@@ -77,7 +77,7 @@ DESIGNED: Final = Message("the designed ski")
 """Word for the ski of a question that gives keys of a ski file instead of a word."""
 
 
-class Asked(NamedTuple):
+class CarveInputs(NamedTuple):
     """Questions of `skisnow carve`, one for each ski, whose "ski" is a word or keys of a file; the chosen snow."""
 
     questions: list[dict[str, Any]]
@@ -91,7 +91,7 @@ class Solver:
         self._lock = threading.Lock()
         self._sources: Sources | None = None
 
-    def answers(self, asked: Asked) -> list[dict[str, Any]] | str:
+    def answers(self, inputs: CarveInputs) -> list[dict[str, Any]] | str:
         """JSON of `skisnow carve` for each question, or the message of an error."""
         from ..carving.answer import answer_dict, answered
         from ..carving.question import carve_question
@@ -100,19 +100,21 @@ class Solver:
         with self._lock:
             self._sources = self._sources or Sources()
             try:
-                questions = with_sources(asked, self._sources)
-                return [answer_dict(answered(carve_question(each), sources=self._sources)) for each in questions]
+                questions = with_sources(inputs, self._sources)
+                return [
+                    answer_dict(answered(carve_question(question), sources=self._sources)) for question in questions
+                ]
             except SkisnowError as error:
                 return error.message
 
 
-def with_sources(asked: Asked, sources: Sources) -> list[dict[str, Any]]:
-    """Put a chosen snow and a ski of keys into the sources; returns the questions with a word for each ski."""
-    snow = asked.snow
+def with_sources(inputs: CarveInputs, sources: Sources) -> list[dict[str, Any]]:
+    """Register a chosen snow and edited skis in the sources; returns questions that name each ski by a word."""
+    snow = inputs.snow
     if snow is not None and snow.analysis is not None:
         sources.take_snow(snow.snow, results=RESULTS, site=snow.site or None)
     questions = []
-    for question in asked.questions:
+    for question in inputs.questions:
         if isinstance(keys := question["ski"], dict):
             sources.take_ski(DESIGNED, keys)
         questions.append(question | {"ski": DESIGNED if isinstance(keys, dict) else keys})
@@ -173,7 +175,7 @@ class CarvedTurn:
         self._radii: list[Words] = []
         self._cells: dict[str, list[ui.label]] = {}
 
-    def asked(self) -> Asked:
+    def asked(self) -> CarveInputs:
         """Questions of the current inputs.
 
         Raises ParameterError: an input is not complete; the page shows it there.
@@ -241,10 +243,10 @@ class CarvedTurn:
             while self._waiting:
                 self._waiting = False
                 try:
-                    asked = self.asked()
+                    inputs = self.asked()
                 except ParameterError:  # shown at the input
                     continue
-                answers = asyncio.ensure_future(run.io_bound(self._solver.answers, asked))
+                answers = asyncio.ensure_future(run.io_bound(self._solver.answers, inputs))
                 if not (await asyncio.wait((answers,), timeout=PATIENCE_S))[0]:
                     self._status.set_text(COMPUTING)
                 result = await answers

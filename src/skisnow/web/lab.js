@@ -370,7 +370,7 @@
     telling.get(once)();
   }
 
-  // A photo as JPEG in base64: at most 1600 px, and as coarse as the store needs it; drawing it anew drops what a camera adds, such as a position.
+  // A photo as JPEG in base64: at most 1600 px, and as coarse as the store needs it; drawing it again drops data that a camera adds, such as a position.
   async function photo(event, emit) {
     const field = event.target;
     try {

@@ -268,7 +268,7 @@ class Runs:
         return line
 
     def _finished_job(self, job: Job, last: str, *, cancelled: bool) -> Job:
-        """Job with its state and a sentence in the language in which it was asked for."""
+        """Job with its final state and a sentence about it in the language of its request."""
         summary = self.folder / job.name / "summary.json"
         with in_language(job.language):
             if not summary.is_file():

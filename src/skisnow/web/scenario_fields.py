@@ -32,7 +32,7 @@ _DIGITS: Final = 6
 
 
 def field_label(key: Quantity) -> str:
-    """Name of an input at its field: label, symbol and unit.
+    """Label of the field of an input: name, symbol and unit.
 
     >>> from skisnow.scenario.keys import SCENARIO_KEYS
     >>> called(SCENARIO_KEYS["slope.angle_deg"]), field_label(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
@@ -65,7 +65,7 @@ def _as_sentence(words: str) -> str:
 
 
 def typed_form(value: Any) -> str:
-    """A value as on the command line, rounded for a field.
+    """A value as it is typed on the command line, rounded for a field.
 
     >>> written([6.0, 8.0]), written(True), typed_form(0.20669325758298024)
     ('[6, 8]', 'true', '0.206693')

@@ -324,7 +324,7 @@ def log_socket_errors() -> None:
 
 
 def _without_errors(name: str, handler: Callable[..., Any]) -> Callable[..., Any]:
-    """Handler that logs errors from malformed messages of strangers; errors of pages are caught elsewhere."""
+    """Wrap a socket handler: malformed messages are logged instead of raised; pages catch their own errors."""
 
     @wraps(handler)
     async def answered(*arguments: Any) -> Any:

@@ -206,7 +206,7 @@ def said(text: str, client: Client | None = None) -> str:
 
 
 def number_text(number: str, client: Client | None = None) -> str:
-    """A stored number with the signs of the page's language, which accepts the stored ones, too; other text unchanged.
+    """A stored number with the signs of the language of the page; other text is unchanged.
 
     >>> number_text("-3.61"), number_text("2026-02-14")
     ('−3.61', '2026-02-14')

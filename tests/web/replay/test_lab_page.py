@@ -44,7 +44,7 @@ def test_runs_are_listed_and_two_are_watched(served: Any, page: Any) -> None:
     page.get_by_text("2 runs kept").wait_for()
     assert page.get_by_role("heading", name=ODD).count() == 1  # text, no mark-up
     page.get_by_label("Run", exact=True).select_option("tight")
-    page.get_by_label("Laid over it, translucent").select_option(ODD)
+    page.get_by_label("Second run, translucent").select_option(ODD)
     page.get_by_role("button", name="Watch together").click()
     page.wait_for_function("window.skisnowReplay")
     assert page.evaluate("[skisnowReplay.run.title, skisnowReplay.ghost.title]") == ["tight", ODD]

@@ -169,7 +169,7 @@ class Pool:
         self._crew = None
 
     def _compute_chunks(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
-        """Hand out chunks, two for each worker at a time; their size follows from the time that points take."""
+        """Rows of each finished chunk. Each worker has two chunks; their size follows from the time per point."""
         if self._crew is None:
             self._crew = (
                 ProcessCrew(self._function, self._workers)
@@ -204,7 +204,7 @@ class Pool:
 
 
 def worker_count(workers: int | None) -> int:
-    """A number of workers; None: the number of cores available to this process."""
+    """The given number of workers; None: the number of cores available to this process."""
     if workers is None:
         return available_cores()
     if workers < 1:
@@ -227,7 +227,7 @@ LOCAL: Final = ("processes", "threads")
 
 
 def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Crew:
-    """Executor of the chunks.
+    """Crew for an executor: processes or threads of this computer, a Dask scheduler, or an executor of the caller.
 
     workers: number of workers of this computer, or of an executor that does not report its number.
     """
@@ -250,7 +250,7 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
 
 
 def require_executor(executor: ExecutorLike | None) -> None:
-    """Refuse a scheduler that nothing can come of, before the work begins."""
+    """Reject an unusable executor before the work begins."""
     if executor is None or executor in LOCAL or not isinstance(executor, str):
         return
     from .dask_cluster import require_scheduler
@@ -259,7 +259,7 @@ def require_executor(executor: ExecutorLike | None) -> None:
 
 
 def _workers_of(executor: Executor) -> int | None:
-    """Names of the number of workers: those of the standard library, MPI's of mpi4py."""
+    """Number of workers of an executor of the standard library or mpi4py; 0 if it does not report one."""
     names = ("_max_workers", "num_workers")
     workers = next((getattr(executor, name) for name in names if hasattr(executor, name)), None)
     return workers if isinstance(workers, int) and workers > 0 else None

@@ -43,12 +43,12 @@ CHUNK_S: Final = 0.25
 
 
 def lost_workers_message() -> Message:
-    """Explanation of a lost scheduler."""
+    """Message for workers that were lost because their scheduler ended."""
     return Message("The scheduler was lost, or gave the work up.")
 
 
 class Crew(ABC):
-    """Takes chunks of points and gives futures of their rows."""
+    """Workers that compute chunks of points; each chunk gives a future with its rows."""
 
     largest: int = LARGEST
     """Points of one chunk."""
@@ -74,7 +74,7 @@ class Crew(ABC):
 
     @abstractmethod
     def end(self, *, at_once: bool) -> None:
-        """Stop the workers that this has started; `at_once`: in the middle of their work, if possible."""
+        """Stop the workers that this crew started; `at_once`: in the middle of their work, if possible."""
 
 
 class ProcessCrew(Crew):
@@ -116,7 +116,7 @@ class ProcessCrew(Crew):
         self._executor = None
 
     def _disconnect(self) -> None:
-        """Close the connection to the workers, on which each of them ends."""
+        """Close the connection to the workers; each worker ends when it is closed."""
         if self._leash is not None:
             self._leash.close()
         self._leash = None
@@ -143,7 +143,7 @@ class ThreadCrew(Crew):
 
 
 class ExecutorCrew(Crew):
-    """An executor of the caller, on this computer or others: each chunk carries the function.
+    """Executor of the caller, on this computer or others; each chunk carries the pickled function.
 
     function: pickled once.
     executor: it is not shut down here.
@@ -269,7 +269,7 @@ def compute_rows(function: PointFunction, points: Sequence[Numbered]) -> Done:
 
 
 def compute_on_worker(packed: bytes, identity: Identity, folder: str, points: Sequence[Numbered]) -> Done:
-    """Rows of points by a pickled function; the worker caches the last four functions.
+    """Compute rows of points by a pickled function; the worker caches the last four functions.
 
     identity: version and core of the sender's skisnow.
     folder: working folder of the sender; the worker changes to it if it exists here.

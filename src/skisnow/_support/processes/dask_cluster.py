@@ -66,7 +66,7 @@ def _unanswered(address: str, error: Exception) -> Message:
 
 
 class DaskCrew(ExecutorCrew):
-    """Workers of a Dask client. The scheduler gives a chunk of a worker that was lost to another one."""
+    """Workers of a Dask client. The scheduler repeats the chunk of a lost worker on another one."""
 
     chunk_s = CHUNK_S
 
@@ -83,7 +83,7 @@ class DaskCrew(ExecutorCrew):
         return self._counted
 
     def require_alive(self) -> None:
-        """Refuse to wait for a scheduler that has been away for long; one that breaks for a moment comes back."""
+        """Raise an error if the scheduler is gone for long; a short interruption is tolerated."""
         if self._client.status == "running":
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":

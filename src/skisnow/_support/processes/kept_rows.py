@@ -31,7 +31,7 @@ _BUSY: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 
 
 class KeptRows:
-    """The finished rows of one batch, in an SQLite file. Without a path they are only remembered.
+    """Finished rows of one batch in an SQLite file; in memory without a path.
 
     Each row is written as soon as it is finished. A kill at any moment loses no row that `add` has accepted. Only one
     process at a time has the file open. After a power failure, rows that had not reached the disk are computed again.
@@ -91,7 +91,7 @@ class KeptRows:
 
     @classmethod
     def _locked(cls, path: Path, about: Mapping[str, str] | None = None) -> Self:
-        """Rows of a locked file; `about` begins a new file, and must have the fingerprint of an existing one."""
+        """Open and lock a file; `about` begins a new file, and must have the fingerprint of an existing one."""
         with _errors(path):
             rows = cls(path)
         try:
@@ -133,7 +133,7 @@ class KeptRows:
         return entries
 
     def add(self, rows: Iterable[NumberedText]) -> int:
-        """Keep rows, all of them or none: after this call a kill does not lose them. Gives their number."""
+        """Store rows, all or none, so that a kill does not lose them; return their number."""
         new = list(rows)
         with self._named_errors():
             self._database.execute("begin")
@@ -145,7 +145,7 @@ class KeptRows:
         return len(new)
 
     def form(self, text: str) -> str:
-        """The row of a JSON object as it is kept."""
+        """Stored text of a row that is given as a JSON object."""
         return text if self.columns is None else json_text([own_json(text).get(name) for name in self.columns])
 
     def __len__(self) -> int:
@@ -198,7 +198,7 @@ class KeptRows:
         return row if self.columns is None else dict(zip(self.columns, row, strict=True))
 
     def close(self) -> None:
-        """Leave the file for a later start."""
+        """Close the file so that a later start can continue it."""
         self._database.close()
 
     def remove(self) -> None:

@@ -15,7 +15,7 @@ _WORDS: Final = {"yes": True, "y": True, "no": False, "n": False}
 
 
 def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
-    """Keys of a head, as they are written, with their values.
+    """Keys of the header of an OpenSim file as written, with their values.
 
     >>> head_of_motion(["Coordinates", "nRows = 2", "inDegrees=no"])
     {'nRows': '2', 'inDegrees': 'no'}

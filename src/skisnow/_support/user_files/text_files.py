@@ -75,7 +75,7 @@ def plain_text(path: str | Path, *, most_bytes: int) -> str:
 
 
 class ContentError(ParameterError):
-    """A file, or a text in its stead, cannot be read.
+    """A file, or a text used instead of a file, cannot be read.
 
     what, fields: problem and allowed values, without the file.
     line: line of the file, where one can be named.
@@ -164,7 +164,7 @@ def require_sound(value: object, *, infinite: bool, place: Place = ()) -> None:
 
 
 def too_deep(line: int | None = None) -> ContentError:
-    """The error for brackets within brackets within brackets."""
+    """Error for brackets that are nested too deeply."""
     return ContentError("brackets are nested more than {deepest} deep. Remove some.", line=line).tag(
         "nested_too_deep", deepest=DEEPEST
     )

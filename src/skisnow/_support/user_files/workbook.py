@@ -142,7 +142,7 @@ def _partly_struck(archive: zipfile.ZipFile, sheet: bytes) -> Iterable[tuple[int
 
 
 def _call_openpyxl(doing: Callable[[], Any]) -> Any:
-    """Steps of openpyxl, which raises a dozen kinds of errors for damaged files."""
+    """Call openpyxl, and replace its dozen kinds of errors for damaged files by one."""
     try:
         return doing()
     except ContentError:
@@ -247,7 +247,7 @@ def _pieces(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterable[bytes]:
 
 
 class _Part:
-    """Looks at the XML of one part as it comes, and keeps nothing of it."""
+    """Checker of the XML of one part of a workbook, fed in pieces; it stores nothing."""
 
     def __init__(self, name: str) -> None:
         self._name = name

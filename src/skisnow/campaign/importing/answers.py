@@ -97,7 +97,7 @@ def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
     saved = saved_templates(named)
     path = Path(place) / CAMPAIGN_FILE if Path(place).is_dir() else saved.get(str(place), Path(place))
     if not path.exists():
-        raise ParameterError("{name} is no saved template and no campaign. Saved: {saved}.").tag(
+        raise ParameterError("{name} is neither a saved template nor a campaign. Saved: {saved}.").tag(
             "no_template", name=str(place), saved=list(saved) or Message("none")
         )
     return _template(read_toml(path), str(path))

@@ -137,7 +137,7 @@ def _table(
 
 
 def _concerns(note: Note, sheet: str, with_tables: set[str]) -> bool:
-    """True for a note on the sheet, or on a sheet without tables."""
+    """True for a note on the sheet of a table, or on a sheet without tables."""
     return note.sheet == sheet or note.sheet not in with_tables
 
 
@@ -247,7 +247,7 @@ def _repeated_names(tables: Sequence[ImportedTable]) -> dict[str, set[str]]:
         own = {row.cells[table.form.key] for row in table.rows if row.cells.get(table.form.key)}
         names.setdefault(table.form.file, Counter()).update(own)
     repeated = {file: {name for name, times in count.items() if times > 1} for file, count in names.items()}
-    return {file: found for file, found in repeated.items() if found}
+    return {file: problems for file, problems in repeated.items() if problems}
 
 
 def _renamed(

@@ -87,20 +87,21 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
         taken, below = below, set()
         groups = [group for group in _table_groups(sheet, row, ignored) if not taken & set(group)]
         single = [group for group in groups if answer or _is_header(_texts(sheet, row, group))]
-        pairs = [] if answer else [pair for pair in _pairs(sheet, row, groups, ignored) if not taken & set(pair)]
+        two_rows = () if answer else _two_row_headings(sheet, row, groups, ignored)
+        pairs = [pair for pair in two_rows if not taken & set(pair)]
         heads += [(row, group, 1) for group in single if not any(set(group) & set(pair) for pair in pairs)]
         heads += [(row, group, 2) for group in pairs]
         below.update(column for group in pairs for column in group)
     sections: list[Section] = []
     for row in dict.fromkeys(row for row, _, _ in heads):
         on_row = [_section(sheet, row, group, count, heads, ignored) for at, group, count in heads if at == row]
-        filled = [section for section in on_row if any(_is_filled(section, at) for at in _body(section))]
+        filled = [section for section in on_row if any(_is_filled(section, at) for at in _data_range(section))]
         sections += _split_series(filled, ignored)
     return sections
 
 
-def _pairs(sheet: Sheet, row: int, groups: Sequence[range], ignored: Ignored) -> Iterator[range]:
-    """Columns with headings on this row and the next: parts that a hyphen joins, or no headings without each other."""
+def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range], ignored: Ignored) -> Iterator[range]:
+    """Column groups whose headings run over this row and the next: a hyphen joins them, or neither row is complete."""
     if row + 1 >= len(sheet.rows) or ignored.row(sheet.name, row + 1):
         return
     lower = list(_groups(sheet, (row + 1,), ignored))
@@ -147,7 +148,7 @@ def _stated(heading: str) -> set[str]:
     return {column for form in KINDS.values() if (column := stated_column(form, heading))}
 
 
-def _body(section: Section) -> range:
+def _data_range(section: Section) -> range:
     return range(section.start, section.end)
 
 
@@ -168,7 +169,7 @@ def _groups(sheet: Sheet, rows: Sequence[int], ignored: Ignored) -> Iterator[ran
 
 
 def _table_groups(sheet: Sheet, row: int, ignored: Ignored) -> list[range]:
-    """Groups of a row; one range across empty columns if only all its groups have the columns of a table."""
+    """Column groups with cells on a row; empty columns separate groups unless only the whole row makes a table."""
     groups = list(_groups(sheet, (row,), ignored))
     end = next((at for at in range(row, len(sheet.filled)) if not any(sheet.filled[at])), len(sheet.filled))
     headed = [column for column in range(len(sheet.filled[row])) if sheet.cell(row, column, filled=True)]

@@ -118,7 +118,7 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
         named = named_separator(text.text[:1000])
         separators = [named] if named in SEPARATOR_NAMES else list(SEPARATOR_NAMES)
         texts = [CsvText(data, text.codec, text.foreign_encoding, mark, named is not None) for mark in separators]
-        begins = [max(map(count, _records(each, most=_HEADING_ROWS)), default=0) for each in texts]
+        begins = [max(map(count, _records(text, most=_HEADING_ROWS)), default=0) for text in texts]
         best = texts[begins.index(max(begins))]
         return _records(best), best.separator
     except UnreadableTextError as failure:

@@ -51,7 +51,7 @@ class Blocks:
         return np.concatenate(([0], np.cumsum(count))).astype(np.int64)
 
     def first_chosen(self, mask: BoolArray) -> IntArray:
-        """First row of each block with ``mask``, or the block's first row."""
+        """First row of each block at which ``mask`` is True, otherwise the first row of the block."""
         chosen = self.start.copy()
         rows = np.flatnonzero(mask)[::-1]
         chosen[self.of_row[rows]] = rows  # of repeated indices the last assignment stays

@@ -236,7 +236,7 @@ def conversion(unit: str, column: str) -> UnitConversion | None:
 
 
 def folded_unit(column: str) -> str:
-    """Unit of a column in the form of headings."""
+    """Unit of a column in small letters, as the tables of this module list units."""
     return _OWN[unit_of_column(column)][0].casefold()
 
 

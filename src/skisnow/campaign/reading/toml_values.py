@@ -95,7 +95,7 @@ class TomlValues:
                 Message("Put the numbers of {key} in brackets.", key=key),
             )
             return ()
-        checked = (self._checked(value, one) for one, value in quantity.numbered(values))
+        checked = (self._checked(value, one) for one, value in quantity.single_quantities(values))
         return tuple(value for value in checked if value is not None)
 
     def _checked(self, value: object, quantity: Quantity) -> float | None:

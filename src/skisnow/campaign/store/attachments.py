@@ -86,7 +86,7 @@ def position_entry(file: str, test: str, position: Position, *, who: str = "") -
 
 
 def _entry(file: str, test: str, cells: dict[str, str], who: str) -> NewEntry:
-    name = f"{file.removesuffix('.csv')} {test} {uuid4().hex[:8]}"  # of its own: two laptops never write the same one
+    name = f"{file.removesuffix('.csv')} {test} {uuid4().hex[:8]}"  # unique: two laptops never write the same one
     return NewEntry(
         action="add", file=ATTACHMENTS, test=name, cells={"table": file, "test": test, **cells}, position=0, who=who
     )
@@ -95,21 +95,21 @@ def _entry(file: str, test: str, cells: dict[str, str], who: str) -> NewEntry:
 def attachments_of(campaign: ReplayedCampaign, file: str, test: str) -> list[ReplayedTest]:
     """Photos and positions of a test that are not cancelled, in the order of entry."""
     return [
-        each
-        for each in campaign.of_file(ATTACHMENTS)
-        if not each.cancelled and (each.rows[0].cells["table"], each.rows[0].cells["test"]) == (file, test)
+        entry
+        for entry in campaign.of_file(ATTACHMENTS)
+        if not entry.cancelled and (entry.rows[0].cells["table"], entry.rows[0].cells["test"]) == (file, test)
     ]
 
 
 def attachment_files(campaign: ReplayedCampaign, before: bytes = b"") -> Iterator[tuple[str, bytes]]:
     """Photos, and attachments.csv with their rows and those of positions after the rows of `before`."""
     rows: list[dict[str, str]] = []
-    for number, each in enumerate(campaign.of_file(ATTACHMENTS), start=1):
-        entered, cells = each.rows[0].entered, dict(each.rows[0].cells)
-        if each.cancelled:
+    for number, attachment in enumerate(campaign.of_file(ATTACHMENTS), start=1):
+        entered, cells = attachment.rows[0].entered, dict(attachment.rows[0].cells)
+        if attachment.cancelled:
             continue
-        if photo := photo_of(each):
-            path = f"photos/{number:04d}-{each.name.rpartition(' ')[2]}.jpg"
+        if photo := photo_of(attachment):
+            path = f"photos/{number:04d}-{attachment.name.rpartition(' ')[2]}.jpg"
             yield path, photo
             cells["photo"] = path
         cells |= {"time": entered.at, "who": entered.who}

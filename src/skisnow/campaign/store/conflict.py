@@ -126,7 +126,7 @@ class Divergence:
         return ("here", "there", "both") if together else ("here", "there")
 
     def in_words(self, name: str) -> Conflict:
-        """The conflict in words, with the name of the campaign."""
+        """The conflict as text for the user, with the name of the campaign."""
         entries_by_uid = {entry.uid: entry for entry in (*self.common, *self.here, *self.there)}
         return Conflict(
             id=self.id,

@@ -120,7 +120,7 @@ def _place_of(error: BaseException) -> StorePlace | None:
 
 @contextmanager
 def reading(engine: Engine) -> Iterator[Connection]:
-    """Connection with a snapshot of the store, independent of other writers; it cannot commit."""
+    """Connection that reads a snapshot of the store, independent of other writers; it cannot commit."""
     with (
         engine.connect() as connection
     ):  # ended by a rollback, which works even on damaged files, where COMMIT does not
@@ -140,7 +140,7 @@ def writing(engine: Engine) -> Iterator[Connection]:
 
 @contextmanager
 def savepoint(connection: Connection) -> Iterator[None]:
-    """Savepoint: a failure inside leaves the transaction usable, which a server would otherwise abort."""
+    """Savepoint: after a failure inside, the transaction stays usable; a server would abort it otherwise."""
     if is_file(connection):
         yield
     else:

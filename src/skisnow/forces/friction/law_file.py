@@ -98,7 +98,7 @@ class FrictionFile:
         Parameters
         ----------
         temperature
-            Of the snow's surface (°C); None: not known, which only a law without temperature accepts.
+            Temperature of the snow's surface (°C); None: not known, which only a law without temperature accepts.
         liquid_water
             In the volume (%).
 
@@ -154,7 +154,7 @@ def read_friction_file(path: str | Path) -> FrictionFile:
     values = read_toml(path)
     tables = values.get("state", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise ParameterError("{path}: state is no list of tables. Write [[state]] above the keys of each state").tag(
+        raise ParameterError("{path}: state is not a list of tables. Write [[state]] above the keys of each state").tag(
             "wrong_kind", path=path
         )
     head = checked_table(FrictionFile, values, str(path), further=("state",))

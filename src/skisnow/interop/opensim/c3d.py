@@ -255,6 +255,7 @@ def c3d_content(data: bytes) -> C3dContent:
 
 
 def _number(parameters: Mapping[tuple[str, str], Values], key: tuple[str, str], default: float) -> float:
+    """Finite number of a parameter; the default if it is missing or has another form."""
     numbers = parameters.get(key, ())
     return numbers[0] if len(numbers) == 1 and isinstance(numbers[0], float) and math.isfinite(numbers[0]) else default
 

@@ -134,24 +134,24 @@ def snow_profiles(data: ReportData, _styles: Sequence[SiteStyle]) -> Drawing | L
         return LeftOut(name, Message("Profiles of the snow"), Message("no recording is used"))
     sites = sorted({site for site, _ in profiles} | samples.keys())
     colours = {site: COLOURS[place % len(COLOURS)] for place, site in enumerate(sites)}
-    found = [(colours[site], profile) for site, profile in profiles]
+    lines = [(colours[site], profile) for site, profile in profiles]
     panels = [
         (key, label) for key, label in _PANELS
-        if any(np.isfinite(getattr(each, key)).any() for _, each in found) or (samples and key == "snow_density")
+        if any(np.isfinite(getattr(profile, key)).any() for _, profile in lines) or (samples and key == "snow_density")
     ]  # fmt: skip
     figure = new_figure(width_mm=max(85.0, 60.0 * len(panels)), height_mm=100.0)
     every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for axes, (key, label) in zip(every, panels, strict=True):
-        for colour, profile in found:
+        for colour, profile in lines:
             axes.plot(_shown(profile, key), profile.depth / MM, color=colour, linewidth=0.6, alpha=0.8)
         for site, (depth, density) in samples.items() if key == "snow_density" else ():
             axes.plot(density, depth / MM, "o-", color=colours[site], markersize=3.0, linewidth=0.8)
         axes.set_xlabel(label)
-    forces = np.concatenate([each.force for _, each in found] or [np.ones(1)])
+    forces = np.concatenate([profile.force for _, profile in lines] or [np.ones(1)])
     if spans_a_decade(forces):
         logarithmic(every[0], "x", forces)
     every[0].set_ylabel(Message("depth below the snow surface (mm)"))
-    depths = [each.depth for _, each in found] + [depth for depth, _ in samples.values()]
+    depths = [profile.depth for _, profile in lines] + [depth for depth, _ in samples.values()]
     every[0].set_ylim(1.03 * float(np.concatenate(depths).max()) / MM, 0.0)
     legend_below(figure, [Line2D([], [], color=colours[site], label=figure_text(site)) for site in sites])
     mark_synthetic(data, every[-1])
@@ -170,7 +170,7 @@ def _profiles(pen: SnowMicroPenAnalysis | None) -> Iterator[tuple[str, DepthProf
     """Site and profile of the first used recordings."""
     if pen is None:
         return
-    used = [index for index, each in enumerate(pen.evaluated) if each.is_used]
+    used = [index for index, recording in enumerate(pen.evaluated) if recording.is_used]
     for index in used[:MOST_DRAWN]:
         recordings, surface = pen.recordings, pen.evaluated[index].surface
         yield recordings.site[index], depth_profile(recordings.profile(index), recordings.settings, surface)
@@ -181,12 +181,12 @@ def _samples_by_site(samples: DensitySamples | None) -> dict[str, tuple[FloatArr
     if samples is None:
         return {}
     place, site = samples.in_profile, np.array(samples.site)
-    found = {}
+    by_site = {}
     for name in sorted(set(site[place].tolist())):
         rows = np.flatnonzero(place & (site == name))
         rows = rows[np.argsort(samples.sample_depth[rows])]
-        found[name] = samples.sample_depth[rows], samples.snow_density[rows]
-    return found
+        by_site[name] = samples.sample_depth[rows], samples.snow_density[rows]
+    return by_site
 
 
 def _shown(profile: DepthProfile, key: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -130,9 +130,9 @@ def _recordings(results: Json, tag: str) -> Iterator[str]:
     for site in dict.fromkeys(row["site"] for row in rows):
         mine = [row for row in rows if row["site"] == site]
         means = [
-            f"{name} {plain(sum(known) / len(known))} {unit}"
+            f"{name} {plain(sum(values) / len(values))} {unit}"
             for key, name, unit in _OF_RECORDINGS
-            if (known := [row[key] for row in mine if row[key] is not None])
+            if (values := [row[key] for row in mine if row[key] is not None])
         ]
         yield f"SnowMicroPen{tag} at {site}: mean {', '.join(means)} (by {pen['relation']}), recordings: {len(mine)}"
 
@@ -140,12 +140,12 @@ def _recordings(results: Json, tag: str) -> Iterator[str]:
 def _by_relation(row: Json) -> str:
     """Density, hardness and S_f of a site by published relations."""
     density, stress, index = (row[key] for key in ("snow_density_kg_per_m3", "S_f_N_per_mm2", "hand_hardness_index"))
-    known = "none" if density is None else f"{plain(density)} kg/m³"
+    density_text = "none" if density is None else f"{plain(density)} kg/m³"
     hand = "outside its range" if index is None else f"{row['hand_hardness']} (index {plain(index)})"
-    given = "outside its range" if stress is None else f"{plain(stress)} N/mm²"
+    stress_text = "outside its range" if stress is None else f"{plain(stress)} N/mm²"
     return (
-        f"density at {row['site']} ({row['source']}): {known}, n = {row['n']}; by published relations, not by plate "
-        f"tests: hand hardness {hand} ({row['hardness_relation']}), S_f {given}; none gives H_V"
+        f"density at {row['site']} ({row['source']}): {density_text}, n = {row['n']}; by published relations, not by "
+        f"plate tests: hand hardness {hand} ({row['hardness_relation']}), S_f {stress_text}; none gives H_V"
     )
 
 

@@ -147,8 +147,8 @@ def _p(p: float) -> Message:
 def _comparison(row: Json) -> tuple[Message, tuple[float, float] | None]:
     """The larger group first; also the interval of that ratio."""
     larger, smaller, ratio = row["group_a"], row["group_b"], row["ratio"]
-    known = row["interval"] is not None and all(map(_is_number, row["interval"]))
-    ends = tuple(row["interval"]) if known else None
+    has_interval = row["interval"] is not None and all(map(_is_number, row["interval"]))
+    ends = tuple(row["interval"]) if has_interval else None
     if ratio < 1.0:
         larger, smaller, ratio = smaller, larger, 1.0 / ratio
         ends = None if ends is None else (1.0 / ends[1], 1.0 / ends[0])

@@ -51,7 +51,7 @@ def figure_data(figure: Figure) -> str:
             number += 1
             series = _series(artist, axes, names) or str(number)
             step = -(-len(points) // MOST_CELLS)
-            columns = [_texts(values[::step], known) for values, known in zip(points.T, ticks, strict=True)]
+            columns = [_texts(values[::step], names) for values, names in zip(points.T, ticks, strict=True)]
             numbers = (str(point) for point in range(1, len(points) + 1, step))
             rows += [(*head, series, *cells) for cells in zip(numbers, *columns, strict=True)]
     return csv_text(rows)
@@ -60,7 +60,7 @@ def figure_data(figure: Figure) -> str:
 def _label(axes: Axes, which: str) -> str:
     """Label of an axis, which only one of the panels with a shared axis may have."""
     shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
-    texts = (getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes)))
+    texts = (getattr(panel, f"get_{which}label")() for panel in (axes, *shared.get_siblings(axes)))
     return " ".join(next(filter(None, texts), "").split())
 
 
@@ -99,8 +99,8 @@ def _points(artist: Artist, axes: Axes) -> FloatArray:
     values = artist.get_array() if isinstance(artist, PathCollection | QuadMesh | LineCollection) else None
     colours = np.full(len(places), np.nan)
     if values is not None:
-        each: FloatArray = np.ma.filled(np.ma.asarray(values, float).ravel(), np.nan)
-        colours = np.repeat(each, [len(part) for part in parts]) if len(parts) == each.size else each
+        numbers: FloatArray = np.ma.filled(np.ma.asarray(values, float).ravel(), np.nan)
+        colours = np.repeat(numbers, [len(part) for part in parts]) if len(parts) == numbers.size else numbers
     points = np.column_stack([places, colours[: len(places)]])
     return points[np.isfinite(points[:, 2 if isinstance(artist, QuadMesh) else 0])]
 

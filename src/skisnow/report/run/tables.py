@@ -96,7 +96,7 @@ def skis_table(run: Run) -> Table:
     """Table with total force, normal force and grip utilisation of each ski."""
     histories = run.skis.total_force, run.skis.normal_force, grip_utilisation(run), gross_grip_utilisation(run)
     rows = [
-        (name, *(value for each in histories for value in _middle_and_high(each[:, ski])))
+        (name, *(value for history in histories for value in _middle_and_high(history[:, ski])))
         for ski, name in enumerate(SKIS)
     ]
     return Table(

@@ -46,14 +46,14 @@ def turns_table(summary: TrackSummary) -> Table:
 
 
 def _record(row: dict[str, Any]) -> dict[str, Any]:
-    known = {key: None if isinstance(value, float) and not np.isfinite(value) else value for key, value in row.items()}
+    finite = {key: None if isinstance(value, float) and not np.isfinite(value) else value for key, value in row.items()}
     for name, low, high in (
         ("radius", "radius_low_m", "radius_high_m"),
         ("lean", "lean_low_deg", "lean_high_deg"),
     ):
-        pair = known[low], known[high]
-        known[name] = None if None in pair else pair
-    return known | {"side": outcome_words(row["side"])}
+        pair = finite[low], finite[high]
+        finite[name] = None if None in pair else pair
+    return finite | {"side": outcome_words(row["side"])}
 
 
 def page_of_track(path: Path, name: str, language: str = ENGLISH, *, back: str = "") -> str:

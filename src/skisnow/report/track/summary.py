@@ -314,9 +314,9 @@ def turn_rows(summary: TrackSummary) -> list[dict[str, Any]]:
 
 
 def _turn_row(summary: TrackSummary, number: int, turn: Turn) -> dict[str, Any]:
-    known = np.isfinite(summary.motion.speed)
+    has_speed = np.isfinite(summary.motion.speed)
     moments = [turn.start, turn.end, turn.least_radius_time]
-    speeds = np.interp(moments, summary.motion.time[known], summary.motion.speed[known])
+    speeds = np.interp(moments, summary.motion.time[has_speed], summary.motion.speed[has_speed])
     low, high = turn.least_radius_interval
     lean, most, least = np.arctan(speeds[2] ** 2 / (GRAVITY * np.array([turn.least_radius, low, high]))) / DEGREE
     values = (

@@ -7,7 +7,7 @@ Notes
 -----
 Arguments are in N and m; L is in the equations in mm.
 
-Fit a is over all samples, fit b without the 5 % with the largest residuals. There is none for the surface area. None of
+Fit a is over all samples, fit b without the 5 % with the largest residuals. No fit exists for the surface area. None of
 the snow was groomed.
 """
 

@@ -95,16 +95,16 @@ _STRAIGHT: Final = 10.0
 def _checked_speed(
     recording: Recording, speed: FloatArray, time: FloatArray, place: FloatArray
 ) -> tuple[FloatArray, tuple[str, ...]]:
-    """Speeds (n,) (m/s), and a note; NaN if a device that has no speed wrote zeros.
+    """Speeds (n,) (m/s) that fit the places, and notes; all NaN if a device without a speed sensor wrote zeros.
 
     time: (n,) s. place: (n, 2) m.
     Raises FieldDataError: the speeds of a format that states no unit do not fit the places and times.
     """
-    known = np.flatnonzero(np.isfinite(place).all(axis=1) & np.isfinite(speed))
-    if not len(known):
+    placed = np.flatnonzero(np.isfinite(place).all(axis=1) & np.isfinite(speed))
+    if not len(placed):
         return speed, ()
-    after = np.searchsorted(time[known], time[known] + _PAIR[0])
-    begin, end = known[after < len(known)], known[after[after < len(known)]]
+    after = np.searchsorted(time[placed], time[placed] + _PAIR[0])
+    begin, end = placed[after < len(placed)], placed[after[after < len(placed)]]
     begin, end = begin[time[end] - time[begin] <= _PAIR[1]], end[time[end] - time[begin] <= _PAIR[1]]
     by_places = np.hypot(*(place[end] - place[begin]).T) / (time[end] - time[begin])
     moving = by_places > _MOVING

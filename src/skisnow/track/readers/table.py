@@ -355,7 +355,7 @@ def _columns(headings: Sequence[str], is_geodetic: bool, name: str, place: str) 
                 continue
             column, factor, is_vague = meaning
         meanings.setdefault(column, []).append((place_in_row, factor, is_vague))
-    if "time" in meanings:  # a time zone next to the time is no time
+    if "time" in meanings:  # a time zone next to the time is not a time
         meanings["time_s"] = [reading for reading in meanings.get("time_s", []) if reading[1]]
     columns = {}
     for column, places in meanings.items():

@@ -199,6 +199,7 @@ _DONE: Final = {
 
 
 def _entry_words(entry: JournalEntry, view: TableView) -> str:
+    """Content of an entry of the history in words."""
     cells = {column: number_text(text) for column, text in entry.cells.items()}
     if entry.is_from_file:
         return entry.why
@@ -290,14 +291,14 @@ class Attachments:
         test = self._test()
         self._list.clear()
         with self._list:
-            found = attachments_of(self._view.session.campaign, self._view.file, test)
+            attachments = attachments_of(self._view.session.campaign, self._view.file, test)
             in_files = self._view.session.attached_in_files(self._view.file, test)
-            if found or in_files:
+            if attachments or in_files:
                 heading(Message("Test {name}", name=test), 4)
             for row in in_files:
                 place = ", ".join(filter(None, (row.get("latitude_deg"), row.get("longitude_deg"))))
                 Words(Message("In the files: {attachment}", attachment=row.get("photo") or place)).classes("quiet")
-            for attachment in found:
+            for attachment in attachments:
                 with ui.element("div").classes("acts"):
                     Words(_words(attachment))
                     button(Message("Remove"), lambda attachment=attachment: self._remove(attachment), "small")

@@ -135,7 +135,7 @@ def checked_fields(
 
 
 def error_text(error: SkisnowError, *, name: str = "") -> str:
-    """An error in the language of the page; ``name`` of the field (default: the label of the column)."""
+    """Text of an error in the language of the page; ``name`` of the field (default: the label of the column)."""
     if not isinstance(error, CellError):
         return f"{said(in_words(error.message)).rstrip('.')}."
     return said(error.problem(error.code, name or label(error.column)))

@@ -7,7 +7,7 @@ from typing import Final
 from nicegui import ui
 
 from ..._support.messages import Message
-from ..carved_turn import NUMBERS, RATIOS, SLIDERS, Asked, CarvedTurn, Solver
+from ..carved_turn import NUMBERS, RATIOS, SLIDERS, CarvedTurn, CarveInputs, Solver
 from ..elements import choice, link
 from ..lab_skis import NOTHING, LabSkis
 from ..layout import framed
@@ -26,11 +26,11 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH)
     async def carve(ski: str = "", other: str = "") -> None:
         with framed(Message("Carve"), here=PATH):
-            _Carve(lab, solver, skis, (ski, other)).ask()  # answered while the browser builds the page
+            _CarvePage(lab, solver, skis, (ski, other)).ask()  # answered while the browser builds the page
 
 
-class _Carve(CarvedTurn):
-    """Menus of skis and snow beside the sliders."""
+class _CarvePage(CarvedTurn):
+    """Content of the page Carve: menus of skis and snow next to the sliders of `CarvedTurn`."""
 
     def __init__(self, lab: Lab, solver: Solver, skis: LabSkis, names_in_address: tuple[str, str]) -> None:
         super().__init__(solver)
@@ -60,9 +60,9 @@ class _Carve(CarvedTurn):
         for menu in (self._ski, self._other, self._ratio):
             menu.on_value_change(self.ask)
 
-    def asked(self) -> Asked:
+    def asked(self) -> CarveInputs:
         """Each chosen ski in the same turn."""
         snow = self.snow.chosen()
         turn = self.turn(snow) | {"unloading_ratio": float(str(self._ratio.value))}
         skis = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]
-        return Asked([{"ski": self._skis.word(name), **turn} for name in skis], snow)
+        return CarveInputs([{"ski": self._skis.word(name), **turn} for name in skis], snow)

@@ -12,7 +12,7 @@ from ..._support.messages import Message, joined
 from ...carving.edge_line import BOOT_REACH
 from ...design import Design
 from ...ski.ski_file import keys_text
-from ..carved_turn import NUMBERS, SLIDERS, Asked, CarvedTurn, Solver, with_sources
+from ..carved_turn import NUMBERS, SLIDERS, CarvedTurn, CarveInputs, Solver, with_sources
 from ..elements import Outcome, button, choice, field, option_texts
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
 from ..layout import error_sentence, framed
@@ -57,7 +57,7 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH)
     async def design(ski: str = "", other: str = "") -> None:
         with framed(Message("Design"), here=PATH):
-            _Design(lab, solver, skis, (ski, other)).ask()
+            _DesignPage(lab, solver, skis, (ski, other)).ask()
 
 
 def designed_keys(keys: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
@@ -73,25 +73,25 @@ def designed_keys(keys: Mapping[str, Any], changes: Mapping[str, float]) -> dict
 
 def designable_skis(skis: LabSkis) -> dict[str, Mapping[str, Any]]:
     """Keys of the skis that are made of three widths and a list of stiffness, by name."""
-    found = {}
+    keys_by_name = {}
     for name in skis.names():
         try:
             keys = ski_of_texts(*skis.texts(name))[0].keys or {}
         except SkisnowError:  # *Skis* and *Carve* show the error of a damaged file
             continue
         if all(key in keys for key in WIDTHS) and isinstance(keys.get("EI_N_m2"), list):
-            found[name] = keys
-    return found
+            keys_by_name[name] = keys
+    return keys_by_name
 
 
-def found_design(asked: Asked, target: float) -> Design:
+def found_design(inputs: CarveInputs, target: float) -> Design:
     """The ski of the first question with the sidecut and stiffness that make a radius (m)."""
     from ...design.search import design_ski
     from ...design.task import design_task
     from ...ski.ski_file import Sources
 
     sources = Sources()
-    question = with_sources(asked, sources)[0]
+    question = with_sources(inputs, sources)[0]
     bounds = {key: [float(SHAPES[key][1][0]), float(SHAPES[key][1][-1])] for key in (SIDECUT, STIFFNESS)}
     task = {
         "ski": question.pop("ski"),
@@ -103,8 +103,8 @@ def found_design(asked: Asked, target: float) -> Design:
     return design_ski(design_task(task, sources=sources))
 
 
-class _Design(CarvedTurn):
-    """Sliders of ski and turn on the left, the answer on the right."""
+class _DesignPage(CarvedTurn):
+    """Content of the page Design: sliders of ski and turn on the left, the answer on the right."""
 
     facts = FACTS
     panels = (PEAK, BENT)
@@ -161,14 +161,14 @@ class _Design(CarvedTurn):
         designed = said(Message("{name}, designed", name=name))
         return designed_keys(self._begun[name], changes) | {"name": designed, "source": source}
 
-    def asked(self) -> Asked:
+    def asked(self) -> CarveInputs:
         """The designed ski and its competitor in the same turn."""
         snow = self.snow.chosen()
         turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
         skis: list[Any] = [self._keys()]
         if self._other.value != NOTHING:
             skis.append(self._skis.word(str(self._other.value)))
-        return Asked([{"ski": ski, **turn} for ski in skis], snow)
+        return CarveInputs([{"ski": ski, **turn} for ski in skis], snow)
 
     def fact(self, key: str, answer: dict[str, Any]) -> float | None:
         """Greatest force, deflection at one place, or a number of the answer."""
@@ -186,8 +186,8 @@ class _Design(CarvedTurn):
             target = typed_number(Message("the wanted radius"), str(self._target.value or ""))
             snow = self.snow.chosen()
             turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
-            asked = Asked([{"ski": self._keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
-            design = await run.io_bound(found_design, asked, target)
+            inputs = CarveInputs([{"ski": self._keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
+            design = await run.io_bound(found_design, inputs, target)
         except SkisnowError as error:
             self._found.say(error_sentence(error), bad=True)
             return

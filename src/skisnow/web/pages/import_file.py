@@ -63,13 +63,13 @@ def add_page(lab: Lab) -> None:
         name = imports.name(id_)
         with framed(Message("Import a file"), here=HERE):
             sentence(Message("{file}: check the proposal, answer the questions, then store the campaign.", file=name))
-            page = _Import(imports, id_)
+            page = _ImportPage(imports, id_)
         await page.draw()
 
 
 @dataclass
-class _Import:
-    """One upload with the answers so far."""
+class _ImportPage:
+    """Content of the page for one uploaded file, with the answers so far."""
 
     imports: FileImports
     id_: str
@@ -280,8 +280,8 @@ def _choice_words(text: str) -> str:
 
 def _further_problems(proposal: Proposal) -> list[Problem]:
     """Errors that are not those of questions."""
-    asked = [question.problem for question in proposal.questions]
-    return [problem for problem in proposal.problems if problem not in asked]
+    asked_problems = [question.problem for question in proposal.questions]
+    return [problem for problem in proposal.problems if problem not in asked_problems]
 
 
 def _list_problems(proposal: Proposal) -> None:

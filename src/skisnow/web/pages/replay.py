@@ -49,8 +49,8 @@ def add_page(lab: Lab) -> None:
         with framed(Message("Replay"), here=PATH):
             names, placings = runs.names(), tracks.placings()
             if track in placings:
-                kept = Message("The track {track} is kept. Its turns are below.", track=track)
-                sentence(kept, "good").props("role=status")
+                is_kept = Message("The track {track} is kept. Its turns are below.", track=track)
+                sentence(is_kept, "good").props("role=status")
             sentence(
                 Message(
                     "{n_names} kept, the newest first.", n_names=counted(len(names), "{count} run", "{count} runs")
@@ -67,14 +67,14 @@ def add_page(lab: Lab) -> None:
                 heading(Message("Measured tracks"), 2)
                 _two_tracks_form(list(placings))
             for name, placing in placings.items():
-                asked = f"?track={quote(name, safe='')}"
+                query = f"?track={quote(name, safe='')}"
                 files = {TURNS_FILE: Message("Turns as CSV")}
                 if placing.is_geodetic:
                     files[GPX_FILE] = Message("Track as GPX")
                 with ui.element("div").classes("acts"):
-                    link(Message("Turns of {name}", name=name), f"{TURNS}{asked}")
+                    link(Message("Turns of {name}", name=name), f"{TURNS}{query}")
                     for file, words in files.items():
-                        named(link(words, f"{TURNS}/{file}{asked}"), Message("{words}: {name}", words=words, name=name))
+                        named(link(words, f"{TURNS}/{file}{query}"), Message("{words}: {name}", words=words, name=name))
                     _removal(tracks, name)
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))
@@ -124,7 +124,7 @@ def _side_by_side_form(titles: dict[str, str], tracks: list[str], track: str) ->
     with ui.element("form").props(f'action="{SHOW}" method="get"').classes("acts"):
         _select("run", Message("Run"), titles, names[0])
         other = names[1] if len(names) > 1 and not track else NONE
-        _select("ghost", Message("Laid over it, translucent"), {NONE: NONE, **titles}, other)
+        _select("ghost", Message("Second run, translucent"), {NONE: NONE, **titles}, other)
         _select("track", Message("Measured track next to it"), {name: name for name in (NONE, *tracks)}, track or NONE)
         submit_button(Message("Watch together"), kind="main")
         submit_button(Message("Compare tracks and times"), address=GATES)

@@ -315,7 +315,7 @@ def _course_form() -> None:
 
 
 def menu_with_default(names: Sequence[str]) -> dict[str, str]:
-    """Options of a menu whose first entry leaves the scenario as it is."""
+    """Options of a menu; the first one leaves the scenario unchanged."""
     return {GIVEN: Message("as in the scenario"), **{name: name for name in names}}
 
 

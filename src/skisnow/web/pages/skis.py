@@ -39,7 +39,7 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH, response_timeout=BUILD_S)
     async def show_skis(ski: str = "", added: str = "") -> None:
         with framed(Message("Skis"), here=PATH):
-            page = _Skis(skis, ski)
+            page = _SkisPage(skis, ski)
         if added and ski in skis.saved():
             page.show_added(ski)
         await page.draw()
@@ -54,8 +54,8 @@ def _others(names: Sequence[str]) -> dict[str, str]:
     return {NOTHING: Message("nothing"), EDITED: Message("the edited ski"), **{name: name for name in names}}
 
 
-class _Skis:
-    """Comparison of a ski with another one, with the edited ski, or with nothing."""
+class _SkisPage:
+    """Content of the page Skis: comparison of a ski with another one, with the edited ski, or with nothing."""
 
     def __init__(self, skis: LabSkis, ski: str = "") -> None:
         self._skis = skis

@@ -264,8 +264,8 @@ class _Form:
             texts |= {f"{folder}/{TABLE}": table.encode("utf-8")} if table else {}
             words.append(f"{folder}/{FILE}")
         key = "ski" if self._is_carve else "ski.file" if texts else "ski.name"
-        told = Message("ski: {ski}", ski=names[0]) if len(names) == 1 else Message("skis: {skis}", skis=names)
-        return {key: words[0] if len(words) == 1 else words}, texts, [told]
+        ski_words = Message("ski: {ski}", ski=names[0]) if len(names) == 1 else Message("skis: {skis}", skis=names)
+        return {key: words[0] if len(words) == 1 else words}, texts, [ski_words]
 
     def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
         snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."
