@@ -157,7 +157,7 @@ class _Profile:
         """A compass point, or a number of degrees as text."""
         text = place.text_of(*path)
         is_number = text.replace(".", "", 1).isdecimal()
-        return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._word(text)
+        return f"{self._quantity(ANGLE, place, *path):.10g}" if is_number else self._text_or_empty(text)
 
     def _observer(self) -> str:
         source = self._root.child("srcRef") or self._root.child("metaDataProperty", "MetaData", "srcRef")
@@ -186,12 +186,14 @@ class _Profile:
 
     def _layer(self, profile: Element, layer: Element) -> SnowLayer:
         top, thickness = self._top_and_thickness(profile, layer)
-        hand, upper, lower = (self._word(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom"))
+        hand, upper, lower = (
+            self._text_or_empty(layer.text_of(name)) for name in ("hardness", "hardnessTop", "hardnessBottom")
+        )
         return SnowLayer(
             top=top,
             thickness=thickness,
             hardness=hand or upper or lower,
-            grain_form=self._word(layer.text_of("grainFormPrimary")),
+            grain_form=self._text_or_empty(layer.text_of("grainFormPrimary")),
             grain_size=self._quantity(GRAIN_SIZE, layer, "grainSize", "Components", "avg", words=True),
             comment=layer.text_of("metaData", "comment") or layer.text_of("comment"),
             hardness_bottom=lower if upper and not hand else "",
@@ -223,7 +225,7 @@ class _Profile:
 
     def _forces(self, profile: Element) -> ForceProfile:
         about = profile.child("hardnessMetaData") or profile.child("MetaData") or profile
-        method = self._word(about.text_of("methodOfMeas"))
+        method = self._text_or_empty(about.text_of("methodOfMeas"))
         rows = profile.text_of("Measurements", "tupleList").split()
         if not rows:
             layers = list(profile.every("Layer"))
@@ -326,7 +328,7 @@ class _Profile:
             self._refuse(element, text.strip()[:80], Message("a finite number"), Message("Correct the number."))
         return value
 
-    def _word(self, text: str) -> str:
+    def _text_or_empty(self, text: str) -> str:
         return "" if text.lower() in NIL else text
 
 

@@ -185,7 +185,7 @@ def import_file(options: argparse.Namespace) -> int:
     if options.file is None or options.out is None:
         raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.").tag("missing_option")
     asks = not options.yes and sys.stdin.isatty()
-    proposal = _answered(options, _answers(options), asks=asks)
+    proposal = _ask_questions(options, _answers(options), asks=asks)
     if proposal.problems:
         raise FieldDataError(proposal.problems)
     print("\n".join(preview_lines(proposal)))
@@ -208,7 +208,7 @@ def _answers(options: argparse.Namespace) -> Answers:
     return from_options if options.template is None else read_template(options.template).updated(from_options)
 
 
-def _answered(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:
+def _ask_questions(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:
     """Proposal after questions on the terminal."""
     from ..campaign.importing import propose
 

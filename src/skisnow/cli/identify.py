@@ -88,9 +88,9 @@ def run(options: argparse.Namespace) -> int:
         options.parser.error("--resume continues the results in --out DIR; name it")
     scenario_input = _prepare(options)
     with ending_is_an_interrupt() as ending:
-        result = _identified(options)
+        result = _identify(options)
         with ending.finishing():
-            _tell(options, result, scenario_input)
+            _write_and_print(options, result, scenario_input)
     if ending.requested or ending.pressed or result.outcome == "interrupted":
         return ending.status()
     return 1 if result.outcome in ("too_few_points", "not_converged") else 0
@@ -111,7 +111,7 @@ def _prepare(options: argparse.Namespace) -> ScenarioFile:
     return scenario_input
 
 
-def _identified(options: argparse.Namespace) -> Identification:
+def _identify(options: argparse.Namespace) -> Identification:
     import numpy as np
 
     from ..identification import identify
@@ -148,7 +148,7 @@ def _with_fall_line(options: argparse.Namespace) -> ScenarioInput:
     return replace(scenario_input, identify={**scenario_input.identify, "site": site})
 
 
-def _tell(options: argparse.Namespace, result: Identification, scenario_input: ScenarioFile) -> None:
+def _write_and_print(options: argparse.Namespace, result: Identification, scenario_input: ScenarioFile) -> None:
     from ..identification import identification_dict
 
     contents = identification_dict(result, files=(*scenario_input.files, *options.data))

@@ -207,7 +207,7 @@ class Ending:
         if threading.current_thread() is not threading.main_thread():
             yield
             return
-        before = {number: signal.signal(number, self._ask_later) for number in (signal.SIGINT, signal.SIGTERM)}
+        before = {number: signal.signal(number, self._record_request) for number in (signal.SIGINT, signal.SIGTERM)}
         already, self._later = self._later, False
         try:
             yield
@@ -218,11 +218,11 @@ class Ending:
 
     _later: bool = False
 
-    def _ask(self, *_: Any) -> None:
+    def _interrupt(self, *_: Any) -> None:
         self.requested = True
         raise Ended
 
-    def _ask_later(self, number: int, _: Any) -> None:
+    def _record_request(self, number: int, _: Any) -> None:
         by_system = number == signal.SIGTERM
         self.requested, self.pressed = self.requested or by_system, self.pressed or not by_system
         if self._later:
@@ -239,7 +239,7 @@ def ending_is_an_interrupt() -> Iterator[Ending]:
     if threading.current_thread() is not threading.main_thread():
         yield ending
         return
-    before = signal.signal(signal.SIGTERM, ending._ask)
+    before = signal.signal(signal.SIGTERM, ending._interrupt)
     try:
         yield ending
     finally:

@@ -77,7 +77,7 @@ def write_pages(options: argparse.Namespace) -> int:
         if options.track is not None:
             shown = replay_of_file(options.folder, title=options.title, track=_beside(options, shown))
         ghost = None if second is None else replay_of_file(second)
-    for place in _written(options, shown, ghost):
+    for place in _write_replay(options, shown, ghost):
         print(place, flush=True)
     return 0
 
@@ -106,7 +106,7 @@ def _beside(options: argparse.Namespace, shown: Replay) -> ReplayTrack:
     return measured_track(track, starts_at=options.starts_at_s)
 
 
-def _written(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
+def _write_replay(options: argparse.Namespace, shown: Replay, ghost: Replay | None) -> list[Path]:
     from ..replay import write_moving_replay_model, write_replay, write_replay_model
     from ..replay.model import require_moment
     from ..report.run.folder import link_replay

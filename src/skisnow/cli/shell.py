@@ -182,12 +182,12 @@ def _command(parser: argparse.ArgumentParser, about: str) -> Iterator[str]:
     yield f".SS {_text(parser.prog)}"
     yield from _synopsis(parser)
     yield ".PP"
-    yield _text(_filled(parser.description or about, parser))
+    yield _text(_help_text(parser.description or about, parser))
     for action in parser._actions:
         if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction):
             yield ".TP"
-            yield f".B {_text(_called(action))}"
-            yield _text(_filled(action.help or "", parser, action)) or "\\&"
+            yield f".B {_text(_names_of_argument(action))}"
+            yield _text(_help_text(action.help or "", parser, action)) or "\\&"
     for inner, command in _commands(parser):
         yield from _command(command, _help_of(parser, inner))
 
@@ -197,7 +197,7 @@ def _synopsis(parser: argparse.ArgumentParser) -> Iterator[str]:
     yield _text(" ".join(usage.split()))
 
 
-def _called(action: argparse.Action) -> str:
+def _names_of_argument(action: argparse.Action) -> str:
     metavar = action.metavar if isinstance(action.metavar, str) else None
     if action.choices is not None and metavar is None:
         metavar = "|".join(map(str, action.choices))
@@ -207,7 +207,7 @@ def _called(action: argparse.Action) -> str:
     return names if action.nargs == 0 else f"{names} {metavar or action.dest.upper()}"
 
 
-def _filled(text: str, parser: argparse.ArgumentParser, action: argparse.Action | None = None) -> str:
+def _help_text(text: str, parser: argparse.ArgumentParser, action: argparse.Action | None = None) -> str:
     """Help text with argparse's values of %(default)s and %%."""
     return text % {**(vars(action) if action is not None else {}), "prog": parser.prog}
 

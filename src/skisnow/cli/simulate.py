@@ -61,9 +61,9 @@ def simulate_scenario(options: argparse.Namespace) -> int:
         scenario_input = scenario_of(options)
     _prepare(options, scenario_input)
     with ending_is_an_interrupt() as ending:
-        result, refinements = _computed(scenario_input, verify=options.verify)
+        result, refinements = _simulate(scenario_input, verify=options.verify)
         with ending.finishing():
-            _tell(options, scenario_input, result, refinements)
+            _write_and_print(options, scenario_input, result, refinements)
     return ending.status() if ending.requested or ending.pressed or result.outcome == "interrupted" else 0
 
 
@@ -86,7 +86,7 @@ def _prepare(options: argparse.Namespace, scenario_input: ScenarioFile) -> None:
     print_warnings(scenario_input.warnings)
 
 
-def _computed(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
+def _simulate(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple[Refinement, ...] | None]:
     with ExitStack() as loading, Progress() as progress, warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelLimitWarning)  # printed among those of the scenario
         loading.enter_context(announced(LOADING))
@@ -96,10 +96,10 @@ def _computed(scenario_input: ScenarioFile, *, verify: bool) -> tuple[Run, tuple
         loading.close()
         if not verify or result.outcome == "interrupted":
             return result, None
-        return result, _verified(result, progress)
+        return result, _verify(result, progress)
 
 
-def _verified(result: Run, progress: Progress) -> tuple[Refinement, ...]:
+def _verify(result: Run, progress: Progress) -> tuple[Refinement, ...]:
     from ..simulation.simulated_run import simulate
     from ..simulation.verification import repetitions, verify
 
@@ -111,7 +111,7 @@ def _verified(result: Run, progress: Progress) -> tuple[Refinement, ...]:
     return verify(result, finer)
 
 
-def _tell(
+def _write_and_print(
     options: argparse.Namespace, scenario_input: ScenarioFile, result: Run, refinements: tuple[Refinement, ...] | None
 ) -> None:
     from ..simulation.run_summary import run_warnings, summary_dict

@@ -174,7 +174,10 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
         raise ParameterError("{name} has no site {site!r}; it has {sites}").tag(
             "no_data", name=campaign.name, site=site, sites=sorted(sites)
         )
-    temperatures, air = _notes(campaign, site, "snow_temperature_C"), _notes(campaign, site, "air_temperature_C")
+    temperatures, air = (
+        _numbers_of_text_column(campaign, site, "snow_temperature_C"),
+        _numbers_of_text_column(campaign, site, "air_temperature_C"),
+    )
     densities = tuple(_densities(campaign, site))
     profiles = tuple(_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
@@ -228,8 +231,8 @@ def _station_air(analysis: Analysis, site: str) -> float | None:
     return mean if math.isfinite(mean) else None
 
 
-def _notes(campaign: Campaign, site: str, column: str) -> list[float]:
-    """Numbers of a column that is kept as text; each was checked when it was read."""
+def _numbers_of_text_column(campaign: Campaign, site: str, column: str) -> list[float]:
+    """Numbers of a column that the campaign keeps as text; the reader of the campaign has checked them."""
     return [float(cell.replace(",", ".")) for cell in _cells(campaign, site, column)]
 
 

@@ -105,18 +105,18 @@ class BootDrive:
         """Put the boots where they are at the start."""
         if self.held:
             dynamics.hold_body()
-        self._last = self._asked(dynamics, 0.0, 0.0)
+        self._last = self._next_poses(dynamics, 0.0, 0.0)
         dynamics.move_boots([BootMotion(0.0, self.period, pose, pose) for pose in self._last])  # only its start is met
 
     def move(self, dynamics: Dynamics, distance: float) -> None:
         """Call the control, and let the boots move to its poses within a period. `distance`: run so far (m)."""
         self._calls += 1
-        poses = self._asked(dynamics, self.until, distance)
+        poses = self._next_poses(dynamics, self.until, distance)
         pairs = zip(self._last, poses, strict=True)
         dynamics.move_boots([BootMotion(dynamics.time, self.until, first, last) for first, last in pairs])
         self._last = poses
 
-    def _asked(self, dynamics: Dynamics, until: float, distance: float) -> Sequence[BootPose]:
+    def _next_poses(self, dynamics: Dynamics, until: float, distance: float) -> Sequence[BootPose]:
         moment = BootMoment(
             dynamics.time, until, distance, dynamics.position, dynamics.rotation, dynamics.velocity, dynamics.boots,
             dynamics.boot_wrench,

@@ -202,7 +202,7 @@ class ScenarioModel(ShownFields):
         first: SkisnowError | None = None
         for point in points[:MOST_TRIED]:
             try:
-                self._asked(point)
+                self._scenario_of_point(point)
             except SkisnowError as error:
                 first = first or error
             else:
@@ -221,7 +221,7 @@ class ScenarioModel(ShownFields):
         from ..simulation.simulated_run import simulate
 
         try:
-            scenario_file = self._asked(point)
+            scenario_file = self._scenario_of_point(point)
             run = simulate(scenario_file.scenario)
         except SkisnowError as error:
             return self._failure(point, str(error))
@@ -231,7 +231,7 @@ class ScenarioModel(ShownFields):
             raise KeyboardInterrupt
         return _run_row(scenario_file, run)
 
-    def _asked(self, point: Point) -> ScenarioFile:
+    def _scenario_of_point(self, point: Point) -> ScenarioFile:
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
     def _failure(self, point: Point, reason: str) -> Row:

@@ -193,9 +193,9 @@ READERS = (
         name="two-sites.xlsx",
         target="two-sites.xlsx",
         files=lambda: {"two-sites.xlsx": (SAMPLES / "two-sites.xlsx").read_bytes()},
-        read=lambda folder: campaign._answered(Namespace(file=folder / "two-sites.xlsx"), Answers(), asks=False),
+        read=lambda folder: campaign._ask_questions(Namespace(file=folder / "two-sites.xlsx"), Answers(), asks=False),
         mutations=archive(_member),
-        covers=("cli.campaign:_answered",),
+        covers=("cli.campaign:_ask_questions",),
     ),
     Reader(
         name="[import]",

@@ -51,7 +51,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
     "web.lab_skis:texts_of_ski": "the file that it has just written",
     "web.transfer:FileImports.name": "the name that it has just written",
-    "web.transfer:FileImports.content": "bytes for cli.campaign:_answered's reader",
+    "web.transfer:FileImports.content": "bytes for cli.campaign:_ask_questions's reader",
     "web.uploads:files_below": "bytes for a download",
     "web.pages.replay:_in_words": "summary.json, by read_record as web.runs:Runs._over",
     "report.pair_verdicts:_slope_angle_of_run": "summary.json of a run, by read_json as other records",

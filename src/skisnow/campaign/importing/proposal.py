@@ -83,7 +83,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     files: Mapping[str, bytes] = {}
     if not problems:
         described = _description(name, data, answers, tables, tools, plates, notes)
-        files = campaign_files(_merged(tables), described, name, data)
+        files = campaign_files(_merged_texts(tables), described, name, data)
         problems = _problems(name, files, tables, is_stated=bool(answers.unit))
     return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
 
@@ -269,8 +269,8 @@ def _renamed(
     ]
 
 
-def _merged(tables: Sequence[ImportedTable]) -> dict[str, str]:
-    """Text of each CSV file."""
+def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:
+    """Text of each CSV file, merged from all tables of its kind."""
     by_form: dict[str, list[dict[str, str]]] = {}
     for table in tables:
         if table.rows:

@@ -117,7 +117,7 @@ def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range], ignored: 
         hyphens = any(text.endswith("-") and _is_part(part) for text, part in zip(top, below, strict=True))
         both = any(top) and any(map(_is_part, below)) and not alone & set(group)
         if (hyphens or both) and not any(map(is_plain_number, (*top, *below))):
-            headings = [_joined(text, part) or text for text, part in zip(top, below, strict=True)]
+            headings = [_joined_heading(text, part) or text for text, part in zip(top, below, strict=True)]
             if _is_header(headings):
                 yield group
 
@@ -133,7 +133,7 @@ def _is_unit(text: str) -> bool:
     return plain.casefold() in NO_UNIT or bool(known_unit(plain))
 
 
-def _joined(top: str, below: str) -> str:
+def _joined_heading(top: str, below: str) -> str:
     """Heading of two cells, one below the other, if both are needed for it; otherwise ""."""
     if not _is_part(below):
         return ""
@@ -230,7 +230,7 @@ def _section(
     below = [sheet.cell(row + 1, column) for column in columns]
     headings, start = tuple(top), row + 1
     units: tuple[str, ...] = ()
-    joined = [_joined(text, part) for text, part in zip(top, below, strict=True)]
+    joined = [_joined_heading(text, part) for text, part in zip(top, below, strict=True)]
     parts = not any(map(is_plain_number, below)) and any(joined)
     if parts or rows_of_headings > 1:
         headings = tuple(new or text for new, text in zip(joined, top, strict=True))

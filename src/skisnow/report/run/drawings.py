@@ -70,7 +70,7 @@ def _carved_radius(run: Run) -> Markup:
 
 
 def _other_strength(run: Run) -> Markup:
-    """Sentence about a law in Python that replaces the scenario's S_f; empty without one."""
+    """Sentence about laws in Python that replace those of the scenario, except friction; empty without one."""
     laws = [name.replace("_", " ") for name, law in run.given_laws.items() if law and name != "friction"]
     if not laws:
         return Markup("")

@@ -225,10 +225,12 @@ def _energies() -> list[RunVariable]:
         "boots": "work given since the start by what moves the boots",
         "push": "work given since the start by a push on the body",
     }
-    return variables + [RunVariable(f"given_{name}", (TIME,), "J", supplied[name], _supplied(name)) for name in GIVEN]
+    return variables + [
+        RunVariable(f"given_{name}", (TIME,), "J", supplied[name], _energy_over_time(name)) for name in GIVEN
+    ]
 
 
-def _supplied(name: str) -> Values:
+def _energy_over_time(name: str) -> Values:
     return lambda run: run.energies.get(name, np.zeros(len(run.time)))
 
 
