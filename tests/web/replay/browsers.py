@@ -11,6 +11,11 @@ def slowly(page: Any) -> None:
 
 
 WIDTH, HEIGHT = 960, 600
+DRAWS_IF_ASKED = """["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"].forEach((name) => {
+  const draw = WebGL2RenderingContext.prototype[name];
+  WebGL2RenderingContext.prototype[name] = function (...given) { if (window.draws) draw.apply(this, given); };
+})"""
+"""Drawing in software takes most of the time of these tests, and most of them look at no picture."""
 
 
 class Watched:
@@ -27,6 +32,7 @@ class Watched:
         self.page.on("request", lambda request: self.requests.append(request.url))
         self.page.on("console", self._heard)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.add_init_script(DRAWS_IF_ASKED)
         self.page.goto(address)
         self.page.wait_for_function("window.skisnowReplay")
         if not plays:
@@ -44,14 +50,20 @@ class Watched:
         """A property of the player."""
         return self.does(f"return replay.{of_player}")
 
+    def draw(self, on: bool = True) -> None:
+        """Draw from now on, the present moment first, or no longer."""
+        self.does(f"window.draws = {str(on).lower()}; if (window.draws) replay.draw()")
+
     def picture(self) -> Any:
         """The canvas alone as an array (height, width, 3)."""
+        self.draw()
         import io
 
         import numpy as np
         from PIL import Image
 
-        png = self.page.locator("canvas.replay-canvas").screenshot()
+        others = ":not(.replay-canvas, :has(.replay-canvas)) { visibility: hidden !important }"
+        png = self.page.locator("canvas.replay-canvas").screenshot(style=others)
         with Image.open(io.BytesIO(png)) as image:
             return np.asarray(image.convert("RGB")).astype(int)
 

@@ -35,6 +35,7 @@ def address(replay: Replay, tmp_path_factory: pytest.TempPathFactory) -> str:
 def fresh(drawing_chromium: Any, address: str) -> Iterator[Watched]:
     """A page that was just opened."""
     watched = Watched(drawing_chromium, address)
+    watched.draw()
     yield watched
     watched.close()
 
@@ -52,6 +53,7 @@ def seen(shared: Watched) -> Watched:
     shared.page.get_by_label("Speed of play").select_option("1")
     shared.does(
         """replay.draw = () => {};  // once, at the end
+           window.draws = false;
            replay.pause(); replay.exaggerate(1); replay.look("boot");
            replay.deepen(8); replay.drawAs("auto");
            for (const name in replay.shown) replay.show(name, name !== "forces");
@@ -81,7 +83,7 @@ def test_every_view_shows_snow_and_loaded_skis(seen: Watched) -> None:
     for view in VIEWS:
         seen.does(f"replay.look('{view}')")
         pictures.append(seen.picture())
-        assert coloured(pictures[-1]) > 300, view
+        assert coloured(pictures[-1]) > 200, view
         assert (pictures[-1].min(axis=2) > 205).mean() > 0.2, view  # snow, in its light
     for one, other in pairwise(pictures):
         assert (one != other).mean() > 0.1
@@ -133,6 +135,7 @@ def test_the_replay_stops_at_its_end_and_restarts(seen: Watched) -> None:
 
 
 def test_the_replay_requests_nothing_and_logs_no_error(seen: Watched, address: str) -> None:
+    seen.draw()
     for view in VIEWS:
         seen.does(f"replay.look('{view}'); replay.exaggerate(7); replay.show('forces', true); replay.seek(1.0)")
     pictures_later(seen)

@@ -15,9 +15,9 @@ from ...replay.test_moving_model import SKIS, by_hand, to_run
 from ...report.runs import circle_run
 
 SITE = "http://model.test/"  # answered by the test itself: nothing leaves the machine
-SIZE = {"width": 960, "height": 540}
+SIZE = {"width": 240, "height": 135}
 
-PAGE = """<!doctype html><style>body { margin: 0 }</style><canvas width="960" height="540"></canvas>
+PAGE = """<!doctype html><style>body { margin: 0 }</style><canvas width="240" height="135"></canvas>
 <script type="module">
 import { GLTFLoader, THREE } from "./three.js";
 const model = await new GLTFLoader().loadAsync("./model.glb");
