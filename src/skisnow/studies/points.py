@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,8 +18,6 @@ from ..parameters import Allowed, Quantity, build_declared, checked_table
 
 Point: TypeAlias = dict[str, Any]
 
-AT_ONCE: Final = 1000
-"""Points whose text is made in one piece: some hundred kilobytes."""
 MOST_POINTS: Final = 1_000_000
 """Of one study: a table of about half a gigabyte on disk; memory does not grow with it."""
 
@@ -66,10 +63,6 @@ class Points(LazySequence):
     def distinct(self, name: str) -> list[Any]:
         """Distinct values of an input, in the order of the points; empty where no point has it."""
 
-    @abstractmethod
-    def json_texts(self) -> Iterator[str]:
-        """Text of `json.dumps` for the list of all points, without its brackets, in pieces separated by ``", "``."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ListedPoints(Points):
@@ -88,10 +81,6 @@ class ListedPoints(Points):
     def distinct(self, name: str) -> list[Any]:
         """Distinct values of an input."""
         return list(dict.fromkeys(point[name] for point in self.points if name in point))
-
-    def json_texts(self) -> Iterator[str]:
-        """One piece for each point."""
-        return (json.dumps(point) for point in self.points)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,14 +114,6 @@ class GridPoints(Points):
     def distinct(self, name: str) -> list[Any]:
         """The values of an axis, or the one that is fixed."""
         return _fixed(self.fixed, name) if name not in self.axes else list(dict.fromkeys(self.axes[name]))
-
-    def json_texts(self) -> Iterator[str]:
-        """A piece for each part of the last axis."""
-        texts = [[_pair(name, value) for value in values] for name, values in self.axes.items()]
-        for before in itertools.product(*texts[:-1]):
-            head = "".join(f"{text}, " for text in (*_pairs(self.fixed), *before))
-            for first in range(0, len(texts[-1]), AT_ONCE):
-                yield ", ".join(f"{{{head}{text}}}" for text in texts[-1][first : first + AT_ONCE])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,28 +163,9 @@ class SampledPoints(Points):
         column = self.columns.get(name)
         return _fixed(self.fixed, name) if column is None else list(dict.fromkeys(column.values(0, self.n)))
 
-    def json_texts(self) -> Iterator[str]:
-        """A piece for each part of the sample."""
-        head = "".join(f"{text}, " for text in _pairs(self.fixed))
-        for first in range(0, self.n, AT_ONCE):
-            last = min(first + AT_ONCE, self.n)
-            pairs = [
-                [f"{json.dumps(name)}: {text}" for text in map(json.dumps, column.values(first, last))]
-                for name, column in self.columns.items()
-            ]
-            yield ", ".join(f"{{{head}{', '.join(pair)}}}" for pair in zip(*pairs, strict=True))
-
 
 def _fixed(fixed: Mapping[str, Any], name: str) -> list[Any]:
     return [fixed[name]] if name in fixed else []
-
-
-def _pairs(values: Mapping[str, Any]) -> list[str]:
-    return [_pair(name, value) for name, value in values.items()]
-
-
-def _pair(name: str, value: Any) -> str:
-    return f"{json.dumps(name)}: {json.dumps(value)}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -114,14 +113,10 @@ class Study(Shown):
 
     def fingerprint(self) -> str:
         """Sixteen hexadecimal digits that change with any point, any file that points name, and skisnow's version."""
-        points = self.numbered
-        digest = hashlib.sha256(json.dumps([version("skisnow"), self.columns])[:-1].encode())
-        lead = ", ["
-        for text in points.json_texts():
-            digest.update(f"{lead}{text}".encode())
-            lead = ", "
-        digest.update(b"]]")
-        for path in self.subject.files(points):
+        digest = hashlib.sha256(repr((version("skisnow"), self.columns)).encode())
+        for point in self.points:
+            digest.update(repr(point).encode())
+        for path in self.subject.files(self.numbered):
             digest.update(b"\0" + (path.read_bytes() if is_file(path) else b"absent"))
         return digest.hexdigest()[:16]
 
