@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray, IntArray
+from .._support.csv_text import UnreadableTextError, inspect_csv
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
@@ -18,7 +19,6 @@ from .reading.campaign_files import FilesOfFolder, RawFiles
 from .reading.columns import Table
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
-from .reading.text import UnreadableTextError, inspect_csv
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
+from .._support.csv_text import UnreadableTextError, decode
 from .._support.errors import FieldDataError, StoreError
 from .._support.messages import Message, joined
 from ..campaign import QUALITY_FLAGS, Campaign, campaign_of_files
@@ -13,7 +14,6 @@ from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
 from ..campaign.reading.campaign import ATTACHMENTS
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
-from ..campaign.reading.text import UnreadableTextError, decode
 from ..campaign.store import (
     JournalEntry,
     Journals,

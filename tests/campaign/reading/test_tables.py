@@ -4,8 +4,8 @@ import pytest
 from tests.key_names import DROP_CONE_DEPTH
 from tests.present import present
 
+from skisnow._support.csv_text import RECORDS_AT_ONCE, UnreadableTextError, decode, inspect_csv
 from skisnow.campaign import Problem
-from skisnow.campaign.reading.text import RECORDS_AT_ONCE, UnreadableTextError, decode, inspect_csv
 
 from ..conftest import SmallCampaign
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Final
 
+from ..._support.csv_text import CsvText, UnreadableTextError, decode
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
 from ..._support.spreadsheet_text import SEPARATOR_NAMES, is_number, named_separator
@@ -15,7 +16,6 @@ from ..._support.user_files import ContentError, workbook_sheets
 from ..._support.user_files.workbook import Layout, Rows, sheet_layouts
 from ..reading.headings import FORMS, stated_column
 from ..reading.table_forms import SNOW_MICRO_PEN, TABLES
-from ..reading.text import CsvText, UnreadableTextError, decode
 from ..reading.workbook_files import is_workbook
 
 _LETTERS: Final = 26

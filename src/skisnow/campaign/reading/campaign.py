@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
 
+from ..._support.csv_text import UnreadableTextError, decode, inspect_csv
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
@@ -31,7 +32,6 @@ from .headings import Headings
 from .row_checks import check_rows
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES, TableForm
 from .tables import Cells, read_table, table_of_cells
-from .text import UnreadableTextError, decode, inspect_csv
 from .workbook_files import is_workbook, unfolded
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, Protocol
 
+from ..._support.csv_text import UnreadableTextError
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
 from ..._support.units import MM
@@ -20,7 +21,6 @@ from .campaign_file import CAMPAIGN_FILE
 from .columns import Table
 from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN
-from .text import UnreadableTextError
 
 
 class CampaignFiles(Protocol):

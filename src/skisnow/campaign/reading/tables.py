@@ -10,7 +10,9 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import IntArray
+from ..._support.csv_text import CsvText, Records, UnreadableTextError
 from ..._support.messages import Message
+from ..._support.spreadsheet_text import SEPARATOR_NAMES
 from ..problems import Problem, error, warning
 from .campaign_files import RawFiles
 from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
@@ -18,7 +20,6 @@ from .corrections import Corrector, RowCorrections, header_with_status
 from .header import ColumnUnits, Header, check_header, column_units, split_header
 from .headings import Headings
 from .table_forms import TableForm
-from .text import SEPARATOR_NAMES, CsvText, Records, UnreadableTextError
 
 OWN_NAMES: Final = Headings()
 """Default mapping of headings: columns have their names as headings."""

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Final
 from uuid import uuid4
 
+from ..._support.csv_text import UnreadableTextError, inspect_csv
 from ..._support.errors import ParameterError, StoreError
 from ..reading.campaign import ATTACHMENTS
-from ..reading.text import UnreadableTextError, inspect_csv
 from .journal_entry import NewEntry
 from .replayed import ReplayedCampaign, ReplayedTest, campaign_files, guarded_csv
 

@@ -16,11 +16,11 @@ from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import Final, Protocol
 
+from ..._support.csv_text import UnreadableTextError, decode
 from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
 from ..reading.campaign_files import FilesOfFolder
-from ..reading.text import UnreadableTextError, decode
 from ..reading.workbook_files import DESCRIPTION, unfolded
 
 _WINDOWS_NAMES: Final = re.compile(

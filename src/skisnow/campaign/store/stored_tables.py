@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from ..._support.csv_text import CsvText, UnreadableTextError, decode, inspect_csv
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
 from ..._support.user_files import natural_number
@@ -22,7 +23,6 @@ from ..reading.header import Header, column_units, split_header
 from ..reading.headings import Headings, UnitConversion
 from ..reading.table_forms import BRANCH, BRANCHES, CORRECTIONS, TABLES, TableForm
 from ..reading.tables import decimal_mark_of, read_table
-from ..reading.text import CsvText, UnreadableTextError, decode, inspect_csv
 from .rows import damage_error
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,20 +11,10 @@ from typing import Final
 import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray, IntArray
+from ..._support.csv_text import UnreadableTextError, inspect_csv
 from ..._support.messages import Message, count_message
-from ..._support.spreadsheet_text import (
-    LONGEST_CELL,
-    MOST_COLUMNS,
-    SEPARATOR_NAMES,
-    NoTextError,
-    decimal_mark,
-    decoded,
-    most_frequent_separator,
-    named_separator,
-)
+from ..._support.spreadsheet_text import NoTextError, decimal_mark, decoded
 from .recording import track_error
-
-_HEAD: Final = 1 << 16
 
 
 def decode_text(data: bytes, name: str) -> str:
@@ -38,17 +27,13 @@ def decode_text(data: bytes, name: str) -> str:
     try:
         return "\n".join(decoded(data).text.replace("\ufeff", "").splitlines())
     except NoTextError as error:
-        raise _no_text(name, error.place) from error
-
-
-def _no_text(name: str, value: str) -> Exception:
-    return track_error(
-        "unreadable_file",
-        name,
-        value=value,
-        allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX"),
-        action=Message("The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT."),
-    )
+        raise track_error(
+            "unreadable_file",
+            name,
+            value=error.place,
+            allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252; or FIT or UBX"),
+            action=Message("The file is neither text nor a known format of receivers; export it as CSV, GPX or FIT."),
+        ) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,59 +53,27 @@ def split_cells(text: str, name: str) -> Cells:
     Raises FieldDataError: there is no header, a quote is never closed, a cell is too long, or there are too many
         columns.
     """
-    lines = text.split("\n")
-    named = named_separator(lines[0])
-    first = 1 if named in SEPARATOR_NAMES else 0
-    if not any(re.sub('[,;"]', "", line).strip() for line in lines[first:]):
-        raise track_error(
-            "empty_file", name, allowed=Message("a header and rows"), action=Message("The file is empty.")
-        )
-    separator = named if first and named else most_frequent_separator(text[:_HEAD])
-    reader = csv.reader(lines[first:], delimiter=separator, skipinitialspace=True, strict=True)
-    numbers: list[int] = []
+    lines: list[int] = []
     rows: list[tuple[str, ...]] = []
-    begun = first + 1
     try:
-        for row in reader:
-            stripped = tuple(cell.strip() for cell in row)
-            if any(stripped):
-                numbers.append(begun)
-                rows.append(stripped)
-            begun = first + reader.line_num + 1
-    except csv.Error as error:
+        csv_text = inspect_csv(text.encode())
+        for lines_of_chunk, records in csv_text.records():
+            lines += lines_of_chunk
+            rows += (tuple(map(str.strip, cells)) for cells in records)
+    except UnreadableTextError as error:
         raise track_error(
             "unreadable_file",
             name,
-            place=f"row {begun}",
-            value=str(error),
-            allowed=Message("cells with quotes in pairs, of at most {most} characters", most=LONGEST_CELL),
-            action=Message("Close the quote, or take it away."),
+            place=None if error.row is None else f"row {error.row}",
+            value=error.value,
+            allowed=error.allowed,
+            action=error.action,
         ) from error
-    _require_size(rows, numbers, name)
-    return Cells(rows[0], numbers[0], tuple(numbers[1:]), tuple(rows[1:]), separator)
-
-
-def _require_size(rows: list[tuple[str, ...]], lines: list[int], name: str) -> None:
-    """Reject tables with too many columns or too long cells before they are processed."""
-    for line, row in zip(lines, rows, strict=True):
-        if len(row) > MOST_COLUMNS:
-            raise track_error(
-                "too_many_cells",
-                name,
-                place=f"row {line}",
-                value=Message("{count} cells", count=len(row)),
-                allowed=Message("at most {most} columns", most=MOST_COLUMNS),
-                action=Message("Remove the unused columns."),
-            )
-        if max(map(len, row)) > LONGEST_CELL:
-            raise track_error(
-                "unreadable_file",
-                name,
-                place=f"row {line}",
-                value=max(row, key=len),
-                allowed=Message("cells of at most {most} characters", most=LONGEST_CELL),
-                action=Message("Shorten the cell; is a separator or a quote missing?"),
-            )
+    if not rows:
+        raise track_error(
+            "empty_file", name, allowed=Message("a header and rows"), action=Message("The file is empty.")
+        )
+    return Cells(rows[0], lines[0], tuple(lines[1:]), tuple(rows[1:]), csv_text.separator)
 
 
 def require_width(cells: Cells, name: str) -> None:

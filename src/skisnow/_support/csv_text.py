@@ -1,4 +1,4 @@
-"""Decoding of files and separation into records with their lines.
+"""CSV files: decoding, and separation into records with their lines.
 
 Supported are the formats of European spreadsheet programs: UTF-8 with or without byte order mark, UTF-16, Windows-1252;
 comma, semicolon or tab; CR, LF or both. Cells are not interpreted here. Only lines with nothing but separators and
@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Final, TypeAlias
 
-from ..._support.messages import Message
-from ..._support.spreadsheet_text import (
+from .messages import Message
+from .spreadsheet_text import (
     LONGEST_CELL,
     MOST_COLUMNS,
     SEPARATOR_NAMES,
@@ -27,8 +27,6 @@ from ..._support.spreadsheet_text import (
     named_separator,
     remove_protection,
 )
-
-__all__ = ["RECORDS_AT_ONCE", "SEPARATOR_NAMES", "CsvText", "Records", "UnreadableTextError", "decode", "inspect_csv"]
 
 Records: TypeAlias = tuple[list[int], list[list[str]]]
 """File lines at which records begin, and the records' cells."""
