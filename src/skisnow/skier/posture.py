@@ -39,8 +39,12 @@ body swing with it at a third of the critical damping."""
 DAMPED_FROM: Final = math.radians(5.0)
 """Edge angle from which legs give way in full; the snow under flat skis is too stiff for it (derived: its stiffness
 times the control's period over the damping is to stay below 1)."""
+PITCH_DAMPING: Final = 700.0
+"""Of ankles that give way to the snow (N m s): a body of 7.4 kg m² that rocks with 10 Hz on edged skis, at a third of
+the critical damping."""
 SETTLING, FASTEST_RISE = 3.0, 0.5
-"""Rate (1/s) at which the height goes back to its own, and its greatest speed (m/s) (modelling assumptions)."""
+"""Rate (1/s) at which height and ankles go back to their own, and the height's greatest speed (m/s) (modelling
+assumptions)."""
 APPROACH: Final = 6.0 - math.sqrt(32.0)
 """Share of their clearance by which the skis near the snow in a period (derived: the most without an overshoot, since
 half of a period's rate acts in the next)."""
@@ -69,7 +73,7 @@ class Command:
     pressure
         Place of the centre of pressure to the left of the feet's middle that legs give way to (m).
     load
-        That both legs bear together (N), which they give way to; None: they do not shorten.
+        That both legs bear together (N), which they give way to, as do ankles; None: both are stiff.
     toe
         Angle of the left and the right ski from their mean heading.
     stance
@@ -193,8 +197,7 @@ class Posture:
         """Move by a period (s), as far as joints and legs allow."""
         self._step_aside(command, seen, dt)
         self._step_up(command, seen, dt)
-        level, corner = (float(self.numbers[PITCH]) - seen.pitch, LEVELS) if seen.flies else (0.0, OPENING)
-        self._follow(PITCH, max(-ANKLES, min(ANKLES, level)), corner, dt)
+        self._step_ankles(command, seen, dt)
         self._step_ahead(command.ahead, dt)
         if command.hip_torque is not None:
             self._step_hips(command.hip_torque, seen, dt)
@@ -215,6 +218,16 @@ class Posture:
         later = max(-fastest, min(fastest, later))
         self.numbers[place] = value + 0.5 * (rate + later) * dt
         self.rates[place] = later
+
+    def _step_ankles(self, command: Command, seen: Seen, dt: float) -> None:
+        """Level the skis in the air; with legs that give way, yield to the moment that pitches the body."""
+        pitch, rate = float(self.numbers[PITCH]), float(self.rates[PITCH])
+        if seen.flies:
+            self._follow(PITCH, max(-ANKLES, min(ANKLES, pitch - seen.pitch)), LEVELS, dt)
+            return
+        later = (0.0 if command.load is None else seen.pitching / PITCH_DAMPING) - SETTLING * pitch
+        self.numbers[PITCH] = max(-ANKLES, min(ANKLES, pitch + 0.5 * (rate + later) * dt))
+        self.rates[PITCH] = later
 
     def _step_aside(self, command: Command, seen: Seen, dt: float) -> None:
         """Step of the legs sideways, by balance and by the deviation of the load; a lifted ski is put down."""

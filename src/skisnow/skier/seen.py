@@ -52,8 +52,8 @@ class Seen:
         Loads of the skis (N).
     across, along
         Force of the snow to the left and ahead (N).
-    moment
-        Moment of the snow on both boots about the normal (N m).
+    moment, pitching
+        Moment of the snow on both boots about the normal, and on the body backwards about its centre of mass (N m).
     place, speed, course
         Centre of mass: x, y (m), (m/s), heading of its path from the fall line (rad).
     feet, feet_speed, feet_course
@@ -101,6 +101,7 @@ class Seen:
     bears: bool
     lifted: bool
     pitch: float = 0.0
+    pitching: float = 0.0
     clearance: float = 0.0
     nearing: float = 0.0
     falls_with: float = 0.0
@@ -182,6 +183,7 @@ def seen_at(
         edge=(_edge(boots[0], up), _edge(boots[1], up)),
         bears=bears,
         lifted=bears and min(loads) < LIFTED * load,
+        pitching=dot(leg, up) * dot(total, ahead) - load * dot(leg, ahead) - dot(twist, left),
         pitch=math.asin(max(-1.0, min(1.0, dot(mean[1], up)))),
     )
 
