@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
 
-from ..._support.csv_text import UnreadableTextError, decode, inspect_csv
+from ..._support.csv_text import CsvText, UnreadableTextError, decode, inspect_csv
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
@@ -197,9 +197,7 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
 def _read(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
     campaign = unfolded(campaign_files)
     files = RawFiles(campaign, problems=campaign.problems)
-    described = _read_description(files)
-    headings = described.headings if described is not None else Headings()
-    corrections = _corrections(files, headings)
+    described, headings, corrections = read_description(files)
     tables: dict[str, Table] = {}
     for form in TABLES:
         table = _table(files, form, corrections.get(form.file, {}), headings, progress)
@@ -290,7 +288,15 @@ def _missing_measurements() -> Problem:
     )
 
 
-def _read_description(files: RawFiles) -> CampaignFile | None:
+def read_description(files: RawFiles) -> tuple[CampaignFile | None, Headings, Mapping[str, RowCorrections]]:
+    """Read campaign.toml, its mapping of headings, and corrections.csv by file; problems are added to `files`."""
+    described = _described(files)
+    headings = described.headings if described is not None else Headings()
+    table = _table(files, CORRECTIONS, {}, headings, None)
+    return described, headings, {} if table is None or table.absent else corrections_by_file(table, files.problems)
+
+
+def _described(files: RawFiles) -> CampaignFile | None:
     data = files.read(CAMPAIGN_FILE)
     if CAMPAIGN_FILE in files.absent:
         action = Message(
@@ -316,13 +322,6 @@ def _read_description(files: RawFiles) -> CampaignFile | None:
     return read_campaign_file(decoded.text, files.problems)
 
 
-def _corrections(files: RawFiles, headings: Headings) -> Mapping[str, RowCorrections]:
-    table = _table(files, CORRECTIONS, {}, headings, None)
-    if table is None or table.absent:
-        return {}
-    return corrections_by_file(table, files.problems)
-
-
 def _table(
     files: RawFiles,
     form: TableForm,
@@ -330,9 +329,17 @@ def _table(
     headings: Headings,
     progress: Callable[[str], None] | None,
 ) -> Table | None:
-    data = files.read(form.file)
+    text = csv_text_of(files, form)
     if form.file in files.absent:
         report_missing_files(corrections, files.problems)
+    if text is None:
+        return None
+    return read_table(form, text, corrections=corrections, files=files, headings=headings, progress=progress)
+
+
+def csv_text_of(files: RawFiles, form: TableForm) -> CsvText | None:
+    """Text of a table, before it is split into records; None without a readable file."""
+    data = files.read(form.file)
     if data is None:
         return None
     try:
@@ -341,7 +348,7 @@ def _table(
         files.report_unreadable(form.file, failure)
         return None
     files.report_encoding(form.file, text.foreign_encoding)
-    return read_table(form, text, corrections=corrections, files=files, headings=headings, progress=progress)
+    return text
 
 
 _SAME: Final = {field.name for field in fields(CampaignFile)} & {field.name for field in fields(Campaign)} - {

@@ -10,19 +10,19 @@ from typing import Final
 
 import numpy as np
 
-from ..._support.csv_text import CsvText, UnreadableTextError, decode, inspect_csv
+from ..._support.csv_text import UnreadableTextError
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
 from ..._support.user_files import natural_number
 from ...parameters import Quantity
-from ..reading.campaign_file import CAMPAIGN_FILE, read_campaign_file
+from ..reading.campaign import csv_text_of, read_description
 from ..reading.campaign_files import CampaignFiles, FilesOfFolder, RawFiles
 from ..reading.columns import number
-from ..reading.corrections import Corrector, RowCorrections, corrections_by_file, header_with_status
+from ..reading.corrections import Corrector, RowCorrections, header_with_status
 from ..reading.header import Header, column_units, split_header
 from ..reading.headings import Headings, UnitConversion
-from ..reading.table_forms import BRANCH, BRANCHES, CORRECTIONS, TABLES, TableForm
-from ..reading.tables import decimal_mark_of, read_table
+from ..reading.table_forms import BRANCH, BRANCHES, TABLES, TableForm
+from ..reading.tables import decimal_mark_of
 from .rows import damage_error
 
 
@@ -51,8 +51,7 @@ class StoredTable:
 def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
     """Readable tables of a campaign by file; the campaign is a folder, or files in memory."""
     files = RawFiles(FilesOfFolder(campaign) if isinstance(campaign, Path) else campaign)
-    headings = _headings(files)
-    corrections = _corrections(files, headings)
+    _, headings, corrections = read_description(files)
     tables = {form.file: _stored_table(files, form, corrections.get(form.file, {}), headings) for form in TABLES}
     return {file: table for file, table in tables.items() if table is not None}
 
@@ -81,35 +80,10 @@ def cell_of(key: str) -> tuple[int, str]:
     return line, column
 
 
-def _csv_text(files: RawFiles, form: TableForm) -> CsvText | None:
-    data = files.read(form.file)
-    try:
-        return inspect_csv(data) if data is not None else None
-    except UnreadableTextError as failure:
-        files.report_unreadable(form.file, failure)
-        return None
-
-
-def _headings(files: RawFiles) -> Headings:
-    """Mapping of headings; empty if campaign.toml cannot be read."""
-    data = files.read(CAMPAIGN_FILE)
-    try:
-        described = read_campaign_file(decode(data).text, []) if data is not None else None
-    except UnreadableTextError:
-        return Headings()
-    return described.headings if described is not None else Headings()
-
-
-def _corrections(files: RawFiles, headings: Headings) -> Mapping[str, RowCorrections]:
-    text = _csv_text(files, CORRECTIONS)
-    table = read_table(CORRECTIONS, text, corrections={}, files=files, headings=headings) if text is not None else None
-    return corrections_by_file(table, files.problems) if table is not None and not table.absent else {}
-
-
 def _stored_table(
     files: RawFiles, form: TableForm, corrections: RowCorrections, headings: Headings
 ) -> StoredTable | None:
-    text = _csv_text(files, form)
+    text = csv_text_of(files, form)
     if text is None:
         return None
     header: Header | None = None
