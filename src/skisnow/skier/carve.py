@@ -34,8 +34,8 @@ BY_EDGES: Final = 2.0
 """Gain of the edges over that of a skid (found by trial)."""
 FORESIGHT, FORESIGHT_STEP = 1.6, 0.02
 """Time ahead over which the plan is thought through, and its step (s): 5.5 times the pendulum's."""
-SIGHT: Final = 0.3
-"""Time ahead at which a line is looked at (s) (found by trial)."""
+SIGHT: Final = 2.0 / EDGE_CHANGE
+"""Time ahead at which a line is looked at (s) (derived: the delay of the filter of the planned turn)."""
 SLOWEST: Final = 2.0
 """Speed with which lag and turns are computed at least (m/s) (modelling assumption)."""
 
