@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
 from ..scenario.skier import Skier
-from .control import Balance
+from .control import GAIN_TIME, Balance
 from .edges import Edges
 from .plan import Gravity, Line, TurnsOverTime
 from .posture import Command, Posture
@@ -32,12 +33,32 @@ TRUSTED_EDGE: Final = math.radians(10.0)
 """Edge angle (rad) above which the measured loads count fully; below it they count by its square."""
 BY_EDGES: Final = 2.0
 """Gain of the edges over that of a skid (found by trial)."""
-FORESIGHT, FORESIGHT_STEP = 1.6, 0.02
-"""Time ahead over which the plan is thought through, and its step (s): 5.5 times the pendulum's."""
+FORESIGHT_STEP, FORESIGHT_GROWTH, FORESIGHT_STEPS = 0.02, 1.09, 24
+"""First step (s) of the plan ahead, ratio of each step to the one before, and their number: 1.5 s, 5 times the
+pendulum's time. They grow, since what comes later counts less (modelling assumption)."""
 SIGHT: Final = 2.0 / EDGE_CHANGE
 """Time ahead at which a line is looked at (s) (derived: the delay of the filter of the planned turn)."""
 SLOWEST: Final = 2.0
 """Speed with which lag and turns are computed at least (m/s) (modelling assumption)."""
+
+
+def _foresight() -> Iterator[tuple[float, float, float, tuple[float, float, float, float]]]:
+    """Middle, end and length (s) of each step ahead, and the exact step of the filter of the planned turn.
+
+    The filter is critically damped. Its step takes the distance from the plan and its rate to the same at the end.
+    """
+    end = 0.0
+    for i in range(FORESIGHT_STEPS):
+        step = FORESIGHT_STEP * FORESIGHT_GROWTH**i
+        end += step
+        u = EDGE_CHANGE * step
+        fades = math.exp(-u)
+        yield end - 0.5 * step, end, step, (
+            fades * (1.0 + u), fades * step, -fades * EDGE_CHANGE * u, fades * (1.0 - u),
+        )  # fmt: skip
+
+
+_FORESIGHT: Final = tuple(_foresight())
 
 
 @dataclass(slots=True)
@@ -119,6 +140,8 @@ class CarveControl:
     _slip: float = 0.0  # angle between skis and path, since the snow did not hold what was wanted (rad)
     _holds: float = field(init=False)  # share of the load aside, edged for balance
     _held: float = 1.0  # share of what the edges would take aside that the snow holds
+    _foresight: tuple[float, float] = 0.0, 0.0  # wanted place of the capture point, and that in balance (m)
+    _since: float = math.inf  # time since the plan was thought through (s)
 
     def __post_init__(self) -> None:
         self._holds = self.edges.holding(self._weight)
@@ -133,7 +156,13 @@ class CarveControl:
         aside, rate = float(posture.numbers[1]), posture.aside_rate
         roll = self.roll_inertia * height**2 / (height**2 + aside**2)
         omega = math.sqrt(self.gravity.normal * height * self.body.mass / (roll + self.body.mass * height**2))
-        wanted, planned = self._foreseen(now, seen, omega)
+        self._since += dt
+        if self._since > GAIN_TIME - 1e-9:
+            self._since, self._foresight = 0.0, self._foreseen(now, seen, omega)
+        else:  # its first step lasts as long
+            wanted, planned = self._foresight
+            self._foresight = planned + (wanted - planned) * math.exp(omega * dt), planned
+        wanted, planned = self._foresight
         self._learn(seen, planned, posture.edge, omega, dt)
         wanted += self._correction / (1.0 + self.skier.leg_gain)  # it fades as errors do
         balanced, wanted = planned + self._correction, max(1.0, LEAN_MORE * self._held) * wanted
@@ -160,37 +189,33 @@ class CarveControl:
         """Acceleration (m/s²) of a carve with the largest edge angle, limited by that at the largest lean."""
         return min(speed**2 / (self.edges.radius * math.cos(self.edges.greatest)), self._steepest)
 
-    def _planned(self, at: Underway, most: float, limit: float) -> float:
-        """Acceleration that is planned, up to a limit, over that of a carve in balance."""
-        return max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
-
     def _foreseen(self, now: float, seen: Seen, omega: float) -> tuple[float, float]:
         """Target of the capture point, and the place of the centre of mass in balance now (m)."""
-        step, speed = FORESIGHT_STEP, max(seen.feet_speed, SLOWEST)
+        speed = max(seen.feet_speed, SLOWEST)
         lag, fading = self._lag(seen.feet_speed), self.skier.leg_gain * omega
         most, (turn, rate), acceleration = self._most(seen.feet_speed), self._turn, self._acceleration
         at = Underway(now, *seen.feet, seen.feet_course, seen.feet_speed, acceleration)
-        limit, load, total, weights, first = self._limit(seen.feet_speed), self._weight, 0.0, 0.0, 0.0
-        planned, held, way = self._planned, self.edges.held, step * at.speed
-        down, normal, height = self.gravity.down, self.gravity.normal, self.body.height
-        weight, lighter = math.exp(-0.5 * step * omega), math.exp(-step * omega)
-        asked, fainter = self._asked * math.exp(-0.5 * step * fading), math.exp(-step * fading)
-        for i in range(round(FORESIGHT / step)):
-            at.time = now + (i + 0.5) * step
-            rate += step * (EDGE_CHANGE**2 * (planned(at, most, limit) - turn) - 2.0 * EDGE_CHANGE * rate)
-            turn += step * rate
-            sine = math.sin(at.heading)
-            slope = down * sine
-            acceleration += (held(most * turn + asked, slope, load) - acceleration) * step / (lag + step)
-            balanced = height * (acceleration + slope) / normal
-            first = balanced if i == 0 else first
-            total, weights = total + weight * balanced, weights + weight
-            asked, weight = asked * fainter, weight * lighter
-            at.x += way * math.cos(at.heading)
-            at.y += way * sine
+        limit, load, total, before, first = self._limit(seen.feet_speed), self._weight, 0.0, 1.0, None
+        steer, held, asked, share = self.steering.acceleration, self.edges.held, self._asked, 1.0 / max(most, 1e-3)
+        down, scale, holds = self.gravity.down, self.body.height / self.gravity.normal, self._holds * self.edges.gravity
+        for middle, end, step, (a, b, c, d) in _FORESIGHT:
+            at.time = now + middle
+            planned = share * max(-limit, min(limit, steer(at, most)))
+            turn, rate = planned + a * (turn - planned) + b * rate, c * (turn - planned) + d * rate
+            slope, wanted = down * math.sin(at.heading), most * turn + asked * math.exp(-fading * middle)
+            if abs(wanted + slope) > holds:
+                wanted = held(wanted, slope, load)
+            acceleration += (wanted - acceleration) * step / (lag + step)
+            balanced = scale * (acceleration + slope)
+            first = balanced if first is None else first
+            weight = math.exp(-omega * end)
+            total, before = total + (before - weight) * balanced, weight
+            way, bend = step * at.speed, 0.5 * acceleration / speed * step
+            at.x += way * math.cos(at.heading + bend)
+            at.y += way * math.sin(at.heading + bend)
+            at.heading += 2.0 * bend
             at.acceleration = acceleration
-            at.heading += acceleration / speed * step
-        return total / weights, first
+        return total / (1.0 - before), first or 0.0
 
     def _learn(self, seen: Seen, planned: float, edge: float, omega: float, dt: float) -> None:
         """Update the distance of balance from the plan by the loads, while both skis bear and are edged."""
@@ -206,7 +231,8 @@ class CarveControl:
         (turn, rate), speed = self._turn, seen.feet_speed
         most, gravity = self._most(speed), self.gravity.normal
         at = Underway(now, *seen.feet, seen.feet_course, speed, self._acceleration)
-        planned = self._planned(at, most, self._limit(speed))
+        limit = self._limit(speed)
+        planned = max(-limit, min(limit, self.steering.acceleration(at, most))) / max(most, 1e-3)
         rate += dt * (EDGE_CHANGE**2 * (planned - turn) - 2.0 * EDGE_CHANGE * rate)
         self._turn = [turn + rate * dt, rate]
         asked = BY_EDGES * self.skier.edge_gain * gravity * error / self.body.height
