@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -57,13 +57,14 @@ def combined(numbers: Vector, axes: Sequence[Vector]) -> Vector:
     return x * a[0] + y * b[0] + z * c[0], x * a[1] + y * b[1] + z * c[1], x * a[2] + y * b[2] + z * c[2]
 
 
-def applied(rows: Iterable[Vector], a: Vector) -> Vector:
+def applied(rows: Sequence[Vector], a: Vector) -> Vector:
     """Product of a matrix, given by rows, and a vector.
 
     >>> applied(((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), (2.0, 3.0, 4.0))
     (3.0, 2.0, 4.0)
     """
-    return tuple(dot(row, a) for row in rows)
+    first, second, third = rows
+    return dot(first, a), dot(second, a), dot(third, a)
 
 
 def axes_of(edge_angle: float, pitch: float, heading: float) -> FloatArray:

@@ -213,7 +213,7 @@ class Posture:
 
     def _follow(self, place: int, wanted: float, corner: float, dt: float, *, fastest: float = math.inf) -> None:
         """Critically damped."""
-        value, rate = self.numbers[place], self.rates[place]
+        value, rate = float(self.numbers[place]), float(self.rates[place])
         later = rate + dt * (corner**2 * (wanted - value) - 2.0 * corner * rate)
         later = max(-fastest, min(fastest, later))
         self.numbers[place] = value + 0.5 * (rate + later) * dt

@@ -132,24 +132,24 @@ def seen_at(
     boots, wrench = moment.boots.tolist(), moment.wrench.tolist()
     upright = normal.tolist()
     up = combined(upright, rotation)
-    mean = [times(0.5, plus(*pair)) for pair in zip(*boots, strict=True)]
-    ahead = unit(minus(mean[1], times(dot(mean[1], up), up)))
+    middle, direction, rate, turning = (times(0.5, plus(boots[0][i], boots[1][i])) for i in (0, 1, 4, 5))
+    tilt = dot(direction, up)
+    ahead = unit(minus(direction, times(tilt, up)))
     left = cross(up, ahead)
-    forces = [combined(part[:3], boot[1:4]) for part, boot in zip(wrench, boots, strict=True)]
-    moments = [combined(part[3:], boot[1:4]) for part, boot in zip(wrench, boots, strict=True)]
-    middle = mean[0]
+    forces, moments = ([combined(wrench[k][i : i + 3], boots[k][1:4]) for k in (0, 1)] for i in (0, 3))
     centre = (centre_of_mass[0], 0.0, centre_of_mass[1])
     leg = minus(centre, middle)
-    leg_rate = minus(cross(spin, leg), mean[4])
+    leg_rate = minus(cross(spin, leg), rate)
     loads, total = [dot(force, up) for force in forces], plus(*forces)
-    load = sum(loads)
-    arms = (cross(minus(boot[0], middle), force) for boot, force in zip(boots, forces, strict=True))
-    twist = plus(plus(*arms), plus(*moments))
+    load = loads[0] + loads[1]
+    half = minus(boots[0][0], middle)  # from the middle to the left boot
+    twist = plus(cross(half, minus(*forces)), plus(*moments))
     bears = load > BEARING * weight
     down, aside = (combined(each, rotation) for each in _down_and_left(upright))
     way = plus(moment.velocity[:3].tolist(), cross(spin, centre))
     step = minus(way, leg_rate)  # velocity of the feet
-    course = math.atan2(dot(step, aside), dot(step, down))
+    feet, mass = (dot(step, down), dot(step, aside)), (dot(way, down), dot(way, aside))
+    course = math.atan2(feet[1], feet[0])
     heading = math.atan2(dot(ahead, aside), dot(ahead, down))
     position = moment.position.tolist()
     place, foot = (plus(position, applied(rotation, each)) for each in (centre, middle))
@@ -169,13 +169,13 @@ def seen_at(
         along=dot(total, ahead),
         moment=dot(twist, up),
         place=(place[0], place[1]),
-        speed=math.hypot(dot(way, down), dot(way, aside)),
-        course=math.atan2(dot(way, aside), dot(way, down)),
+        speed=math.hypot(*mass),
+        course=math.atan2(mass[1], mass[0]),
         feet=(foot[0], foot[1]),
-        feet_speed=math.hypot(dot(step, down), dot(step, aside)),
+        feet_speed=math.hypot(*feet),
         feet_course=course,
         heading=heading,
-        turn_rate=dot(plus(spin, mean[5]), up),
+        turn_rate=dot(plus(spin, turning), up),
         slip=math.remainder(heading - course, 2.0 * math.pi),
         body_heading=heading + hip,
         body_rate=dot(spin, up),
@@ -184,7 +184,7 @@ def seen_at(
         bears=bears,
         lifted=bears and min(loads) < LIFTED * load,
         pitching=dot(leg, up) * dot(total, ahead) - load * dot(leg, ahead) - dot(twist, left),
-        pitch=math.asin(max(-1.0, min(1.0, dot(mean[1], up)))),
+        pitch=math.asin(max(-1.0, min(1.0, tilt))),
     )
 
 

@@ -43,7 +43,7 @@ def heading_ahead(planned: Planned, slip: FloatArray, gravity: float, height: fl
     """Heading of the skis (rad) with a slip (rad) against the path of the feet, which swing out under the body."""
     if planned.heading is not None:
         return np.full(len(planned.force), planned.heading)
-    swing = np.gradient(height * planned.force / gravity, STEP)
+    swing = _rate(height / gravity * planned.force)
     return np.asarray(planned.course + slip - swing / max(speed, 2.0))
 
 
@@ -54,23 +54,35 @@ def yaw_gain(
 
     The state is that of `yaw_state`. Riccati's equation is solved backwards over the plan.
     """
-    side = np.gradient(heading, STEP)
+    side = _rate(heading)
     aside = body.height * planned.force / gravity
     leant = (aside / np.hypot(aside, body.height)) ** 2
-    turns = -np.gradient(body.pitch * side * leant, STEP) - FRICTION_ARM * np.tanh(planned.force / 2.0) - LEANT * aside
+    turns = -_rate(body.pitch * side * leant) - FRICTION_ARM * np.tanh(planned.force / 2.0) - LEANT * aside
     turns = np.clip(turns, -GREATEST_MOMENT, GREATEST_MOMENT)
     force = body.mass * planned.force
     damping = 0.5 * np.minimum(40.0, 0.245 * np.abs(force) / (max(speed, 2.0) * np.maximum(np.abs(slip), 0.15)))
     eager = np.minimum(1.0, np.abs(planned.force) / 1.962) + 0.1
     step = _dynamics(force, turns, damping, body.yaw)
     costs = _costs(eager / SLIP**2, heading, FACING * planned.course)
-    ahead, gain = 5.0 * costs[-1, :7, :7], np.zeros((2, 7))
-    for k in range(len(force) - 1, -1, -1):
-        both = costs[k] + step[k].T @ ahead @ step[k]
+    ahead, gain, inverse, dot = 5.0 * costs[-1, :7, :7], np.zeros((2, 7)), np.empty((2, 2)), np.dot
+    for cost, onward, back in zip(costs[::-1], step[::-1], step.transpose(0, 2, 1)[::-1], strict=True):
+        both = dot(dot(back, ahead), onward)
+        both += cost
         towards, (own, mixed, _, other) = both[7:, :7], both[7:, 7:].ravel().tolist()
-        gain = np.array([[other, -mixed], [-mixed, own]]) @ towards / (own * other - mixed**2)
-        ahead = both[:7, :7] - towards.T @ gain
+        determinant = own * other - mixed**2
+        inverse[0] = other / determinant, -mixed / determinant
+        inverse[1] = -mixed / determinant, own / determinant
+        gain = dot(inverse, towards)
+        ahead = both[:7, :7] - dot(towards.T, gain)
     return gain
+
+
+def _rate(values: FloatArray) -> FloatArray:
+    """Rate of values at the moments of a plan, by central differences, three times faster than `numpy.gradient`."""
+    rate = np.empty(len(values))
+    rate[1:-1] = (values[2:] - values[:-2]) / (2.0 * STEP)
+    rate[0], rate[-1] = (values[1] - values[0]) / STEP, (values[-1] - values[-2]) / STEP
+    return rate
 
 
 def yaw_state(seen: Seen, ahead: float, ahead_rate: float) -> FloatArray:
@@ -87,7 +99,7 @@ def _dynamics(force: FloatArray, turns: FloatArray, damping: FloatArray, inertia
     rates[:, 1, 1] = -np.minimum(1.0 / STEP, damping / SKI_INERTIA)
     rates[:, 3, 4], rates[:, 3, 6] = -force / inertia, turns / inertia
     rates[:, 1, 7], rates[:, 3, 7], rates[:, 5, 8] = 1.0 / SKI_INERTIA, -1.0 / inertia, 1.0
-    rates[:, [0, 2, 4]] += 0.5 * STEP * rates[:, [1, 3, 5]]
+    rates[:, 0:5:2] += 0.5 * STEP * rates[:, 1:6:2]
     return np.eye(7, 9) + STEP * rates
 
 
