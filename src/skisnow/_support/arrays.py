@@ -16,7 +16,7 @@ BoolArray: TypeAlias = npt.NDArray[np.bool_]
 
 
 def content_bytes(thing: object) -> Iterator[bytes]:
-    """Contents of an object, down to numbers and texts: the same for the same content.
+    """Bytes of the contents of an object, down to numbers and texts; equal objects give equal bytes.
 
     >>> b" ".join(content_bytes((1, "a")))
     b"1 'a'"

@@ -9,12 +9,12 @@ from typing import Final
 import numpy as np
 
 from .._support.arrays import FloatArray, IntArray
-from .._support.csv_text import UnreadableTextError, inspect_csv
 from .._support.errors import FieldDataError
 from .._support.messages import Message
 from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
 from ..parameters import Quantity
 from .problems import Problem, error
+from .reading.campaign import csv_text_of
 from .reading.campaign_files import FilesOfFolder, RawFiles
 from .reading.columns import Table
 from .reading.table_forms import TableForm
@@ -187,19 +187,12 @@ def read_density_layers(path: Path) -> DensityLayers:
 
 
 def _read(name: str, files: RawFiles) -> Table | None:
-    data = files.read(name)
-    if data is None:
-        if name in files.absent:
-            action = Message("Check the file's name and folder.")
-            files.problems.append(error("unreadable_file", name, allowed=Message("a file of this name"), action=action))
-        return None
-    try:
-        text = inspect_csv(data)
-    except UnreadableTextError as failure:
-        files.report_unreadable(name, failure)
-        return None
-    files.report_encoding(name, text.foreign_encoding)
-    return read_table(_form(name), text, corrections={}, files=files)
+    form = _form(name)
+    text = csv_text_of(files, form)
+    if name in files.absent:
+        action = Message("Check the file's name and folder.")
+        files.problems.append(error("unreadable_file", name, allowed=Message("a file of this name"), action=action))
+    return None if text is None else read_table(form, text, corrections={}, files=files)
 
 
 def _form(file: str) -> TableForm:

@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _add(store: Store, args: argparse.Namespace) -> Answer:
-    with _share_shown("keeping") as progress:
+    with _percent_printed("keeping") as progress:
         added = store.add(args.folder, progress=progress)
     if added.check_failure is not None:
         print(f"The campaign is kept but could not be checked: {added.check_failure}", file=sys.stderr)
@@ -131,7 +131,7 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
     campaign = find_campaign(store, args.id)
     if isinstance(campaign, JournalHead):
         return _export_entered(store, campaign, args)
-    with _share_shown("exporting") as progress:
+    with _percent_printed("exporting") as progress:
         if args.as_added:
             exported = ExportedCampaign(store.export(args.id, args.out, progress=progress), 0)
         else:
@@ -154,7 +154,7 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
 
 
 def _verify(store: Store, _: argparse.Namespace) -> Answer:
-    with _share_shown("verifying") as progress:
+    with _percent_printed("verifying") as progress:
         findings = store.verify(progress=progress)
     lines = [str(finding) for finding in findings] or ["All is sound."]
     return {"findings": [asdict(finding) for finding in findings]}, "\n".join(lines), 1 if findings else 0
@@ -163,7 +163,7 @@ def _verify(store: Store, _: argparse.Namespace) -> Answer:
 def _sync(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import Store, sync
 
-    with Store.open(_group_place(args.group)) as group, _share_shown("synchronising") as progress:
+    with Store.open(_group_place(args.group)) as group, _percent_printed("synchronising") as progress:
         done = sync(store, group, keep=dict(args.keep), who=args.who, progress=progress)
     lines = [
         f"given: {_amounts(done.n_campaigns_given, done.n_entries_given)}; "
@@ -223,6 +223,7 @@ def _amount(n_files: int, n_bytes: int) -> str:
 
 
 @contextmanager
-def _share_shown(doing: str) -> Iterator[Callable[[int, int], None]]:
+def _percent_printed(doing: str) -> Iterator[Callable[[int, int], None]]:
+    """Callback of processed and total bytes that prints the percentage."""
     with Progress() as progress:
         yield lambda done_bytes, total_bytes: progress(f"{doing}: {100 * done_bytes // max(total_bytes, 1)} %")

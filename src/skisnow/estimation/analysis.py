@@ -421,7 +421,7 @@ def _observations(
 
 
 def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[CampaignMean, CampaignMean]:
-    """b0 and b1 of the row that Eqn 11 is, with their bootstrap intervals."""
+    """Coefficients b0 and b1 of the model of Eqn 11 (b linear in the edge angle), with their bootstrap intervals."""
     unknown = CampaignMean(*[float("nan")] * 5)
     if penetration is None or penetration.table is None:
         return unknown, unknown

@@ -62,7 +62,7 @@ class Layering:
 
 
 def layered(readings: Readings, hardness: FloatArray, uncertainty: ReadingUncertainty) -> BoolArray:
-    """Mask of the series that show layering, with offsets of the depth zero of some `SEATING_SD` allowed."""
+    """Mask of the series whose load exponent differs clearly from 1; depth zeros may be off by some `SEATING_SD`."""
     enough = readings.sums(np.ones(readings.n)) >= FEWEST_READINGS
     usable = enough & np.isfinite(hardness) & (hardness > 0)
     flagged = np.zeros(readings.n_series, dtype=np.bool_)

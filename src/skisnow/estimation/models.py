@@ -160,6 +160,7 @@ class EndBasis:
 
 @cache
 def _projection(a: Term, b: Term, flat: bool) -> FloatArray:
+    """Matrix (4, p) from the fitted parameters of a model to its four end values; `flat`: all series have one angle."""
     block = {"none": np.zeros((2, 0)), "one": np.zeros((2, 0)), "constant": np.ones((2, 1)), "linear": np.eye(2)}
     if flat:
         block["linear"] = block["constant"]

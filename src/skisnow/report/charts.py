@@ -59,14 +59,14 @@ def series_curves(
     curves = []
     for index in range(len(tests)):
         series = tests.series(index)
-        unloading_depth, unloading_load = _unloading(tests, index)
+        unloading_depth, unloading_load = _unloading_readings(tests, index)
         depth = np.append(series.penetration_depth, unloading_depth) / MM
         columns = (depth, np.append(series.load, unloading_load), *laws.get(index, _NOTHING))
         curves.append(SeriesCurve(series.experiment, *(tuple(column.tolist()) for column in columns)))
     return tuple(curves)
 
 
-def _unloading(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
+def _unloading_readings(tests: PenetrationTests, index: int) -> tuple[FloatArray, FloatArray]:
     if tests.unloading is None:
         return _NOTHING
     rows = slice(*tests.unloading.first[index : index + 2].tolist())

@@ -308,7 +308,7 @@ def solution_counts(solution: SolutionArray | None) -> dict[str, int] | None:
     >>> solution_counts(np.array(["fixed", "float", "fixed"]))
     {'fixed': 2, 'float': 1}
     """
-    if solution is None or not _by_phase(solution):
+    if solution is None or not _has_carrier_phase(solution):
         return None
     counts = {name: int(np.sum(solution == name)) for name in SOLUTIONS}
     return {name: count for name, count in counts.items() if count}
@@ -322,7 +322,7 @@ def solution_flags(solution: SolutionArray | None, count: int) -> dict[str, Bool
     none = np.zeros(count, bool)
     if solution is None:
         return {"float_solution": none, "code_solution": none.copy()}
-    by_code = solution == "code" if _by_phase(solution) else none
+    by_code = solution == "code" if _has_carrier_phase(solution) else none
     return {"float_solution": np.asarray(solution == "float"), "code_solution": np.asarray(by_code)}
 
 
@@ -340,5 +340,5 @@ def inexact_sentence(name: str, solution: SolutionArray | None) -> str | None:
     return f"{name}: of {sum(counts.values())} points {' and '.join(counted)}; the others are fixed"
 
 
-def _by_phase(solution: SolutionArray) -> bool:
+def _has_carrier_phase(solution: SolutionArray) -> bool:
     return bool(np.isin(solution, ("fixed", "float")).any())

@@ -63,7 +63,7 @@ class Section:
             not self.titles
             and len(words) > 1
             and not any(re.search(r"[\d:]", text) for text, _ in words)
-            and any(unit_of_column(name) for _, heading in words for name in _stated(heading))
+            and any(unit_of_column(name) for _, heading in words for name in _stated_columns(heading))
         )
 
     def has(self, row: int, column: int) -> bool:
@@ -140,11 +140,11 @@ def _joined_heading(top: str, below: str) -> str:
     if not top or top.endswith("-"):
         return top.removesuffix("-") + below
     both = f"{top} {below}"
-    names = _stated(both)
-    return both if names and (not _stated(top) or (names == _stated(top) and named_unit(both))) else ""
+    names = _stated_columns(both)
+    return both if names and (not _stated_columns(top) or (names == _stated_columns(top) and named_unit(both))) else ""
 
 
-def _stated(heading: str) -> set[str]:
+def _stated_columns(heading: str) -> set[str]:
     return {column for form in KINDS.values() if (column := stated_column(form, heading))}
 
 
@@ -300,7 +300,7 @@ def _repeated_parts(section: Section) -> list[Section]:
         not starts
         or any(words[block.start : block.stop] != words[starts[0] : blocks[0].stop] for block in blocks)
         or _names_tests(shared)
-        or not any(unit_of_column(name) for place in blocks[0] for name in _stated(section.headings[place]))
+        or not any(unit_of_column(name) for place in blocks[0] for name in _stated_columns(section.headings[place]))
     ):
         return [section]
     parts = []
@@ -391,7 +391,8 @@ def _named_value(text: str) -> tuple[str, str]:
     """Heading and value of a text such as "Versuch 1" or "Kantwinkel: 30°"; no heading if no column has the name."""
     ends = [match for match in re.finditer(r"[\s:=]+(?=\S)", text) if not re.search(r"\d", text[: match.start()])]
     return next(
-        ((text[: end.start()], text[end.end() :]) for end in ends[::-1] if _stated(text[: end.start()])), ("", text)
+        ((text[: end.start()], text[end.end() :]) for end in ends[::-1] if _stated_columns(text[: end.start()])),
+        ("", text),
     )
 
 

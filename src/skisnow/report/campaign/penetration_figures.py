@@ -179,14 +179,9 @@ def seating_offsets(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | 
             Message("no used series has the three readings that an offset needs"),
         )
     offset, intervals = numbers(rows, "depth_offset_mm"), pairs(rows, "interval_mm")
-    hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
-    plot = SitePlot.new(_HARDNESS, Message("depth offset $\\delta$ (mm)"), height_mm=80.0)
+    label = Message("depth offset $\\delta$ (mm)")
+    plot, handles = _plot_against_hardness(rows, offset, intervals, label, styles)
     plot.axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
-    error_bars(plot.axes, hardness, intervals, site, styles)
-    handles = scatter(plot.axes, hardness, offset, site, styles, size=3.0)
-    if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
-        plot.axes.set_xscale("log")
-        plot.axes.xaxis.set_major_formatter(plain_number)
     if np.abs(offset).max() > 10.0 * _THRESHOLD_MM:
         plot.axes.set_yscale("symlog", linthresh=_THRESHOLD_MM, linscale=0.8)
         plot.axes.yaxis.set_major_formatter(plain_number)
@@ -210,13 +205,8 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
             name, Message("Unloading"), Message("no used series was read while its discs were taken off one by one")
         )
     ratio, intervals = numbers(rows, "unloading_ratio"), pairs(rows, "unloading_ratio_interval")
-    hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
-    plot = SitePlot.new(_HARDNESS, Message("unloading ratio $k_\\mathrm{{u}}/H_\\mathrm{{V}}$"), height_mm=80.0)
-    error_bars(plot.axes, hardness, intervals, site, styles)
-    handles = scatter(plot.axes, hardness, ratio, site, styles, size=3.0)
-    if hardness.max() > 10.0 * hardness.min():
-        plot.axes.set_xscale("log")
-        plot.axes.xaxis.set_major_formatter(plain_number)
+    label = Message("unloading ratio $k_\\mathrm{{u}}/H_\\mathrm{{V}}$")
+    plot, handles = _plot_against_hardness(rows, ratio, intervals, label, styles)
     if intervals.max() > 10.0 * intervals.min():
         plot.axes.set_yscale("log")
         plot.axes.yaxis.set_major_formatter(plain_number)
@@ -227,6 +217,20 @@ def unloading_ratios(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing |
     )
     alt = Message("Unloading ratio with intervals against snow hardness, by site.")
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(rows))
+
+
+def _plot_against_hardness(
+    rows: Sequence[Json], values: FloatArray, intervals: FloatArray, label: str, styles: Sequence[SiteStyle]
+) -> tuple[SitePlot, list[Line2D]]:
+    """Points with intervals over the hardness of their series, and the legend handles."""
+    hardness, site = numbers(rows, "H_V_N_per_mm3"), texts(rows, "site")
+    plot = SitePlot.new(_HARDNESS, label, height_mm=80.0)
+    error_bars(plot.axes, hardness, intervals, site, styles)
+    handles = scatter(plot.axes, hardness, values, site, styles, size=3.0)
+    if hardness.min() > 0 and hardness.max() > 10.0 * hardness.min():
+        plot.axes.set_xscale("log")
+        plot.axes.xaxis.set_major_formatter(plain_number)
+    return plot, handles
 
 
 def hardness_density(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOut:
