@@ -218,11 +218,6 @@ class Scenario(Shown):
         return changed_scenario(self, changes)
 
     @property
-    def controlled(self) -> bool:
-        """True if a skier or a table moves the boots."""
-        return self.skier is not None or self.boots is not None
-
-    @property
     def flexing_ski(self) -> Ski:
         """The ski with the stiffness of the computation."""
         return self.ski.stiffened(self.stiffness_factor)

@@ -19,8 +19,6 @@ from .._support.errors import ParameterError, require_range
 from .ski import Ski
 
 DOFS_PER_NODE: Final = 3
-_BENDING: Final = (0, 1, 3, 4)
-_TORSION: Final = (2, 5)
 # four points integrate the square of a cubic times a linear density (degree 7) exactly
 _POINT, _WEIGHT = np.polynomial.legendre.leggauss(4)
 GAUSS_POINTS: Final[FloatArray] = (1.0 + _POINT) / 2.0

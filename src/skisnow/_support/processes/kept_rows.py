@@ -27,7 +27,6 @@ create table rows (number integer primary key, row text not null, checksum integ
 _FORM: Final = "skisnow rows 3"
 _CHECKSUM: Final = "checksum"
 """Name in the table `about` of the checksum of all its other rows."""
-_BUSY: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
 
 
 class KeptRows:

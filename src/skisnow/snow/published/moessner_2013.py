@@ -57,14 +57,6 @@ STRESS_BY_ANGLE: Final = (0.059, 0.266)
 STRESS_BY_DENSITY: Final = (-0.047, 0.00031)
 """Intercept (N/mm²) and slope (N/mm² per kg/m³) of Eqn 14."""
 
-PRINTED_P: Final = {
-    ("H_V", "snow_density"): 0.99,
-    ("H_V", "drop_cone_depth"): 0.83,
-    ("S_f", "edge_angle, hard snow"): 0.50,
-    ("S_f", "H_V"): 0.52,
-}
-"""Printed p values of the relations that were not significant."""
-
 
 def failure_shear_stress_from_angle(edge_angle: npt.ArrayLike) -> FloatArray:
     """S_f (N/m²) of the soft snow by Eqn 13: 0.059 (1 - 0.266 ϑ) N/mm², ϑ in rad; rmse 0.006, n = 30.
