@@ -157,20 +157,11 @@ class StationTable:
 
     def growths(self, station: FloatArray) -> FloatArray:
         """Growth of the values at stations (m) with that of each row, shape (rows, n)."""
-        ones = np.eye(self.station.size)
         if self.station.size == 1:
             return np.ones((1, *np.shape(station)))
         x, y = self.station[::-1], self.value[::-1]
-        # the slope of the curve changes its form where two neighbours are equal: no step crosses that
-        apart = np.abs(np.diff(y))
-        apart = np.where(apart > 0.0, apart, np.inf)
-        steps = np.minimum(_STEP * y, 0.1 * np.minimum(np.append(apart, np.inf), np.append(np.inf, apart)))[:, None]
-        higher, lower = np.split(_slopes(x, np.concatenate([y + steps * ones, y - steps * ones])), 2)
         by_value, by_slope = _hermite(x.tobytes(), station.tobytes())
-        return np.asarray(by_value + (higher - lower) / (2.0 * steps) @ by_slope)[::-1]
-
-
-_STEP: Final = 1e-5  # relative change of one row: both errors of the difference of its slopes are about 1e-10
+        return np.asarray(by_value + _slope_growths(x, y) @ by_slope)[::-1]
 
 
 @functools.lru_cache(maxsize=32)
@@ -224,6 +215,40 @@ def _end_slopes(width: FloatArray, next_width: FloatArray, rise: FloatArray, nex
     slope = ((2.0 * width + next_width) * rise - width * next_rise) / (width + next_width)
     overshoots = (rise * next_rise <= 0.0) & (np.abs(slope) > 3.0 * np.abs(rise))
     return np.where(slope * rise <= 0.0, 0.0, np.where(overshoots, 3.0 * rise, slope))
+
+
+def _slope_growths(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Growth of the slopes at points with each value (values, points); at a bend of a slope the mean of both sides."""
+    width, last = np.diff(x), len(x) - 1
+    rise = np.diff(y) / width
+    by_rise = np.zeros((len(x), last))
+    if last == 1:
+        by_rise[:] = 1.0
+    else:
+        after, before, inner = rise[1:], rise[:-1], np.arange(last - 1)
+        near, far = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]
+        sums = near * after + far * before
+        # [(n + f) / (n/b + f/a)]: by b it grows with n/(n + f) (s/b)², by a with f/(n + f) (s/a)²
+        mean = (near + far) / np.where(sums == 0.0, 1.0, sums)
+        share = np.where(after * before > 0.0, 1.0, 0.5 * (after * before == 0.0)) / (near + far)
+        by_rise[inner + 1, inner] = share * near * (after * mean) ** 2
+        by_rise[inner + 1, inner + 1] = share * far * (before * mean) ** 2
+        for point, one, two in ((0, 0, 1), (last, last - 1, last - 2)):
+            total = width[one] + width[two]
+            slope = ((total + width[one]) * rise[one] - width[one] * rise[two]) / total
+            if rise[one] == 0.0:
+                by_rise[point, one] = 1.5 * (rise[two] != 0.0)
+            elif slope * rise[one] <= 0.0:
+                continue
+            elif rise[one] * rise[two] <= 0.0 and abs(slope) > 3.0 * abs(rise[one]):
+                by_rise[point, one] = 3.0
+            else:
+                by_rise[point, one], by_rise[point, two] = 1.0 + width[one] / total, -width[one] / total
+    by_rise /= width
+    out = np.zeros((len(x), len(x)))
+    out[1:] += by_rise.T
+    out[:-1] -= by_rise.T
+    return out
 
 
 def evenly_spread(values: npt.ArrayLike, front: float, rear: float) -> StationTable:
