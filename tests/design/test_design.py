@@ -18,6 +18,7 @@ from skisnow.cli import main
 from skisnow.design.evaluation import Evaluator
 from skisnow.design.front import design_front
 from skisnow.design.problem import Search
+from skisnow.design.search import begins_of, searched_starts
 from skisnow.design.task import design_task
 from skisnow.design.variables import designed_keys
 from skisnow.ski.ski_file import Sources, ski_of_keys
@@ -115,6 +116,23 @@ def test_the_worst_of_three_snows(tmp_path: Path) -> None:
     assert radii.max() - 12.0 == pytest.approx(12.0 - radii.min(), rel=1e-3)
     rows = [each.after for each in found.rows if each.output == "turn_radius_boot_m"]
     assert rows == pytest.approx(radii.tolist(), rel=1e-6)
+
+
+def test_a_search_does_not_creep_up_to_a_kink() -> None:
+    """The best ski for the worst of three snows is at a kink, where the line search halves its steps for ever."""
+    snows = [{**RACE, "H_V_N_per_mm3": each, "edge_angle_deg": 45} for each in (0.08, 0.21, 0.55)]
+    task = TWELVE | {
+        "variables": {"sidecut_mm": [-10, 10], "waist_width_mm": [64, 74], "EI_factor": [0.7, 1.6],
+                      "EI_N_m2[2]": [180, 330], "EI_N_m2[4]": [180, 330]},
+        "conditions": snows,
+        "goals": [{"output": "turn_radius_boot_m", "target": 12.0, "over": "worst"}],
+        "starts": 8, "seed": 2,
+    }  # fmt: skip
+    search = Search(Evaluator(design_task(task)))
+    best, *others = searched_starts(search, begins_of(search.evaluator))
+    assert best.result == pytest.approx(0.0143525, rel=1e-2)
+    assert max(each.equilibria for each in others) < 100
+    assert np.median([each.result for each in others]) < 1.02 * best.result
 
 
 def test_what_is_out_of_reach_is_named() -> None:

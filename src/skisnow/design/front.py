@@ -13,7 +13,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
 from .evaluation import Evaluator
 from .problem import Search
-from .search import begins_of, task_of
+from .search import begins_of, searched_starts, task_of
 from .task import DesignTask, Goal
 
 
@@ -77,16 +77,10 @@ def _deviation(evaluator: Evaluator, goal: Goal, z: FloatArray) -> float:
 
 
 def _best(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArray]) -> FloatArray:
-    search = Search(evaluator, goals)
-    found = []
-    for begin in begins:
-        try:
-            found.append(search.run(begin))
-        except SolverError:  # no ski or no equilibrium there: the start is lost
-            continue
-    if not found:
+    best = searched_starts(Search(evaluator, goals), begins)[0]
+    if best.end is None:
         raise SolverError("no start led to a ski with an equilibrium. Narrow the bounds.").tag("no_equilibrium")
-    return min(found, key=search.result)
+    return best.end
 
 
 def _front(evaluator: Evaluator, first: Goal, second: Goal, designs: Sequence[FloatArray]) -> tuple[FrontPoint, ...]:

@@ -22,10 +22,19 @@ REACHED: Final = 1e-6
 """Relative deviation at which a target counts as reached."""
 _NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
 _FTOL: Final = 5e-6  # of the objective: at a kink it does not fall smoothly
+_POLISHED_FTOL: Final = 1e-7  # the same for the best start
+_LEAST_GAIN: Final = 1e-4  # relative, of the result: an iteration that gains less is idle
+_IDLE_ITERATIONS: Final = 2  # in a row, that end the search from a start
+_MOST_TRIALS: Final = (2, 4)  # of a line search, from a start and for the best: more would only creep up to a kink
+_FRESH_MODELS: Final = (1, 3)  # for a search that was stopped so, from a start and for the best
 _NEAREST_FTOL: Final = 1e-8  # of changes, and of relative deviations where all targets are reached
 _PERCENT: Final = 1e4  # squares of deviations count in %
 _BROKEN: Final = 1e9  # value of a design that breaks a limit: above that of each that keeps them
 _MOST_ITERATIONS: Final = 60
+
+
+class _StoppedError(Exception):
+    """A search that gains nothing any more, or a line search that creeps up to a kink."""
 
 
 class Search:
@@ -37,6 +46,7 @@ class Search:
         self.targets = [goal for goal in goals if goal.target is not None]
         self.limits = [goal for goal in goals if goal.target is None]
         self.worst = [goal for goal in self.targets if goal.over == "worst"]
+        self.linear = linear_constraints(evaluator)
 
     @property
     def count(self) -> int:
@@ -89,38 +99,82 @@ class Search:
         else:
             for number, goal in enumerate(self.worst):
                 constraints.append(_slack(self, goal, number))
-        matrix, lowest = linear_constraints(self.evaluator)
+        matrix, lowest = self.linear
         if len(lowest):
             constraints.append(
                 {"type": "ineq", "fun": lambda x: matrix @ x[: self.count] - lowest, "jac": partial(_padded, matrix)}
             )
         return constraints
 
-    def run(self, z: FloatArray) -> FloatArray:
-        """Smallest deviations from a start; if all targets are reached, the design with the least change."""
-        from scipy import optimize
+    def run(self, z: FloatArray, *, polish: bool = False) -> FloatArray:
+        """Smallest deviations from a start; if all targets are reached, the design with the least change.
 
-        minimize: Any = optimize.minimize  # its overloads know no vectors of constraints
+        `polish`: from the best end of several starts, to a smaller tolerance.
+        """
+        if not self.targets:
+            return self._nearest(z)
+        z = self._smallest_deviations(z, polish)
+        # SLSQP must not be given more equations than variables: it writes beyond its memory (SciPy 1.16)
+        equations = sum(self.evaluator.value_count(goal) for goal in self.targets)
+        return z if self.worst_deviation(z) > 1e-3 or equations > self.count else self._nearest(z)
 
-        slack = [float(np.max(np.abs(self.deviations(goal, z)))) for goal in self.worst]
-        options = {"ftol": _FTOL, "maxiter": _MOST_ITERATIONS}
-        bounds = [(0.0, 1.0)] * self.count + [(0.0, None)] * len(slack)
-        begin = np.concatenate([z, slack])
-        if self.targets:
-            solution = minimize(
-                self.objective, begin, jac=self.gradient, method="SLSQP", bounds=bounds,
-                constraints=self.constraints(), options=options,
+    def _smallest_deviations(self, z: FloatArray, polish: bool) -> FloatArray:
+        """SLSQP, and where it stops at a kink again from there: its quadratic model of one side misleads it."""
+        best: list[Any] = [self.result(z), z]
+        stopped, fresh_models = True, _FRESH_MODELS[polish]
+        while stopped and fresh_models >= 0:
+            before = best[0]
+            stopped = self._descend(best, polish) and (fresh_models == _FRESH_MODELS[polish] or _gains(best[0], before))
+            fresh_models -= 1
+        return np.asarray(best[1])
+
+    def _descend(self, best: list[Any], polish: bool) -> bool:
+        """One run of SLSQP from the best design, which it replaces by better ones; whether it stopped at a kink."""
+        trials = idle = 0
+
+        def objective(x: FloatArray) -> float:
+            nonlocal trials
+            trials += 1
+            if trials > _MOST_TRIALS[polish]:
+                raise _StoppedError
+            return self.objective(x)
+
+        def gradient(x: FloatArray) -> FloatArray:
+            nonlocal trials
+            trials = 0
+            return self.gradient(x)
+
+        def gains(x: FloatArray) -> bool:
+            z = np.clip(x[: self.count], 0.0, 1.0)
+            result, before = self.result(z), best[0]
+            if result < before:
+                best[:] = result, z
+            return _gains(result, before) or result >= _BROKEN
+
+        def judge(x: FloatArray) -> None:
+            nonlocal idle
+            idle = 0 if gains(x) else idle + 1
+            if idle == _IDLE_ITERATIONS and not polish:
+                raise _StoppedError
+
+        slack = [float(np.max(np.abs(self.deviations(goal, best[1])))) for goal in self.worst]
+        try:
+            solution = _minimize(
+                objective, np.concatenate([best[1], slack]), jac=gradient, callback=judge,
+                bounds=[(0.0, 1.0)] * self.count + [(0.0, None)] * len(slack), constraints=self.constraints(),
+                ftol=_POLISHED_FTOL if polish else _FTOL,
             )  # fmt: skip
-            z = np.clip(solution.x[: self.count], 0.0, 1.0)
-            # SLSQP must not be given more equations than variables: it writes beyond its memory (SciPy 1.16)
-            equations = sum(self.evaluator.value_count(goal) for goal in self.targets)
-            if self.worst_deviation(z) > 1e-3 or equations > self.count:
-                return z
+        except _StoppedError:
+            return True
+        gains(solution.x)
+        return False
+
+    def _nearest(self, z: FloatArray) -> FloatArray:
+        """The design with the least change that reaches all targets; the given one where none was found."""
         home = self.evaluator.start
-        nearest = minimize(
-            lambda x: float((x - home) @ (x - home)), z, jac=lambda x: 2.0 * (x - home), method="SLSQP",
-            bounds=bounds[: self.count], constraints=self.constraints(exact=True),
-            options=options | {"ftol": _NEAREST_FTOL},
+        nearest = _minimize(
+            lambda x: float((x - home) @ (x - home)), z, jac=lambda x: 2.0 * (x - home),
+            bounds=[(0.0, 1.0)] * self.count, constraints=self.constraints(exact=True), ftol=_NEAREST_FTOL,
         )  # fmt: skip
         near = np.clip(nearest.x, 0.0, 1.0)
         return near if self.broken(near) <= REACHED and self.worst_deviation(near) <= REACHED else z
@@ -134,7 +188,7 @@ class Search:
 
     def broken(self, z: FloatArray) -> float:
         """Largest breach of limits and linear constraints, relative."""
-        matrix, lowest = linear_constraints(self.evaluator)
+        matrix, lowest = self.linear
         try:
             rooms = [float(np.min(self.room(goal, z))) for goal in self.limits]
         except SolverError:
@@ -149,6 +203,17 @@ class Search:
         home = self.evaluator.start
         nearest = 1e-9 * float((z - home) @ (z - home))  # among designs that reach all targets
         return self.objective(np.concatenate([z, slack])) + nearest
+
+
+def _minimize(objective: Any, x: FloatArray, *, ftol: float, **arguments: Any) -> Any:
+    from scipy import optimize
+
+    minimize: Any = optimize.minimize  # its overloads know no vectors of constraints
+    return minimize(objective, x, method="SLSQP", options={"ftol": ftol, "maxiter": _MOST_ITERATIONS}, **arguments)
+
+
+def _gains(result: float, before: float) -> bool:
+    return result < (1.0 - _LEAST_GAIN) * before
 
 
 def _constraint(search: Search, value: Any, growth: Any, goal: Goal, *, kind: str = "ineq") -> dict[str, Any]:

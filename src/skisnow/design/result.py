@@ -22,7 +22,7 @@ from .evaluation import carve_at
 from .problem import Search, linear_constraints
 
 _AT_BOUND: Final = 1e-6  # of the distance of the bounds
-_SAME_RESULT: Final = 1e-3  # relative, of two starts that reached the same optimum
+_SAME_RESULT: Final = 0.02  # relative, of squares, of two starts that reached the same optimum
 _SAME_DESIGN: Final = 0.02  # of the bounds
 _MISSED: Final = 1e-4  # relative deviation of a target that is reported
 CONFIRM: Final = Message(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -11,7 +12,7 @@ import numpy as np
 from .._support.arrays import FloatArray
 from .._support.errors import SolverError
 from .evaluation import Evaluator
-from .problem import Search
+from .problem import REACHED, Search
 from .result import Design, Start, design_of
 from .task import DesignTask, design_task, read_design
 
@@ -60,22 +61,39 @@ def design_ski(task: str | Path | Mapping[str, Any] | DesignTask, *, progress: P
     task = task_of(task)
     evaluator = Evaluator(task)
     search = Search(evaluator)
-    starts: list[Start] = []
-    for number, begin in enumerate(begins_of(evaluator)):
-        before = evaluator.equilibria
-        try:
-            z = search.run(begin)
-            starts.append(Start(begin, z, search.result(z), evaluator.equilibria - before))
-        except SolverError:  # no ski or no equilibrium there: the start is lost
-            starts.append(Start(begin, None, float("inf"), evaluator.equilibria - before))
-        if progress is not None:
-            progress(number + 1, task.starts)
-    best = min(starts, key=lambda start: start.result)
+    starts = searched_starts(search, begins_of(evaluator), progress)
+    best = starts[0]
     if best.end is None:
         raise SolverError(
             "none of the {count} starts led to a ski with an equilibrium at all conditions. Narrow the bounds."
         ).tag("no_equilibrium", count=task.starts)
-    return design_of(search, best.end, tuple(starts))
+    return design_of(search, best.end, starts)
+
+
+def searched_starts(
+    search: Search, begins: Sequence[FloatArray], progress: Progress | None = None
+) -> tuple[Start, ...]:
+    """Ends of a search from several starts, the best first; that one is searched on to a smaller tolerance."""
+    starts = []
+    for number, begin in enumerate(begins):
+        starts.append(_searched(search, begin, begin, polish=False))
+        if progress is not None:
+            progress(number + 1, len(begins))
+    first, *others = sorted(starts, key=lambda start: start.result)
+    if first.end is not None and search.worst_deviation(first.end) > REACHED:
+        polished = _searched(search, first.begin, first.end, polish=True)
+        better = polished if polished.result < first.result else first
+        first = replace(better, equilibria=first.equilibria + polished.equilibria)
+    return first, *others
+
+
+def _searched(search: Search, begin: FloatArray, z: FloatArray, *, polish: bool) -> Start:
+    before = search.evaluator.equilibria
+    try:
+        end = search.run(z, polish=polish)
+        return Start(begin, end, search.result(end), search.evaluator.equilibria - before)
+    except SolverError:  # no ski or no equilibrium there: the start is lost
+        return Start(begin, None, float("inf"), search.evaluator.equilibria - before)
 
 
 def task_of(task: str | Path | Mapping[str, Any] | DesignTask) -> DesignTask:
