@@ -259,7 +259,8 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
       const double by_turned = w * stress * turns * shears * half * section.sine;
       const double by_load = w * (mu[0] + mu[1] * s.place * by_force - bends * cosine + turns * half * section.cosine);
       const Pair share{by_load + seed.force[i] + (reacts ? by_bite + by_turned : 0.0), -w * turns};
-      for (std::size_t m = f.begin; m < f.end; m++) add_growth(f, pieces[m], share, by, back, by_place);
+      for (std::size_t m = share.force != 0.0 || share.moment != 0.0 ? f.begin : f.end; m < f.end; m++)
+        add_growth(f, pieces[m], share, by, back, by_place);
       add_depth(f, seed.depth[i] + (!reacts && section.depth > 0.0 ? by_bite + by_turned : 0.0), 0.0, by);
       if (!reacts && f.other > 0.0) {
         by[CORNER] -= 2.0 * by_turned;
