@@ -34,6 +34,11 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium-headless-shell", "chro
 HAS_PLAYWRIGHT = importlib.util.find_spec("playwright") is not None
 PATIENCE_MS = 150_000  # as long as a page of the lab itself waits for an answer; no time is asserted
 DRAWING_MS = 180_000  # all figures of a report
+DRAWS_IF_ASKED = """["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"].forEach((name) => {
+  const draw = WebGL2RenderingContext.prototype[name];
+  WebGL2RenderingContext.prototype[name] = function (...given) { if (window.draws) draw.apply(this, given); };
+})"""
+"""Drawing replays in software takes most of the time of these tests, and most of them look at no picture."""
 
 
 @dataclass
@@ -201,8 +206,11 @@ def watched() -> Watched:
 
 @pytest.fixture
 def page(chromium: Browser, watched: Watched) -> Iterator[Page]:
-    """A page of a desktop's size; it fails the test if anything asked for another machine."""
-    context = chromium.new_context(viewport={"width": 1280, "height": 900}, accept_downloads=True)
+    """A page of a desktop's size, on which no replay plays; it fails the test if anything asked for another machine."""
+    context = chromium.new_context(
+        viewport={"width": 1280, "height": 900}, accept_downloads=True, reduced_motion="reduce"
+    )
+    context.add_init_script(DRAWS_IF_ASKED)
     context.set_default_timeout(PATIENCE_MS)
     made = context.new_page()
     watched.of(made)

@@ -135,7 +135,7 @@ def watch(page: Page) -> None:
     """The replay's canvas shows something, and something else while it plays."""
     follow(page, "Watch")
     page.wait_for_function("window.skisnowReplay")
-    page.evaluate("() => { skisnowReplay.pause(); skisnowReplay.seek(0); }")  # it opens playing
+    page.evaluate("() => { window.draws = true; skisnowReplay.pause(); skisnowReplay.seek(0); }")
     canvas = page.locator("canvas.replay-canvas")
     before = picture(canvas)
     assert len(np.unique(before.reshape(-1, 3), axis=0)) > 50  # snow alone has shades, a blank canvas has one

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from ..conftest import PATIENCE_MS
+from ..conftest import DRAWS_IF_ASKED, PATIENCE_MS
 
 
 def slowly(page: Any) -> None:
@@ -11,11 +11,6 @@ def slowly(page: Any) -> None:
 
 
 WIDTH, HEIGHT = 960, 600
-DRAWS_IF_ASKED = """["drawArrays", "drawArraysInstanced", "drawElements", "drawElementsInstanced"].forEach((name) => {
-  const draw = WebGL2RenderingContext.prototype[name];
-  WebGL2RenderingContext.prototype[name] = function (...given) { if (window.draws) draw.apply(this, given); };
-})"""
-"""Drawing in software takes most of the time of these tests, and most of them look at no picture."""
 
 
 class Watched:

@@ -200,6 +200,7 @@ def test_both_begin_together(seen: Watched, replay: Replay) -> None:
 
 
 def test_the_first_page_s_replay_leaves_time_for_other_things(served: Any, page: Any) -> None:
+    page.emulate_media(reduced_motion="no-preference")
     page.goto(served.address)
     page.wait_for_function("window.skisnowReplay && skisnowReplay.frames > 0")
     gaps = page.evaluate(
