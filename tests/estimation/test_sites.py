@@ -6,8 +6,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 from scipy import stats
-from statsmodels.regression.linear_model import OLS
-from statsmodels.stats.multitest import multipletests
 
 import skisnow
 from skisnow.estimation import campaign_notes
@@ -263,6 +261,8 @@ def test_a_site_with_one_test_has_the_scatter_of_the_others() -> None:
 
 def test_tools_are_compared_at_their_common_sites() -> None:
     """Sites differ tenfold and one tool is used mostly at the harder one; against statsmodels."""
+    from statsmodels.regression.linear_model import OLS
+
     rng = np.random.default_rng(1)
     site = ["A"] * 8 + ["B"] * 8
     tool = ["disc"] * 6 + ["ski"] * 2 + ["disc"] * 2 + ["ski"] * 6
@@ -295,6 +295,8 @@ def test_number_of_tests_for_the_chosen_difference() -> None:
 
 def test_pairs_are_corrected_for_their_number() -> None:
     """Against statsmodels; of equal sites some pair is below 0.05 in one campaign of twenty, 400 campaigns."""
+    from statsmodels.stats.multitest import multipletests
+
     rng = np.random.default_rng(6)
     names = np.repeat(list("ABCDE"), 8).tolist()
     below = []

@@ -158,6 +158,7 @@ def test_run_without_a_step_says_so_and_leaves_no_figure_of_another(run: Run, tm
     assert not list((tmp_path / "figures").iterdir())
 
 
+@pytest.mark.usefixtures("svg_alone")
 def test_run_that_did_not_stay_finite_is_drawn_up_to_there(run: Run, tmp_path: Path) -> None:
     place, velocity = run.place.copy(), run.velocity.copy()
     place[-1], velocity[-1] = np.nan, np.nan

@@ -33,9 +33,9 @@ def attached(served: Served) -> list[ReplayedTest]:
 
 
 def camera_picture() -> bytes:
-    """A JPEG of 4000 × 3000 px with grain and a position, as a telephone's camera writes it."""
+    """A JPEG of 2400 × 1800 px with grain and a position, as a telephone's camera writes it."""
     grain = np.random.default_rng(1).integers(0, 255, (300, 400, 3), dtype=np.uint8)
-    picture, exif = Image.fromarray(grain).resize((4000, 3000)), Image.Exif()
+    picture, exif = Image.fromarray(grain).resize((2400, 1800)), Image.Exif()
     exif[0x010E] = "taken at 47.25 N 11.5 E"
     content = io.BytesIO()
     picture.save(content, "JPEG", quality=92, exif=exif)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
-import pandas
 import pytest
 from PIL import Image
 
@@ -53,6 +52,8 @@ def saved(page: Page, button: str) -> tuple[str, bytes]:
 
 def check_curves(page: Page, name: str, answers: list[dict[str, Any]]) -> None:
     """The saved table has the answers' values, and both pictures have the lines of all charts."""
+    import pandas
+
     file, content = saved(page, "Curves as CSV")
     assert file == f"{name}.csv"
     table = pandas.read_csv(io.BytesIO(content))

@@ -10,7 +10,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-import statsmodels.api as sm
 from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
@@ -125,13 +124,15 @@ def test_machining_meets_the_regression_at_90_degrees(data: ReportData) -> None:
 
 
 def test_the_band_is_that_of_statsmodels() -> None:
+    from statsmodels.api import OLS, add_constant
+
     rng = np.random.default_rng(4)
     x = rng.uniform(400.0, 700.0, 25)
     y = 0.1 + 3e-4 * x + rng.normal(0.0, 0.05, 25)
-    peer = sm.OLS(y, sm.add_constant(x)).fit()
+    peer = OLS(y, add_constant(x)).fit()
     row = {"b": peer.params.tolist(), "rmse_dof": math.sqrt(peer.mse_resid)}
     line = regression_line(row, x)
-    frame = peer.get_prediction(sm.add_constant(line.x)).summary_frame()
+    frame = peer.get_prediction(add_constant(line.x)).summary_frame()
     # both are a dozen double-precision operations
     assert line.y == pytest.approx(frame["mean"].to_numpy(), rel=1e-10)
     assert line.low == pytest.approx(frame["mean_ci_lower"].to_numpy(), rel=1e-10)

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
 
-import pandas
 import pytest
 
 from skisnow.campaign import read_campaign
@@ -158,6 +157,8 @@ def test_the_ratio_is_requested(desk: Desk) -> None:
 
 
 def test_the_curves_of_both_skis_are_downloaded(desk: Desk) -> None:
+    import pandas
+
     page, found = desk.open("/carve?ski=slalom&other=carver"), (answer("slalom"), answer())
     page.shows("slalom: equilibrium. carver: equilibrium.")
     page.press("Curves as CSV")
