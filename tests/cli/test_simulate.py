@@ -119,8 +119,8 @@ def test_a_folder_never_holds_two_runs(tmp_path: Path, monkeypatch: pytest.Monke
     assert main(["simulate", *ASKED, "--out", str(tmp_path), "--replay"]) == 0
     first = contents()
     assert "replay.html" in first
-    with monkeypatch.context() as interpolate_patches:
-        interpolate_patches.setattr("skisnow.report.run.page.run_page", interrupted_here)
+    with monkeypatch.context() as patched:
+        patched.setattr("skisnow.report.run.page.run_page", interrupted_here)
         assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 130
     assert contents() == first
     assert main(["simulate", *ASKED, "--set", "friction.mu_0=0.06", "--out", str(tmp_path)]) == 0

@@ -16,7 +16,7 @@ from skisnow.contact import Laws
 from skisnow.geometry.surfaces import Grid
 from skisnow.scenario import Plane, Skier, Solver, load_scenario
 from skisnow.simulation import run_setup, simulated_run
-from skisnow.simulation.run_setup import Setup, _drive, _start, _strength_share, laid_out
+from skisnow.simulation.run_setup import Setup, _boot_drive, _start, _strength_share, laid_out
 from skisnow.simulation.simulated_run import simulate
 from skisnow.simulation.verification import (
     Refinement,
@@ -81,7 +81,7 @@ def test_what_ends_a_run_on_its_way(parts: dict[str, Any], flying: float, skied:
     usual: dict[str, Any] = {"tilt": (0.0, 0.0), "height": 0.0, "past_end": False}
     usual |= {"touches": True, "drive": None}
     stub = cast("Any", SimpleNamespace(scenario=scenario, **usual | parts))
-    assert simulated_run._ended(stub, flying) == outcome
+    assert simulated_run._outcome_now(stub, flying) == outcome
 
 
 def test_boots_that_nothing_carries_turn_as_a_level_between_their_skis() -> None:
@@ -159,7 +159,7 @@ def test_boots_are_moved_by_one_alone() -> None:
 
     def asked(*, frame: str = "", by: Any = None) -> Any:
         boots = cast("Any", SimpleNamespace(frame=frame)) if frame else None
-        return _drive(cast("Any", SimpleNamespace(boots=boots, skier=None)), by)
+        return _boot_drive(cast("Any", SimpleNamespace(boots=boots, skier=None)), by)
 
     assert asked() is None
     assert (asked(by=control).control, asked(by=control).held) == (control, False)

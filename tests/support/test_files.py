@@ -296,8 +296,8 @@ def test_what_cannot_be_taken_away_is_left_for_the_next_time(tmp_path: Path, mon
     def kept(*_given: object, **_named: object) -> None:
         raise PermissionError
 
-    with monkeypatch.context() as interpolate_patches:
-        interpolate_patches.setattr(os, "rmdir", kept)
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "rmdir", kept)
         replace_old_by_new(tmp_path)
     assert seen(tmp_path) == NEW
     assert len(list(tmp_path.glob(".skisnow-*"))) == 1

@@ -56,7 +56,7 @@ def decode(data: bytes) -> DecodedText:
     try:
         text = decoded(data)
     except NoTextError as error:
-        raise _binary(str(error) if error.place.startswith("byte") else error.place) from None
+        raise _binary_error(str(error) if error.place.startswith("byte") else error.place) from None
     _refuse_control_characters(data if text.codec != "utf-16" else text.text.encode())
     return text
 
@@ -64,10 +64,10 @@ def decode(data: bytes) -> DecodedText:
 def _refuse_control_characters(data: bytes) -> None:
     control = len(data) - len(data.translate(None, _CONTROL_BYTES))
     if control > _CONTROL_SHARE * len(data):
-        raise _binary(f"{control} control characters among {len(data)} bytes")
+        raise _binary_error(f"{control} control characters among {len(data)} bytes")
 
 
-def _binary(value: str) -> UnreadableTextError:
+def _binary_error(value: str) -> UnreadableTextError:
     return UnreadableTextError(
         value=value,
         allowed=Message("text in UTF-8, UTF-16 with byte order mark, or Windows-1252"),
@@ -130,9 +130,9 @@ class CsvText:
             rows.pop()
         except csv.Error:  # a cell beyond the csv module's limit: an open quote swallows the file, or it is as long
             yield lines, rows
-            raise _endless_cell(line) from None
+            raise _long_cell_error(line) from None
         yield lines, rows
-        raise _open_quote(line)
+        raise _open_quote_error(line)
 
 
 def _require_size(lines: list[int], rows: list[list[str]]) -> None:
@@ -158,7 +158,7 @@ def _require_size(lines: list[int], rows: list[list[str]]) -> None:
         )
 
 
-def _open_quote(line: int) -> UnreadableTextError:
+def _open_quote_error(line: int) -> UnreadableTextError:
     return UnreadableTextError(
         row=line,
         value='"',
@@ -169,7 +169,7 @@ def _open_quote(line: int) -> UnreadableTextError:
     )
 
 
-def _endless_cell(line: int) -> UnreadableTextError:
+def _long_cell_error(line: int) -> UnreadableTextError:
     return UnreadableTextError(
         row=line,
         value=f"a cell of more than {csv.field_size_limit()} characters",

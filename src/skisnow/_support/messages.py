@@ -77,7 +77,7 @@ class Message(str):
         """The message in a language, with its numbers and dates as written there."""
         if language == ENGLISH:
             return super().__str__()
-        return _filled(self.template, self.plural, self.fields, language)
+        return _fill(self.template, self.plural, self.fields, language)
 
     def __str__(self) -> str:
         return self.text(current_language())
@@ -139,7 +139,7 @@ def local_number(text: str) -> str:
 
 def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Message:
     fields = {name: _plain(value) for name, value in fields.items()}
-    message = str.__new__(Message, _filled(template, plural, fields, ENGLISH))
+    message = str.__new__(Message, _fill(template, plural, fields, ENGLISH))
     message.template, message.plural, message.fields = template, plural, fields
     return message
 
@@ -179,7 +179,7 @@ def _plain(value: Any) -> Any:
     return value if plain or callable(getattr(type(value), "text", None)) else _Printed(value)
 
 
-def _filled(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
+def _fill(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
     words = translations(language)
     if plural is not None:
         template = words.ngettext(template, plural, fields["count"])

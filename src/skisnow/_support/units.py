@@ -172,10 +172,10 @@ class Shown:
         kind = type(self).__name__
         head = f"<{kind} {title}" if title else f"<{kind}"
         if not rows:
-            return f"{_cut(head)}>"
-        few = _few(rows)
+            return f"{_clip(head)}>"
+        few = _limit(rows)
         width = max(len(name) for name, _ in few)
-        return "\n".join([_cut(head), *(_cut(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
+        return "\n".join([_clip(head), *(_clip(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
 
     def _repr_html_(self) -> str:
         """The same as a table with a small figure, which a notebook shows."""
@@ -186,7 +186,7 @@ class Shown:
         cells = "".join(
             f'<tr><th scope="row" style="text-align:left">{escape(name)}</th>'
             f'<td style="text-align:left">{escape(text)}</td></tr>'
-            for name, text in _few(rows)
+            for name, text in _limit(rows)
         )
         figure = self._notebook_figure()
         drawn = "" if figure is None else figure.svg()
@@ -274,14 +274,14 @@ def _short(value: Any, unit: str) -> str:
     return text if len(text) <= 60 else f"{text[:59]}…"
 
 
-def _few(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+def _limit(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
     if len(rows) <= MOST_ROWS:
         return rows
     rest = ", ".join(name for name, _ in rows[MOST_ROWS - 1 :])
     return (*rows[: MOST_ROWS - 1], ("also", rest))
 
 
-def _cut(line: str) -> str:
+def _clip(line: str) -> str:
     plain = " ".join(line.split("\n"))
     return plain if len(plain) <= _WIDEST else f"{plain[: _WIDEST - 1]}…"
 

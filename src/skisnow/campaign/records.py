@@ -137,8 +137,8 @@ class PenetrationTests(Shown):
 
     def _repr_facts(self) -> Facts:
         rows = (
-            ("sites", _listed(self.site)),
-            ("tools", _listed(self.tool)),
+            ("sites", _name_list(self.site)),
+            ("tools", _name_list(self.tool)),
             ("edge angles", ends(self.edge_angle, "°", factor=DEGREE)),
             ("loads", ends(self.load, "N")),
             ("depths", ends(self.penetration_depth, "mm", factor=MM)),
@@ -228,8 +228,8 @@ class ShearTests(Shown):
 
     def _repr_facts(self) -> Facts:
         rows = (
-            ("sites", _listed(self.site)),
-            ("plates", _listed(self.plate)),
+            ("sites", _name_list(self.site)),
+            ("plates", _name_list(self.plate)),
             ("edge angles", ends(self.edge_angle, "°", factor=DEGREE)),
             ("depths", ends(self.penetration_depth, "mm", factor=MM)),
             ("lever arms", ends(self.lever_arm, "mm", factor=MM)),
@@ -255,7 +255,7 @@ class DensitySamples(Shown):
     further: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def _repr_facts(self) -> Facts:
-        return Facts(f"of {len(self.sample)} samples: {ends(self.snow_density, 'kg/m³')}; {_listed(self.site)}")
+        return Facts(f"of {len(self.sample)} samples: {ends(self.snow_density, 'kg/m³')}; {_name_list(self.site)}")
 
     def site_means(self) -> dict[str, float]:
         """Mean density of each site's samples that were not cancelled (kg/m³)."""
@@ -281,7 +281,7 @@ class DropConeTests(Shown):
 
     def _repr_facts(self) -> Facts:
         return Facts(
-            f"of {len(self.test)} repeats: {ends(self.drop_cone_depth, 'mm', factor=MM)}; {_listed(self.site)}"
+            f"of {len(self.test)} repeats: {ends(self.drop_cone_depth, 'mm', factor=MM)}; {_name_list(self.site)}"
         )
 
     def site_means(self) -> dict[str, float]:
@@ -293,7 +293,7 @@ class DropConeTests(Shown):
         return _means([site for site, _ in means], np.array(list(means.values())), ("",) * len(means))
 
 
-def _listed(names: Sequence[str]) -> str:
+def _name_list(names: Sequence[str]) -> str:
     return ", ".join(dict.fromkeys(names))
 
 

@@ -98,7 +98,7 @@ def carve_ski(options: argparse.Namespace) -> int:
 
     prepare_figure(options.figure)
     answers = _answers(options)
-    _warn(answers)
+    _print_warnings(answers)
     result = answers_dict(answers)
     derivatives = [] if options.sensitivity is None else _sensitivities(answers, options.sensitivity)
     for answer, derivative in zip(result.get("skis", [result]), derivatives, strict=False):
@@ -117,7 +117,7 @@ def carve_ski(options: argparse.Namespace) -> int:
         print(carve_summary(result))
         for answer, derivative in zip(answers, derivatives, strict=False):
             print(_sensitivity_table(answer.ski.name, derivative))
-    return _status(answers)
+    return _exit_status(answers)
 
 
 def _sensitivities(answers: list[CarveAnswer], names: list[str]) -> list[list[dict[str, Any]]]:
@@ -135,7 +135,7 @@ def _sensitivity_table(ski: str, derivatives: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
-def _status(answers: list[CarveAnswer]) -> int:
+def _exit_status(answers: list[CarveAnswer]) -> int:
     lost = [answer.question.ski for answer in answers if answer.equilibrium.outcome == "not_converged"]
     if lost:
         print(
@@ -154,7 +154,7 @@ def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
         return [answered(carve_question(question | {"ski": ski})) for ski in options.ski]
 
 
-def _warn(answers: list[CarveAnswer]) -> None:
+def _print_warnings(answers: list[CarveAnswer]) -> None:
     several = len(answers) > 1
     lines = [f"{a.question.ski}: {text}" if several else text for a in answers for text in a.warnings]
     for line in dict.fromkeys(lines):

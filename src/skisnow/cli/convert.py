@@ -95,7 +95,7 @@ def _add_fmu(kinds: argparse._SubParsersAction[Parser]) -> None:
     )
     fmu.add_argument("--skis", type=int, choices=(1, 2), help="with --contact: one ski, or a pair; default: 2")
     add_changes(fmu)
-    fmu.set_defaults(run=_fmu, parser=fmu)
+    fmu.set_defaults(run=_write_fmu, parser=fmu)
 
 
 def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
@@ -109,10 +109,10 @@ def _add_mjcf(kinds: argparse._SubParsersAction[Parser]) -> None:
     mjcf.add_argument(
         "--segments", type=whole_number(4, 400), default=20, metavar="N", help="segments of a ski; default: 20"
     )
-    mjcf.set_defaults(run=_mjcf)
+    mjcf.set_defaults(run=_write_mjcf)
 
 
-def _fmu(options: argparse.Namespace) -> int:
+def _write_fmu(options: argparse.Namespace) -> int:
     if options.skis is not None and not options.contact:
         options.parser.error("--skis goes with --contact: a sledge has two")
     with announced("writing"):
@@ -127,7 +127,7 @@ def _fmu(options: argparse.Namespace) -> int:
     return 0
 
 
-def _mjcf(options: argparse.Namespace) -> int:
+def _write_mjcf(options: argparse.Namespace) -> int:
     from ..interop.mujoco import write_ski_mjcf
     from ..ski import read_ski
 

@@ -53,7 +53,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--free", default="", metavar="KEY,KEY", help=free)
     add_changes(parser)
     add_fall_line_azimuth(parser, "for tracks in latitude and longitude; default: [identify.site] of the file")
-    _add_ways(parser)
+    _add_methods(parser)
     parser.add_argument("--json", action="store_true", help="print identification.json alone to standard output")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write identification.json, fits.csv and a report")
     add_language(parser)
@@ -61,7 +61,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.set_defaults(run=run, parser=parser)
 
 
-def _add_ways(parser: argparse.ArgumentParser) -> None:
+def _add_methods(parser: argparse.ArgumentParser) -> None:
     profile = "also intervals by refitting all others along each parameter"
     parser.add_argument("--profile", action="store_true", help=profile)
     bootstrap = "also intervals by N resamples of the residuals, 40 or more"

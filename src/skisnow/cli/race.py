@@ -125,14 +125,14 @@ def run(options: argparse.Namespace) -> int:
 
 
 @dataclass(frozen=True)
-class _Raced:
+class _RaceResult:
     fastest: QuickestLine
     checked: list[tuple[str, Score]]
     run: Run | None
     worth: tuple[Worth, ...]
 
 
-def _run_race(options: argparse.Namespace) -> _Raced:
+def _run_race(options: argparse.Namespace) -> _RaceResult:
     with announced("loading"):
         from ..racing import compare_variants, drawn_for_race, quickest_line
         from ..racing.search import require_cmaes
@@ -161,7 +161,7 @@ def _run_race(options: argparse.Namespace) -> _Raced:
                 fastest.scenario, fast, fastest.line, snows, start=start,
                 model=options.model, checkpoint=options.out / KEPT_WORTH, progress=progress, **computing,
             )  # fmt: skip
-    return _Raced(fastest, checked, run, worth)
+    return _RaceResult(fastest, checked, run, worth)
 
 
 def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[str, Scenario]]:
@@ -202,7 +202,7 @@ def _scores_by_method(
     return [*checked, ("where it began", run_score(ski_line(scenario, fastest.start)))], run
 
 
-def _write_and_print(options: argparse.Namespace, raced: _Raced) -> None:
+def _write_and_print(options: argparse.Namespace, raced: _RaceResult) -> None:
     from ..report.race.folder import race_dict, race_summary, worth_summary, write_race
 
     fastest, checked, worth = raced.fastest, raced.checked, raced.worth

@@ -70,7 +70,7 @@ def _add_sync(add_parser: Callable[..., argparse.ArgumentParser], every: argpars
     syncing.add_argument(
         "--keep",
         action="append",
-        type=_choice,
+        type=_parse_choice,
         metavar="ID=SIDE",
         default=[],
         help="settle the conflict with this id, or all: here, there or both; what is not kept stays in the history",
@@ -190,7 +190,7 @@ def _group_place(word: str) -> StorePlace:
     return place
 
 
-def _choice(text: str) -> tuple[str, Side]:
+def _parse_choice(text: str) -> tuple[str, Side]:
     id_, _, side = text.partition("=")
     if not id_ or side not in ("here", "there", "both"):
         raise argparse.ArgumentTypeError(f"{text!r} is not ID=here, ID=there or ID=both")

@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
 
     study = read_study(file)
     if options.shard is not None:
-        return _shard(options, study)
+        return _run_part(options, study)
     return _run_whole(options, study)
 
 
@@ -77,7 +77,7 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
     return 0
 
 
-def _shard(options: argparse.Namespace, study: Study) -> int:
+def _run_part(options: argparse.Namespace, study: Study) -> int:
     from ..studies import Shard, run_shard
 
     if options.figure is not None:

@@ -186,7 +186,7 @@ def comparison_dict(comparison: Comparison) -> Json:
         "seen": comparison.seen,
         "means": MEANS,
         "largest_from_simulated_m": comparison.largest_from_simulated,
-        "fitted": None if fitted is None else _fitted(fitted),
+        "fitted": None if fitted is None else _fitted_dict(fitted),
         "in_one_frame": comparison.in_one_frame,
         "known_to_m": comparison.known_to,
         "warnings": list(comparison.warnings),
@@ -218,7 +218,7 @@ def _distances(distances: Distances, length: float) -> Json:
     }
 
 
-def _rival(rival: Motion) -> Json:
+def _rival_dict(rival: Motion) -> Json:
     return {
         "moved_x_m": float(rival.moved[0]),
         "moved_y_m": float(rival.moved[1]),
@@ -228,7 +228,7 @@ def _rival(rival: Motion) -> Json:
     }
 
 
-def _fitted(fitted: FittedOffsets) -> Json:
+def _fitted_dict(fitted: FittedOffsets) -> Json:
     height = fitted.moved[2] if len(fitted.moved) > 2 else None
     return {
         "what": list(fitted.what),
@@ -238,7 +238,7 @@ def _fitted(fitted: FittedOffsets) -> Json:
         "turned_deg": fitted.turned / DEGREE,
         "later_s": fitted.later,
         "turned_error_deg": None if fitted.turned_error is None else fitted.turned_error / DEGREE,
-        "rival": None if fitted.rival is None else _rival(fitted.rival),
+        "rival": None if fitted.rival is None else _rival_dict(fitted.rival),
         "slope_angle_deg": None if fitted.slope_angle is None else fitted.slope_angle / DEGREE,
         "fall_line_azimuth_deg": None if fitted.azimuth is None else fitted.azimuth / DEGREE,
         "undetermined": fitted.undetermined,

@@ -181,9 +181,9 @@ def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel
     readings, hardness, model = readings.of(estimated), hardness[estimated], model.of(estimated)
     F, x = readings.load, hardness[readings.series] * readings.displaced_volume
     w, usable = _error_variance(readings, model)
-    layers = np.exp((model.spreads.mean_exponent[model.group][readings.series] - 1.0) * _log_share(readings))
+    layers = np.exp((model.spreads.mean_exponent[model.group][readings.series] - 1.0) * _log_load_ratio(readings))
     even = x / layers
-    skew = _layering_skewness(model)[readings.series] * _log_share(readings) ** 3
+    skew = _layering_skewness(model)[readings.series] * _log_load_ratio(readings) ** 3
     mean, square = w / 2.0 + skew / 6.0, 2.0 * w + 8.0 * skew / 6.0  # logarithms of the means of e^ε and e^2ε
     above = readings.sums(usable * even * F * np.exp(-mean))
     below = readings.sums(usable * even**2 * np.exp(-square))
@@ -198,7 +198,7 @@ def volume_factor(readings: Readings, hardness: FloatArray, model: CampaignModel
     return VolumeFactor(m, float((x @ F) / (x @ x)), float(expected), value, value - half, value + half)
 
 
-def _log_share(readings: Readings) -> FloatArray:
+def _log_load_ratio(readings: Readings) -> FloatArray:
     log = np.log(readings.load)
     return log - log[readings.largest][readings.series]
 
@@ -219,7 +219,7 @@ def _error_variance(readings: Readings, model: CampaignModel) -> tuple[FloatArra
     group = model.group[series]
     own = model.spreads.scatter2[group] + (uncertainty.load / readings.load) ** 2 + (per_depth * uncertainty.depth) ** 2
     seating2 = model.spreads.seating2[group] * (per_depth - per_depth[last][series]) ** 2
-    w = own + own[last][series] + seating2 + model.spreads.layering2[group] * _log_share(readings) ** 2
+    w = own + own[last][series] + seating2 + model.spreads.layering2[group] * _log_load_ratio(readings) ** 2
     w[last] = 0.0
     contact = readings.penetration_depth > CONTACT_STEPS * 12.0**0.5 * uncertainty.depth
     usable = contact & (w < _LARGEST_VARIANCE)

@@ -198,10 +198,10 @@ def fit_model(readings: Readings, basis: EndBasis, model: Model, of_load: Conden
         ends = ends + projection @ solution.coefficients
         n_parameters = solution.rank if basis.flat else model.n_parameters
     residual = basis.columns @ ends - readings.load
-    return _row(readings, basis, model, ends, bound, n_parameters, residual)
+    return _model_fit(readings, basis, model, ends, bound, n_parameters, residual)
 
 
-def _row(
+def _model_fit(
     readings: Readings,
     basis: EndBasis,
     model: Model,
@@ -230,15 +230,15 @@ def _row(
         n=n,
         n_series=m,
         n_parameters=n_parameters,
-        rmse=_root(sse, n),
-        rmse_dof=_root(sse, n - n_parameters),
-        rmse_free=_root(max(free, 0.0), n - m),
+        rmse=_root_mean(sse, n),
+        rmse_dof=_root_mean(sse, n - n_parameters),
+        rmse_free=_root_mean(max(free, 0.0), n - m),
         at_bound=_bounds(model, basis, bound),
         sse=sse,
     )
 
 
-def _root(sse: float, count: int) -> float:
+def _root_mean(sse: float, count: int) -> float:
     return float(np.sqrt(sse / count)) if count > 0 else float("nan")
 
 

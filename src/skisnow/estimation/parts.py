@@ -232,7 +232,7 @@ def site_of_campaign(campaign: Campaign, site: str | None) -> str | None:
 
 def campaign_notes(campaign: Campaign) -> tuple[str, ...]:
     """Sentences about site names that nearly agree, snow data of sites without tests, and files that were not read."""
-    return (*_similar_names(campaign), *_without_tests(campaign), *_unread(campaign))
+    return (*_similar_name_notes(campaign), *_untested_site_notes(campaign), *_unread_file_notes(campaign))
 
 
 def _test_sites(campaign: Campaign) -> set[str]:
@@ -250,7 +250,7 @@ def _snow_data_sites(campaign: Campaign) -> dict[str, set[str]]:
     return {name: set(table.site) for name, table in tables.items() if table is not None}
 
 
-def _similar_names(campaign: Campaign) -> Iterator[str]:
+def _similar_name_notes(campaign: Campaign) -> Iterator[str]:
     """Names that differ only by capitals and spaces."""
     names: dict[str, set[str]] = {}
     for site in _test_sites(campaign).union(*_snow_data_sites(campaign).values()):
@@ -264,7 +264,7 @@ def _similar_names(campaign: Campaign) -> Iterator[str]:
         )
 
 
-def _without_tests(campaign: Campaign) -> Iterator[str]:
+def _untested_site_notes(campaign: Campaign) -> Iterator[str]:
     tested = _test_sites(campaign)
     if not tested:  # recordings or samples alone
         return
@@ -279,7 +279,7 @@ def _without_tests(campaign: Campaign) -> Iterator[str]:
             )
 
 
-def _unread(campaign: Campaign) -> Iterator[str]:
+def _unread_file_notes(campaign: Campaign) -> Iterator[str]:
     if campaign.unread_files:
         listed = ", ".join(campaign.unread_files)
         yield Message("Not read, as no table of a campaign has this name: {listed}.", listed=listed)

@@ -69,8 +69,8 @@ def shear_observations(campaign: Campaign, stress: FloatArray, used: BoolArray) 
 
 def spot_observations(penetration: Observations, shear: Observations) -> Observations:
     """One point for each spot with both: geometric mean of H_V and mean of S_f over its used experiments."""
-    hardness = _by_spot(penetration, np.log(penetration.columns[HARDNESS_KEY]))
-    stress = _by_spot(shear, shear.columns[STRESS_KEY])
+    hardness = _values_by_spot(penetration, np.log(penetration.columns[HARDNESS_KEY]))
+    stress = _values_by_spot(shear, shear.columns[STRESS_KEY])
     both = [key for key in hardness if key in stress]
     return Observations(
         {
@@ -106,7 +106,7 @@ def _own_or_site(own: FloatArray, site: tuple[str, ...], means: Mapping[str, flo
     return np.where(np.isfinite(own), own, of_site)
 
 
-def _by_spot(data: Observations, values: FloatArray) -> dict[tuple[str, str], float]:
+def _values_by_spot(data: Observations, values: FloatArray) -> dict[tuple[str, str], float]:
     collected: dict[tuple[str, str], list[float]] = {}
     for site, spot, value in zip(data.site, data.spot, values.tolist(), strict=True):
         if spot:

@@ -165,10 +165,10 @@ def evaluate_profile(
     top = _surface(profile, settings, surface)
     flags = [CANCELLED] if is_cancelled else []
     if top is None:
-        return _nothing((*flags, NO_SURFACE))
+        return _empty((*flags, NO_SURFACE))
     reach = float(profile.depth[-1]) - top.depth
     if reach < settings.to_depth:
-        return _nothing((*flags, TOO_SHORT), top, reach)
+        return _empty((*flags, TOO_SHORT), top, reach)
     force = profile.force - top.air_force if settings.subtract_air_force else profile.force
     first, last = (
         round((top.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
@@ -188,7 +188,7 @@ def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, state
     return snow_surface(profile.force, profile.sample_distance, rise=settings.surface_rise, hold=settings.surface_hold)
 
 
-def _nothing(flags: tuple[str, ...], surface: SnowSurface | None = None, reach: float = math.nan) -> EvaluatedRecording:
+def _empty(flags: tuple[str, ...], surface: SnowSurface | None = None, reach: float = math.nan) -> EvaluatedRecording:
     none = WindowMeans(*(math.nan,) * 5, n=0)
     depth, air = (math.nan, math.nan) if surface is None else (surface.depth, surface.air_force)
     windows = dict.fromkeys(PENETROMETER_RELATIONS, none)

@@ -94,7 +94,7 @@ def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
     depth, force = (profile.depth / MM).tolist(), profile.force.tolist()
     rows = ((f"{where:.6f}", f"{newtons:.6f}") for where, newtons in zip(depth, force, strict=True))
     head = [("# Name", profile.name), ("# Date", profile.recorded_on.isoformat() if profile.recorded_on else NO_DATA)]
-    head += [("# Latitude", _known(profile.latitude_deg)), ("# Longitude", _known(profile.longitude_deg))]
+    head += [("# Latitude", _number(profile.latitude_deg)), ("# Longitude", _number(profile.longitude_deg))]
     write_file(path, csv_text((*head, FORCE, *rows)))
     return Path(path)
 
@@ -104,8 +104,8 @@ def _header(pit: SnowPit) -> Iterable[Sequence[str]]:
     yield "# Site", pit.name
     yield "# PitID", pit.name
     yield "# Date/Local Time", pit.time or NO_DATA
-    yield "# Latitude", _known(pit.latitude_deg)
-    yield "# Longitude", _known(pit.longitude_deg)
+    yield "# Latitude", _number(pit.latitude_deg)
+    yield "# Longitude", _number(pit.longitude_deg)
     yield "# HS (cm)", _cm(pit.snow_height)
 
 
@@ -148,7 +148,7 @@ def _cm(length: float | None) -> str:
     return NO_DATA if length is None else f"{length / CM:.10g}"
 
 
-def _known(value: float | None) -> str:
+def _number(value: float | None) -> str:
     return NO_DATA if value is None else f"{value:.10g}"
 
 

@@ -66,7 +66,7 @@ class Surrogate:
 
         def misfit(logs: FloatArray) -> float:
             lengths = np.tile(np.exp(logs[:kinds]), places.shape[1] // kinds)
-            factor = _factored(places, lengths, math.exp(logs[kinds]))
+            factor = _factorise_kernel(places, lengths, math.exp(logs[kinds]))
             likelihood = 0.5 * np.sum(standard * cho_solve(factor, standard))
             likelihood += columns * np.sum(np.log(np.diag(factor[0])))
             return float(likelihood + 0.1 * np.sum((logs[:kinds] - math.log(0.7)) ** 2))
@@ -75,10 +75,10 @@ class Surrogate:
         begin = np.array([math.log(0.7)] * kinds + [math.log(0.05)])
         logs = minimize(misfit, begin, method="L-BFGS-B", bounds=bounds, options={"maxiter": 40}).x
         lengths = np.tile(np.exp(logs[:kinds]), places.shape[1] // kinds)
-        return cls._with(places, standard, lengths, level, scale, math.exp(logs[kinds]))
+        return cls._of_values(places, standard, lengths, level, scale, math.exp(logs[kinds]))
 
     @classmethod
-    def _with(
+    def _of_values(
         cls,
         places: FloatArray,
         standard: FloatArray,
@@ -87,7 +87,7 @@ class Surrogate:
         scale: FloatArray,
         noise: float,
     ) -> Surrogate:
-        factor = _factored(places, lengths, noise)
+        factor = _factorise_kernel(places, lengths, noise)
         return cls(places, lengths, level, scale, noise, factor, cho_solve(factor, standard))
 
     def at(self, places: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -103,13 +103,13 @@ class Surrogate:
         variance = (
             _kernel(self.places, self.places, self.lengths) @ self._weights + (self.noise**2 + SMALLEST) * self._weights
         )
-        return self._with(
+        return self._of_values(
             np.vstack([self.places, place]), np.concatenate([variance, expected]), self.lengths, self.level, self.scale,
             self.noise,
         )  # fmt: skip
 
 
-def _factored(places: FloatArray, lengths: FloatArray, noise: float) -> tuple[FloatArray, bool]:
+def _factorise_kernel(places: FloatArray, lengths: FloatArray, noise: float) -> tuple[FloatArray, bool]:
     kernel = _kernel(places, places, lengths)
     kernel[np.diag_indices(len(places))] += noise**2 + SMALLEST
     factor, low = cho_factor(kernel, lower=True)
@@ -187,7 +187,7 @@ def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     """Times (n,) (s) at the last gate, of failures too; slow ones and those that never came there get one limit."""
-    times = np.array([_time(evaluation) for evaluation in evaluations])
+    times = np.array([_time_at_last_gate(evaluation) for evaluation in evaluations])
     finite = np.isfinite(times)
     if not finite.any():
         return np.array([math.log(min(evaluation.value, 1e6)) for evaluation in evaluations])
@@ -208,7 +208,7 @@ def margins_of(evaluations: Sequence[Evaluated]) -> FloatArray:
     return out
 
 
-def _time(evaluation: Evaluated) -> float:
+def _time_at_last_gate(evaluation: Evaluated) -> float:
     if evaluation.value < NOT_PASSED:
         return evaluation.value
     gates = evaluation.row.get("gates")

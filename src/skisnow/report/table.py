@@ -181,7 +181,7 @@ def table_html(table: Table, *, number: int) -> Markup:
         caption=html(table.full_caption),
         head=head,
         body=body,
-        below=_below(table),
+        below=_notes_below(table),
     )
 
 
@@ -244,7 +244,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
 }
 
 
-def _below(table: Table) -> Markup:
+def _notes_below(table: Table) -> Markup:
     cut = len(table.rows) - table.rows_in_html
     sentences = [html(table.note)] if table.note else []
     if cut > 0:

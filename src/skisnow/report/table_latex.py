@@ -97,11 +97,11 @@ def _plain_numbers(column: Column, values: Sequence[Any]) -> list[str | None] | 
     """Numbers for an S column of siunitx; None if one cell is not a plain number."""
     if column.kind not in _ALIGNED or all(value is None for value in values):
         return None
-    texts = [None if value is None else _bare(column, value) for value in values]
+    texts = [None if value is None else _plain_cell(column, value) for value in values]
     return texts if all(text is None or _PLAIN.fullmatch(text) for text in texts) else None
 
 
-def _bare(column: Column, value: float) -> str:
+def _plain_cell(column: Column, value: float) -> str:
     if column.kind == "number":
         return formatting.significant(value, column.digits, style="plain")
     return _SET[column.kind](value, column.digits)

@@ -211,7 +211,7 @@ def set_up(
 ) -> Setup:
     """Choose the settings of the solver, create the snow or reuse the given one, and set the sledge down on it."""
     setup = laid_out(scenario, snow, laws=laws)
-    setup.drive = _drive(scenario, boots)
+    setup.drive = _boot_drive(scenario, boots)
     setup.strength = None if strength_along is None else StrengthDrive(strength_along, setup.snow)
     speed = scenario.start.speed
     if setup.drive is not None:
@@ -224,7 +224,7 @@ def set_up(
     return setup
 
 
-def _drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
+def _boot_drive(scenario: Scenario, boots: BootControl | None) -> BootDrive | None:
     if boots is not None:
         if scenario.boots is not None:
             raise ParameterError("the boots move by boots.file and by a function; give one of them").tag(

@@ -253,7 +253,7 @@ class _Watch:
         setup = self.setup
         self._flying = 0.0 if setup.touches else self._flying + setup.time - self._last
         self._last = setup.time
-        self.outcome = _ended(setup, self._flying)
+        self.outcome = _outcome_now(setup, self._flying)
         if self.outcome is None:
             self._finish_course()
         return self.outcome is not None
@@ -294,7 +294,7 @@ def _loop(setup: Setup, record: Record, progress: Progress | None) -> Outcome:
     return watch.outcome
 
 
-def _ended(setup: Setup, flying: float) -> Outcome | None:
+def _outcome_now(setup: Setup, flying: float) -> Outcome | None:
     (leaning, pitching), skier = setup.tilt, setup.scenario.skier
     if skier is not None and leaning > TIPPED and setup.touches:
         return "fell"

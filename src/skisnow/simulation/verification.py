@@ -145,7 +145,7 @@ def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
         if finer.outcome == "interrupted":
             break
         refinements.append(
-            Refinement(key, _used_setting(run, key), _chosen(solver, key), _distance(run, finer), finer.outcome)
+            Refinement(key, _used_setting(run, key), _solver_number(solver, key), _distance(run, finer), finer.outcome)
         )
     return tuple(refinements)
 
@@ -201,14 +201,14 @@ def verification_dict(refinements: tuple[Refinement, ...]) -> dict[str, dict[str
 def _used_setting(run: Run, key: str) -> float:
     numbers = run.numbers
     chosen = replace(run.scenario.solver, elements=round(numbers["elements"]), line_spacing=numbers["line_spacing_m"])
-    return _chosen(chosen, key)
+    return _solver_number(chosen, key)
 
 
 def _scenario_number(scenario: Scenario, key: str) -> float:
     return float(values_of(scenario)[key])
 
 
-def _chosen(solver: Solver, key: str) -> float:
+def _solver_number(solver: Solver, key: str) -> float:
     quantity = SCENARIO_KEYS[key]
     value: float = quantity.in_unit(getattr(solver, quantity.field))
     return value

@@ -70,7 +70,7 @@ def read_ski(name_or_path: str | Path) -> Ski:
             "GJ_N_m2 and mass_kg, and read that."
         ).tag("no_stiffness", path=path, file=path.name)
     if isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != str(path) or is_file(path):
-        return _ski_in(path)
+        return _read_ski_file(path)
     raise _no_such_ski(str(name_or_path))
 
 
@@ -86,7 +86,7 @@ def ski_named(name: str) -> Ski:
     if name not in ski_names():
         raise _no_such_ski(name)
     with as_file(_CATALOGUE / f"{name}.toml") as path:
-        return _ski_in(path)
+        return _read_ski_file(path)
 
 
 def ski_names() -> tuple[str, ...]:
@@ -120,7 +120,7 @@ def _no_such_ski(name: str) -> ParameterError:
     )
 
 
-def _ski_in(path: Path) -> Ski:
+def _read_ski_file(path: Path) -> Ski:
     values = file_values(path)
     table, shape = values.beside("table"), values.beside("shape")
     columns = read_table(table) if table else {}

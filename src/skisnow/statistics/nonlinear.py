@@ -284,7 +284,9 @@ class Jacobian:
 
 def coarse_jacobian(values: Values, b: FloatArray, scale: FloatArray) -> FloatArray:
     """Derivatives accurate to half the digits, with two evaluations for each parameter; for the way to a solution."""
-    return np.stack([_central(values, b, j, _COARSE_STEP * size) for j, size in enumerate(_sizes(b, scale))], axis=-1)
+    return np.stack(
+        [_difference(values, b, j, _COARSE_STEP * size) for j, size in enumerate(_steps(b, scale))], axis=-1
+    )
 
 
 def jacobian(values: Values, b: FloatArray, scale: FloatArray) -> Jacobian:
@@ -299,16 +301,16 @@ def jacobian(values: Values, b: FloatArray, scale: FloatArray) -> Jacobian:
     reach = np.divide(here, coarse, out=np.full(len(b), np.inf), where=coarse > 0)
     columns = [
         _extrapolated(values, b, j, _FIRST_STEP * float(min(size, far)))
-        for j, (size, far) in enumerate(zip(_sizes(b, scale), reach, strict=True))
+        for j, (size, far) in enumerate(zip(_steps(b, scale), reach, strict=True))
     ]
     return Jacobian(*(np.stack(part, axis=-1) for part in zip(*columns, strict=True)))
 
 
-def _sizes(b: FloatArray, scale: FloatArray) -> FloatArray:
+def _steps(b: FloatArray, scale: FloatArray) -> FloatArray:
     return np.where(np.abs(b) > _AT_ZERO * scale, np.abs(b), scale)
 
 
-def _central(values: Values, b: FloatArray, j: int, size: float) -> FloatArray:
+def _difference(values: Values, b: FloatArray, j: int, size: float) -> FloatArray:
     above, below = b.copy(), b.copy()
     above[j] += size
     below[j] -= size
@@ -318,10 +320,10 @@ def _central(values: Values, b: FloatArray, j: int, size: float) -> FloatArray:
 
 def _extrapolated(values: Values, b: FloatArray, j: int, size: float) -> tuple[FloatArray, FloatArray]:
     """Column j, and its error, from the entry of Neville's tableau that agrees best with the two it comes from."""
-    first = _central(values, b, j, size)
+    first = _difference(values, b, j, size)
     best, error, least, above = first, np.full_like(first, np.inf), np.inf, [first]
     for rung in range(1, _RUNGS):
-        row, closest = [_central(values, b, j, size / 2.0**rung)], np.inf
+        row, closest = [_difference(values, b, j, size / 2.0**rung)], np.inf
         for order, before in enumerate(above, start=1):
             with np.errstate(all="ignore"):
                 row.append(row[-1] + (row[-1] - before) / (4.0**order - 1.0))

@@ -101,7 +101,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     [0.98315, 29.16667, 0.12982, 1.5]
     """
     require_confidence(1.0 - alpha)
-    response, design = _checked(y, X)
+    response, design = _check_arguments(y, X)
     whole = ~(np.isnan(response) | np.any(np.isnan(design), axis=1))
     if not np.any(whole):
         raise FitError("every row of y and X contains NaN; nothing can be fitted").tag("no_data")
@@ -119,7 +119,7 @@ def regress(y: npt.ArrayLike, X: npt.ArrayLike, alpha: float = 0.05) -> Regress:
     return Regress(b, np.stack((b - half, b + half), axis=-1), r, rint, stats)
 
 
-def _checked(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
+def _check_arguments(y: npt.ArrayLike, X: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     response, design = np.asarray(y, dtype=float), np.asarray(X, dtype=float)
     if response.ndim == 2 and response.shape[1] == 1:
         response = response[:, 0]

@@ -126,7 +126,7 @@ class DatabaseRows(StoredRows):
             yield
         except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
             damage = first_damage(self._database) if hasattr(self, "_database") else None
-            raise _no_table(self._path, place_reason(error) or damage or error) from error
+            raise _table_error(self._path, place_reason(error) or damage or error) from error
 
     def block(self, number: int) -> list[Row]:
         """Some rows."""
@@ -140,12 +140,12 @@ class DatabaseRows(StoredRows):
         try:
             row = dict(zip(self.columns, map(_as_python, values, self._kinds), strict=True))
         except ValueError as error:
-            raise _no_table(self._path, f"row {place}: {error}") from error
+            raise _table_error(self._path, f"row {place}: {error}") from error
         require_kinds(f"{self._path}, row {place}", row, self._texts)
         return row
 
 
-def _no_table(path: Path, why: object) -> ParameterError:
+def _table_error(path: Path, why: object) -> ParameterError:
     return ParameterError(
         "{path} cannot be read as a study's table: {reason}. Put back a copy, or remove it and run the study again"
     ).tag("cannot_read", path=path, reason=why)
@@ -189,7 +189,7 @@ class ParquetRows(StoredRows):
             NotImplementedError,
             MemoryError,
         ) as error:  # and what pyarrow makes of them
-            raise _no_table(self._path, " ".join(str(error).split())) from error
+            raise _table_error(self._path, " ".join(str(error).split())) from error
 
     def block(self, number: int) -> list[Row]:
         """Some rows."""
@@ -245,7 +245,7 @@ def cell(value: Any) -> str:
 
 def readers(columns: Sequence[str], keys: Mapping[str, Quantity], mark: str) -> list[Reader]:
     """Functions that convert the cells of each column; `mark` is the decimal mark."""
-    return [_reader(name, keys, mark) for name in columns]
+    return [_cell_reader(name, keys, mark) for name in columns]
 
 
 def row_of(place: str, columns: Sequence[str], cells: Sequence[str], readers: Sequence[Reader]) -> Row:
@@ -295,7 +295,7 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float)
 
 
-def _reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
+def _cell_reader(name: str, keys: Mapping[str, Quantity], mark: str) -> Reader:
     if is_text(name, keys):
         empty = "" if name in BLANK else None
         return lambda text: remove_protection(text) if text else empty

@@ -196,7 +196,7 @@ def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study
         )
     points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
     subject_.require_sound(points, fixed)
-    return Study(path, _out(path, values), subject_, tuple(axis.key.name for axis in axes), points)
+    return Study(path, _table_path(path, values), subject_, tuple(axis.key.name for axis in axes), points)
 
 
 def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
@@ -272,7 +272,7 @@ def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
     return sample.n, sample.seed
 
 
-def _out(path: Path, values: Mapping[str, Any]) -> Path:
+def _table_path(path: Path, values: Mapping[str, Any]) -> Path:
     out = values.get("out")
     if not isinstance(out, str) or not out.strip():
         problem = (

@@ -80,18 +80,18 @@ def _write_database(path: Path, columns: Sequence[str], rows: ValueRows) -> None
     named = ", ".join(f'"{name}" {kind}'.rstrip() for name, kind in zip(columns, types, strict=True))
     with place_to_write(path) as place:
         try:
-            _fill(connect(place), named, len(columns), rows())
+            _insert_rows(connect(place), named, len(columns), rows())
         except sqlite3.Error as error:
             raise cannot_write(path, OSError(str(error))) from error
 
 
-def _fill(database: sqlite3.Connection, named: str, count: int, rows: Iterable[list[Any]]) -> None:
+def _insert_rows(database: sqlite3.Connection, named: str, count: int, rows: Iterable[list[Any]]) -> None:
     try:
         database.execute("pragma journal_mode = off")  # a file that is not complete goes away anyhow
         database.execute(f"create table study ({named})")
         database.execute("begin")
         marks = ", ".join("?" * count)
-        database.executemany(f"insert into study values ({marks})", ([_stored(value) for value in row] for row in rows))
+        database.executemany(f"insert into study values ({marks})", ([_as_sql(value) for value in row] for row in rows))
         database.execute("commit")
     finally:
         database.close()
@@ -101,7 +101,7 @@ def _database_type(kinds: frozenset[type]) -> str:
     return next((name for taken, name in _DATABASE_TYPES if kinds and kinds <= taken), "")
 
 
-def _stored(value: Any) -> Any:
+def _as_sql(value: Any) -> Any:
     return json.dumps(value) if isinstance(value, list) else value
 
 
@@ -114,13 +114,13 @@ def _write_parquet(path: Path, columns: Sequence[str], rows: ValueRows) -> None:
     with place_to_write(path) as place, arrow.parquet.ParquetWriter(place, schema) as writer:
         while block := list(itertools.islice(source, ROWS_OF_A_GROUP)):
             arrays = [
-                arrow.array([_plain(value, text=bool(text)) for value in values], type=field.type)
+                arrow.array([_as_arrow(value, text=bool(text)) for value in values], type=field.type)
                 for values, field, text in zip(zip(*block, strict=True), schema, mixed, strict=True)
             ]
             writer.write_batch(arrow.record_batch(arrays, schema=schema))
 
 
-def _plain(value: Any, *, text: bool) -> Any:
+def _as_arrow(value: Any, *, text: bool) -> Any:
     return cell(value) if text and value is not None and not isinstance(value, str) else value
 
 

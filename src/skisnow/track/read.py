@@ -96,7 +96,7 @@ def read_track(
             "unknown_name", kind=kind, allowed=list(get_args(TrackFormat))
         )
     path = Path(path)
-    data = _bytes(path)
+    data = _read_bytes(path)
     recording = _recording(data, path.name, kind or _guess_format(data, path.suffix))
     return build_track(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
 
@@ -126,7 +126,7 @@ def _guess_format(data: bytes, suffix: str) -> TrackFormat:
     return "nmea" if kind == "ubx" and not has_places(data) and SENTENCE.search(data) else kind
 
 
-def _bytes(path: Path) -> bytes:
+def _read_bytes(path: Path) -> bytes:
     try:
         # reading a pipe would block, and a folder cannot be read
         data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None

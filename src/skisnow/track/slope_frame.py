@@ -97,7 +97,7 @@ def in_slope_frame(
         place_sd=place_sd,
         axes="slope",
         slope_angle=angle,
-        frame=_words(track, fall_line_azimuth, slope_angle, origin),
+        frame=_frame_words(track, fall_line_azimuth, slope_angle, origin),
     )
 
 
@@ -136,7 +136,7 @@ def _require(track: Track, azimuth: float, slope_angle: float | None, origin: Se
         )
 
 
-def _words(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> str:
+def _frame_words(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> str:
     east, north, up = (float(value) for value in origin)
     axes = (
         "x horizontal distance down the fall line, y to the left, z height"
@@ -238,7 +238,7 @@ def lay_for_fit(simulated: Track, measured: Track, slope_angle: float | None) ->
     if angle is None and falls is not None and other is not None and (steeper or (apart and other.error < DEGREE)):
         angle, source = max(falls, 0.0), f"from the heights of {measured.name}"
     if angle is None:
-        return LaidTracks(simulated, measured, warnings=(_unknown(simulated),) if apart else ())
+        return LaidTracks(simulated, measured, warnings=(_unknown_angle_warning(simulated),) if apart else ())
     warnings: tuple[str, ...] = ()
     if other is not None and abs(other.angle - angle - _fall_in_own_axes(simulated, own)) > CLEARLY * max(
         other.error, DEGREE
@@ -255,7 +255,7 @@ def _fall_in_own_axes(track: Track, own: Inclination | None) -> float:
     return own.angle if own is not None and not track.slope_angle else 0.0
 
 
-def _unknown(track: Track) -> str:
+def _unknown_angle_warning(track: Track) -> str:
     return (
         f"the slope's angle is unknown: metres of {track.name} on the slope are compared with shorter metres on the "
         "map. Give the slope's angle"

@@ -77,7 +77,7 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
         raise ParameterError("{name}: {count} usable points; a smoothed track needs {fewest}. Give a longer track").tag(
             "too_few_points", name=track.name, count=np.count_nonzero(usable), fewest=FEWEST_POINTS
         )
-    step = _interval(track.time[usable])
+    step = _median_step(track.time[usable])
     if step < SHORTEST_INTERVAL:
         raise ParameterError(
             "{name}: the points are {interval:.3g} s apart. Allowed: at least {least:g} s. Check the column of times "
@@ -87,7 +87,7 @@ def smooth_track(track: Track, *, window: float | None = None, place_noise: floa
     part = parts(track, usable)
     windows = window_bounds(track.time, part, length)
     _require_sparse(track, windows, length)
-    place, rate = _places(track, usable), _rates(track, usable)
+    place, rate = _places(track, usable), _weighted_velocities(track, usable)
     noises = _noises(track.time, windows, length / 2.0, place, rate)
     noises = (noises[0] if place_noise is None else place_noise, noises[1])
     place = WeightedValues(place.values, place.weight / noises[0] ** 2)
@@ -116,7 +116,7 @@ def parts(track: Track, usable: BoolArray) -> IntArray:
     for code in ("gap", "impossible_step", "new_segment"):
         begins |= track.flags.get(code, False)
     chosen = np.flatnonzero(usable)
-    late = np.diff(track.time[chosen]) > GAP_FACTOR * _interval(track.time[chosen])
+    late = np.diff(track.time[chosen]) > GAP_FACTOR * _median_step(track.time[chosen])
     begins[chosen[1:][late]] = True
     return np.cumsum(begins).astype(np.int64)
 
@@ -134,7 +134,7 @@ def window_bounds(time: FloatArray, part: IntArray, length: float) -> tuple[IntA
     return first.astype(np.int64), last.astype(np.int64)
 
 
-def _interval(time: FloatArray) -> float:
+def _median_step(time: FloatArray) -> float:
     return float(np.median(np.diff(time)))
 
 
@@ -169,7 +169,7 @@ def _places(track: Track, usable: BoolArray) -> WeightedValues:
     return WeightedValues(fill_rows(track.place[:, :2], usable), weight)
 
 
-def _rates(track: Track, usable: BoolArray) -> WeightedValues | None:
+def _weighted_velocities(track: Track, usable: BoolArray) -> WeightedValues | None:
     if track.velocity is None:
         return None
     has_velocity = usable & np.isfinite(track.velocity[:, :2]).all(axis=1)

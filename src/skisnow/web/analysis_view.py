@@ -154,7 +154,7 @@ class AnalysisView:
                     heading(Message("Figures"))
                 begun = True
             with self._figures:
-                _figure(shown)
+                _add_figure(shown)
         if not self._is_old(number):
             self._status.set_text(f"{self._counts(result.numbers)}.")
 
@@ -201,7 +201,7 @@ class AnalysisView:
     def _list_marks(self, numbers: Numbers) -> None:
         for code, words in choosable_flags().items():
             ui.checkbox(
-                said(words), value=code in numbers.excluding, on_change=self._mark_chooser(code, numbers.excluding)
+                said(words), value=code in numbers.excluding, on_change=self._flag_chooser(code, numbers.excluding)
             )
 
     def _list_experiments(self, numbers: Numbers) -> None:
@@ -222,7 +222,7 @@ class AnalysisView:
         if cancelled:
             box.disable()
 
-    def _mark_chooser(self, code: str, of_campaign: frozenset[str]) -> Chooser:
+    def _flag_chooser(self, code: str, of_campaign: frozenset[str]) -> Chooser:
         async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
             chosen_before = self._page.choice.excluding
             excluding = of_campaign if chosen_before is None else chosen_before
@@ -257,7 +257,7 @@ def _add_folded(words: str, fill: Callable[[], object]) -> None:
     details.on("toggle", opened)
 
 
-def _figure(shown: FigureImage) -> None:
+def _add_figure(shown: FigureImage) -> None:
     with ui.element("figure"):
         with ui.element("div") as box:
             image = ui.element("img")

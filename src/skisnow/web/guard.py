@@ -161,7 +161,7 @@ class Guard:
             return PlainTextResponse("This address is not one of the lab's.", 421)
         needs_origin = scope["type"] == "websocket" or scope["method"] not in _SAFE
         if (origin is None and needs_origin) or (origin is not None and sent_by != host):
-            return PlainTextResponse("CarveInputs for by another site: refused.", 403)
+            return PlainTextResponse("Rejected: the request comes from another site.", 403)
         size = natural_number(headers.get("content-length", "0"))
         if size is None or size > self.access.body_bytes:
             return PlainTextResponse("This is more than the lab takes in at once.", 413)

@@ -225,10 +225,10 @@ def measured_text(name: str, typed: Mapping[str, str]) -> str:
 
     Raises ParameterError: a field is empty or not a number.
     """
-    return _text({NAME: name, "source": "measured, entered in the lab"}, {key: typed.get(key, "") for key in MEASURED})
+    return _toml({NAME: name, "source": "measured, entered in the lab"}, {key: typed.get(key, "") for key in MEASURED})
 
 
-def _text(texts: Mapping[str, str], typed: Mapping[str, str]) -> str:
+def _toml(texts: Mapping[str, str], typed: Mapping[str, str]) -> str:
     lines = [f"{key} = {json.dumps(text, ensure_ascii=False)}" for key, text in texts.items()]
     for key, text in typed.items():
         if text.strip() or key not in OPTIONAL:
@@ -277,7 +277,7 @@ def read_ski_files(folder: str, names: Sequence[str], further: Mapping[str, str]
     designs = [name for name in names if name.lower().endswith(".json")]
     if not files and len(designs) == 1:
         place = Path(folder) / FILE
-        text = _text({"shape": designs[0]}, {key: further.get(key, "") for key in STIFFNESS})
+        text = _toml({"shape": designs[0]}, {key: further.get(key, "") for key in STIFFNESS})
         place.write_text(text, encoding="utf-8", newline="")
     elif len(files) == 1:
         place = Path(folder) / files[0]

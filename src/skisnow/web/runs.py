@@ -320,14 +320,14 @@ def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> flo
     simulated = simulated_s(values)
     if simulated is None:
         return None
-    runs = _last(folder, jobs)
+    runs = _last_run_times(folder, jobs)
     around = sum(run.took - run.wall for run in runs) / len(runs) if runs else AROUND_S
     return slowness(folder, jobs, values.get("solver.method")) * simulated + around
 
 
 def slowness(folder: Path, jobs: list[Job], method: object) -> float:
     """Ratio of computing time to simulated time of the last runs with this method."""
-    alike = [run for run in _last(folder, jobs) if run.method == method]
+    alike = [run for run in _last_run_times(folder, jobs) if run.method == method]
     return sum(run.wall for run in alike) / sum(run.simulated for run in alike) if alike else SLOWNESS
 
 
@@ -343,7 +343,7 @@ def duration_words(seconds: float) -> str:
     return f"{minutes} min" if minutes < 120 else f"{round(minutes / 60)} h"
 
 
-def _last(folder: Path, jobs: list[Job]) -> list[_RunTime]:
+def _last_run_times(folder: Path, jobs: list[Job]) -> list[_RunTime]:
     return [run for job in jobs if (run := _run_time(folder, job)) is not None][:LOOKED_AT]
 
 

@@ -86,13 +86,13 @@ class StudyQuestion:
             lines.append(f"scenario = {toml_text(self.of)}")
         fixed, listed = (
             [
-                f"{_key(name)} = {toml_text(value)}"
+                f"{_toml_key(name)} = {toml_text(value)}"
                 for name, value in self.fixed.items()
                 if isinstance(value, list) == several
             ]
             for several in (False, True)
         )
-        varied = (f"{_key(name)} = {values.toml()}" for name, values in self.varied.items())
+        varied = (f"{_toml_key(name)} = {values.toml()}" for name, values in self.varied.items())
         return "\n".join([*lines, "", "[fixed]", *fixed, "", "[grid]", *listed, *varied, ""])
 
     def fixed_words(self) -> dict[str, str]:
@@ -140,7 +140,7 @@ def require_few_points(points: int) -> None:
         ).tag("too_many_points", points=points, most=MOST_POINTS)
 
 
-def _key(name: str) -> str:
+def _toml_key(name: str) -> str:
     return f'"{name}"' if "." in name else name
 
 
@@ -215,7 +215,7 @@ class AxisFields:
         name, n = first or (NOTHING, _USUAL)
         with ui.element("div").classes("inputs varied"):
             with ui.element("div").classes("input"):
-                self._key = choice(
+                self._toml_key = choice(
                     place, {**options, **{field_: field_label(key) for field_, key in keys.items()}}, name
                 )
                 self._range = sentence("", "quiet range")
@@ -228,13 +228,13 @@ class AxisFields:
         for typed in (*self._ends, self._n):
             typed.on_value_change(changed)
         self._log.on_value_change(changed)
-        self._key.on_value_change(self._change_input)
+        self._toml_key.on_value_change(self._change_input)
         self._show()
 
     @property
     def name(self) -> str:
         """Name of the varied input, "" without one."""
-        name = str(self._key.value)
+        name = str(self._toml_key.value)
         return "" if name == NOTHING else name
 
     def _change_input(self) -> None:

@@ -57,7 +57,7 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
             )
         answer, trace = hears.recv()
     except EOFError as end:
-        raise _failure(bounds) from end
+        raise _limit_error(bounds) from end
     finally:
         process.kill()
         process.join()
@@ -70,7 +70,7 @@ def confined(bounds: Bounds, work: Callable[Given, Answer], *args: Given.args, *
     return result
 
 
-def _failure(bounds: Bounds) -> ParameterError:
+def _limit_error(bounds: Bounds) -> ParameterError:
     return ParameterError(
         "reading it failed: it is damaged, nested too deep, or takes more than {seconds:g} s and {megabytes} MB; "
         "check the file"
@@ -89,7 +89,7 @@ def _run_confined(tells: Connection, bounds: Bounds, work: Callable[..., object]
     except SkisnowError as error:
         answer = (ParameterError(error.message).tag(error.code), "")
     except Exception:  # logged by the server
-        answer = (_failure(bounds), traceback.format_exc()[-_LAST_WORDS:])
+        answer = (_limit_error(bounds), traceback.format_exc()[-_LAST_WORDS:])
     tells.send(answer)
 
 

@@ -115,9 +115,9 @@ class LineChart(Element, component="line_chart.js"):
         if not values:
             words = Message("{chart}: nothing yet", chart=self._words)
         elif names:
-            words = Message("{chart}: {extent} ({names})", chart=self._words, extent=_extent(values), names=names)
+            words = Message("{chart}: {extent} ({names})", chart=self._words, extent=_range_words(values), names=names)
         else:
-            words = Message("{chart}: {extent}", chart=self._words, extent=_extent(values))
+            words = Message("{chart}: {extent}", chart=self._words, extent=_range_words(values))
         return said(words, self.client)
 
 
@@ -127,7 +127,7 @@ def save_buttons(name: str) -> None:
         button(words, None).on("click", js_handler=f"() => saveCharts('{name}.{kind}')")
 
 
-def _extent(values: Sequence[float]) -> Message:
+def _range_words(values: Sequence[float]) -> Message:
     return Message("{low} to {high}", low=significant(min(values)), high=significant(max(values)))
 
 

@@ -90,17 +90,17 @@ def reworded(message: str, change: Callable[[str], str]) -> str:
     """
     if not isinstance(message, Message):
         return change(message)
-    fields = {name: _changed(value, change) for name, value in message.fields.items()}
+    fields = {name: _change_text(value, change) for name, value in message.fields.items()}
     if message.plural is not None:
         return count_message(message.template, message.plural, **{**fields, "count": message.fields["count"]})
     return Message(message.template, **fields)
 
 
-def _changed(value: object, change: Callable[[str], str]) -> object:
+def _change_text(value: object, change: Callable[[str], str]) -> object:
     if isinstance(value, SkisnowError):
         value = value.message
     if isinstance(value, list):
-        return [_changed(item, change) for item in value]
+        return [_change_text(item, change) for item in value]
     return reworded(value if isinstance(value, str) else str(value), change) if isinstance(value, str | Path) else value
 
 

@@ -241,8 +241,8 @@ def test_export_to_a_disk_that_fails_leaves_nothing(
     with Store.open(place) as store:
         id_ = store.add(folder).id
         before = sorted(tmp_path.iterdir())
-        with monkeypatch.context() as interpolate_patches:
-            interpolate_patches.setattr(os, "fsync", fails)
+        with monkeypatch.context() as patched:
+            patched.setattr(os, "fsync", fails)
             with pytest.raises(StoreError, match=re.escape(str(tmp_path / "out")) + f".*{sentence}"):
                 store.export(id_, tmp_path / "out")
         assert sorted(tmp_path.iterdir()) == before

@@ -48,7 +48,7 @@ def _track(name: str) -> Reader:
         files=lambda: {name: FILES[name]},
         read=lambda folder: _summarised(folder / name),
         mutations=mutations,
-        covers=("track.read:_bytes", f"track.readers.{_module(name)}"),
+        covers=("track.read:_read_bytes", f"track.readers.{_module(name)}"),
         seal=seal,
     )
 

@@ -315,8 +315,8 @@ def test_the_client_is_closed_at_the_end() -> None:
 
 
 def test_who_does_not_answer_is_reported_with_what_to_start() -> None:
-    assert "tcp://h:1 (refused)" in dask_cluster._unanswered("tcp://h:1", OSError("refused"))
-    assert "uses certificates" in dask_cluster._unanswered("tls://h:1", OSError("refused"))
+    assert "tcp://h:1 (refused)" in dask_cluster._no_answer_message("tcp://h:1", OSError("refused"))
+    assert "uses certificates" in dask_cluster._no_answer_message("tls://h:1", OSError("refused"))
     assert [is_plain(f"{kind}://h:1") for kind in ("tcp", "tls", "wss", "ws")] == [True, False, False, True]
 
 

@@ -45,11 +45,11 @@ def crew_of_scheduler(address: str, function: PointFunction) -> Crew:
     try:
         client = _distributed().Client(address, timeout=WAIT_S, name="skisnow")
     except (OSError, ValueError, TypeError) as error:
-        raise SkisnowError(_unanswered(address, error)).tag("no_scheduler") from error
+        raise SkisnowError(_no_answer_message(address, error)).tag("no_scheduler") from error
     return DaskCrew(function, client, client.close)
 
 
-def _unanswered(address: str, error: Exception) -> Message:
+def _no_answer_message(address: str, error: Exception) -> Message:
     if not is_plain(address):
         return Message(
             "No connection to the scheduler at {address} ({error}). It uses certificates. Check that it runs, and that "

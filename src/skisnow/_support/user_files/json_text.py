@@ -34,7 +34,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
         number, length of a text), repeats a key of an object, or contains an invalid character.
     """
     try:
-        value = json.loads(text, object_pairs_hook=_object, parse_int=_whole, parse_constant=_refuse_constant)
+        value = json.loads(text, object_pairs_hook=_entries, parse_int=_integer, parse_constant=_refuse_constant)
         require_sound(value, infinite=False)
     except ContentError as error:
         raise error.of(title) from None
@@ -52,7 +52,7 @@ def own_json(text: str | bytes) -> Any:
     return json.loads(text)
 
 
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _entries(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     entries = dict(pairs)
     if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
@@ -60,7 +60,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return entries
 
 
-def _whole(digits: str) -> int:
+def _integer(digits: str) -> int:
     if len(digits) > _MOST_DIGITS:
         raise ContentError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
             "number_too_large", count=len(digits), largest=LARGEST_WHOLE
@@ -96,22 +96,22 @@ def read_record(path: str | Path, kind: type[T], *, only_known: bool = True) -> 
                 "damaged", path=path, key=entry.name
             )
     for name, value in fields_given.items():
-        if not _fits(value, hints[name]):
+        if not _matches_hint(value, hints[name]):
             raise ContentError("{path} is damaged: {key} is {value!r}, of another type. Remove it.").tag(
                 "damaged", path=path, key=name, value=str(value)[:60]
             )
     return kind(**fields_given)
 
 
-def _fits(value: object, hint: Any) -> bool:
+def _matches_hint(value: object, hint: Any) -> bool:
     origin = get_origin(hint)
     if origin is UnionType:
-        return any(_fits(value, argument) for argument in get_args(hint))
+        return any(_matches_hint(value, argument) for argument in get_args(hint))
     if origin is Literal:
         return isinstance(value, str) and value in get_args(hint)
     if origin is not None and issubclass(origin, Mapping):
         _, inner = get_args(hint)
-        return isinstance(value, dict) and all(_fits(entry, inner) for entry in value.values())
+        return isinstance(value, dict) and all(_matches_hint(entry, inner) for entry in value.values())
     if hint is float:
         return isinstance(value, int | float) and not isinstance(value, bool)
     if hint is int:

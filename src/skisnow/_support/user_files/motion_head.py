@@ -26,7 +26,7 @@ def head_of_motion(lines: Sequence[str]) -> dict[str, str]:
 
 def degrees_stated(path: str | Path, head: Mapping[str, str]) -> bool | None:
     """True or False as the header states degrees or not; None without a statement."""
-    word = _said(head).get("indegrees")
+    word = _header_values(head).get("indegrees")
     if word is None:
         return None
     if word.lower() not in _WORDS:
@@ -43,7 +43,7 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
         radians in .sto.
     """
     stated = degrees_stated(path, head)
-    if stated is None and "version" not in _said(head) and str(path).lower().endswith(".mot"):
+    if stated is None and "version" not in _header_values(head) and str(path).lower().endswith(".mot"):
         raise ParameterError(
             "{path}: the header states neither the unit of angles nor a version. Add the line inDegrees=yes or "
             "inDegrees=no before endheader."
@@ -53,7 +53,7 @@ def is_in_degrees(path: str | Path, head: Mapping[str, str]) -> bool:
 
 def require_whole(path: str | Path, head: Mapping[str, str], **counts: int) -> None:
     """ParameterError if the header states cells of several numbers, or other counts of its keys than the file has."""
-    said = _said(head)
+    said = _header_values(head)
     kind = said.get("datatype", _ONE_NUMBER)
     if kind.lower() != _ONE_NUMBER:
         raise ParameterError(
@@ -69,5 +69,5 @@ def require_whole(path: str | Path, head: Mapping[str, str], **counts: int) -> N
             ).tag("head_says", path=path, key=key, word=word[:_LONGEST_SHOWN], there=there)
 
 
-def _said(head: Mapping[str, str]) -> dict[str, str]:
+def _header_values(head: Mapping[str, str]) -> dict[str, str]:
     return {key.lower(): value for key, value in head.items()}

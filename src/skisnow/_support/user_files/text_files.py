@@ -84,13 +84,13 @@ class ContentError(ParameterError):
     """
 
     def __init__(self, what: str, *, line: int | None = None, title: str = "", sentence: str = "") -> None:
-        super().__init__(sentence or _placed(what, line, title))
+        super().__init__(sentence or _with_place(what, line, title))
         self.what, self.line, self.title, self.sentence = what, line, title, sentence
 
     def tag(self, code: str, /, **fields: Any) -> Self:
         """The same error with its code, and with fields in the template of its problem."""
         self.what = as_template(self.what, fields)
-        self.args = (self.sentence or _placed(self.what, self.line, self.title),)
+        self.args = (self.sentence or _with_place(self.what, self.line, self.title),)
         self.code = code
         return self
 
@@ -99,7 +99,7 @@ class ContentError(ParameterError):
         return ContentError(self.what, line=self.line, title=title).tag(self.code)
 
 
-def _placed(what: str, line: int | None, title: str) -> str:
+def _with_place(what: str, line: int | None, title: str) -> str:
     if line and title:
         return Message("{file}, line {line}: {problem}", file=title, line=line, problem=what)
     if line:
@@ -281,7 +281,7 @@ def _require_short(text: str) -> None:
         if first in "[{":
             depth += 1
             if depth > DEEPEST:
-                raise too_deep(_line(text, token))
+                raise too_deep(_line_of(text, token))
         elif first in "]}":
             depth -= 1
         if first in "[]{}=,\n":
@@ -289,7 +289,7 @@ def _require_short(text: str) -> None:
         elif first not in "\"'#":
             dots += word.count(".")
             if dots > MOST_DOTS:
-                raise ContentError("a key has more than {count} dots. Shorten it.", line=_line(text, token)).tag(
+                raise ContentError("a key has more than {count} dots. Shorten it.", line=_line_of(text, token)).tag(
                     "key_too_long", count=MOST_DOTS
                 )
             if len(word) > LONGEST_KEY:
@@ -298,8 +298,8 @@ def _require_short(text: str) -> None:
                     count=len(word),
                     longest=LONGEST_KEY,
                 )
-                raise ContentError(problem, line=_line(text, token)).tag("key_too_long")
+                raise ContentError(problem, line=_line_of(text, token)).tag("key_too_long")
 
 
-def _line(text: str, token: re.Match[str]) -> int:
+def _line_of(text: str, token: re.Match[str]) -> int:
     return text.count("\n", 0, token.start()) + 1

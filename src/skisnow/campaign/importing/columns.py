@@ -58,7 +58,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
         dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
     stated = [
-        _stated(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
+        _column(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
     ]
     dialogue.open.extend(_invalid_column_answers(section, form, dialogue))
     dialogue.open.extend(_column_questions(section, form, stated))
@@ -74,7 +74,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     return choices
 
 
-def _stated(form: TableForm, answer: str, heading: str) -> str:
+def _column(form: TableForm, answer: str, heading: str) -> str:
     return answer if answer in form.known or answer == NONE else stated_column(form, heading)
 
 
@@ -268,11 +268,11 @@ def units_in_notes(column: str, notes: Iterable[Note]) -> set[str]:
     """Units that notes state for a column, such as "Last in kg"."""
     words = "|".join(re.escape(word) for word in SYNONYMS[column] if len(word) > 2)
     pattern = re.compile(rf"\b(?:{words})(?:en|e|n|s)?\s*(?:in|:|=|\[|\()\s*([^\s\]),;.]+)", re.IGNORECASE)
-    units = {known_unit(match[1]) for note in notes for match in pattern.finditer(_plain(note.text))}
+    units = {known_unit(match[1]) for note in notes for match in pattern.finditer(_without_umlauts(note.text))}
     return {unit for unit in units if unit and conversion(unit, column)}
 
 
-def _plain(text: str) -> str:
+def _without_umlauts(text: str) -> str:
     return text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
 
 

@@ -73,7 +73,7 @@ def read_sheets(name: str, data: bytes, *, count: Callable[[Sequence[str]], int]
     Raises ContentError or ParameterError: it is not a workbook or a CSV file, or is beyond a limit.
     """
     if not is_workbook(name):
-        rows, separator = _csv_rows(name, data, count or _headings)
+        rows, separator = _csv_rows(name, data, count or _count_headings)
         return [Sheet(PurePath(name).stem, rows, rows, separator=separator)]
     fractions: dict[str, list[tuple[int, int]]] = {}
     try:
@@ -127,7 +127,7 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
         ) from failure
 
 
-def _headings(cells: Sequence[str]) -> int:
+def _count_headings(cells: Sequence[str]) -> int:
     return max(sum(bool(stated_column(form, cell.strip())) for cell in cells) for form in TABLES)
 
 

@@ -290,13 +290,13 @@ def _missing_measurements() -> Problem:
 
 def read_description(files: RawFiles) -> tuple[CampaignFile | None, Headings, Mapping[str, RowCorrections]]:
     """Read campaign.toml, its mapping of headings, and corrections.csv by file; problems are added to `files`."""
-    described = _described(files)
+    described = _read_campaign_toml(files)
     headings = described.headings if described is not None else Headings()
     table = _table(files, CORRECTIONS, {}, headings, None)
     return described, headings, {} if table is None or table.absent else corrections_by_file(table, files.problems)
 
 
-def _described(files: RawFiles) -> CampaignFile | None:
+def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
     data = files.read(CAMPAIGN_FILE)
     if CAMPAIGN_FILE in files.absent:
         action = Message(

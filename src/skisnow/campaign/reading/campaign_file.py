@@ -122,7 +122,7 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
     -------
     Its content, or None if it is not TOML. Invalid values are missing, with an error in ``problems``.
     """
-    parsed = _parsed(text, problems)
+    parsed = _parse_toml(text, problems)
     if parsed is None:
         return None
     top = TomlValues(CAMPAIGN_FILE, parsed, "", problems)
@@ -143,12 +143,12 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
         flat_tools=flat_tools,
         excluding=_excluding(top),
         headings=parse_headings(top),
-        snow_micro_pen=_recordings(top.table("snow_micro_pen")),
+        snow_micro_pen=_recording_settings(top.table("snow_micro_pen")),
         weather=top.table("weather").declared(WeatherSettings),
     )
 
 
-def _parsed(text: str, problems: list[Problem]) -> dict[str, Any] | None:
+def _parse_toml(text: str, problems: list[Problem]) -> dict[str, Any] | None:
     try:
         return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
     except ContentError as failure:
@@ -160,7 +160,7 @@ def _parsed(text: str, problems: list[Problem]) -> dict[str, Any] | None:
     return None
 
 
-def _recordings(section: TomlValues) -> SnowMicroPenSettings:
+def _recording_settings(section: TomlValues) -> SnowMicroPenSettings:
     settings = section.declared(SnowMicroPenSettings)
     if settings.from_depth >= settings.to_depth:
         allowed = Message("a depth above from_depth_mm, {from_depth:g}", from_depth=settings.from_depth / MM)

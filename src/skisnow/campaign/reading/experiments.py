@@ -99,13 +99,13 @@ def check_series(table: Table, blocks: Blocks) -> Iterator[Problem]:
             reference = blocks.first_chosen(~column.is_blank)[blocks.of_row]
             differs = (column.code != column.code[reference]) & ~column.is_blank & ~key.is_blank
             for row in np.flatnonzero(differs).tolist():
-                yield _mixed(table, row, int(reference[row]), name, column[row], column[int(reference[row])])
+                yield _mixed_error(table, row, int(reference[row]), name, column[row], column[int(reference[row])])
     angle = table.numbers["edge_angle_deg"]
     reference = blocks.first_chosen(~np.isnan(angle))[blocks.of_row]
     differs = (angle != angle[reference]) & ~np.isnan(angle) & ~key.is_blank
     for row in np.flatnonzero(differs).tolist():
         other = float(angle[reference[row]])
-        yield _mixed(table, row, int(reference[row]), "edge_angle_deg", f"{angle[row]:.12g}", f"{other:.12g}")
+        yield _mixed_error(table, row, int(reference[row]), "edge_angle_deg", f"{angle[row]:.12g}", f"{other:.12g}")
 
 
 def check_one_site(table: Table) -> Iterator[Problem]:
@@ -117,7 +117,7 @@ def check_one_site(table: Table) -> Iterator[Problem]:
     for row in np.flatnonzero(~key.is_blank & ~site.is_blank).tolist():
         reference = first_row.setdefault(int(key.code[row]), row)
         if site.code[row] != site.code[reference]:
-            yield _mixed(table, row, reference, "site", site[row], site[reference])
+            yield _mixed_error(table, row, reference, "site", site[row], site[reference])
 
 
 def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
@@ -143,7 +143,7 @@ def _repeated_name(table: Table, blocks: Blocks) -> Iterator[Problem]:
         )
 
 
-def _mixed(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:
+def _mixed_error(table: Table, row: int, reference: int, column: str, value: str, other: str) -> Problem:
     allowed = Message(
         "one {column} in an experiment; row {row} has {other!r}",
         column=column,
@@ -163,10 +163,10 @@ def penetration_tests(table: Table) -> PenetrationTests:
     laid_on = ~taken_off if is_unloaded else slice(None)
     after = table.numbers["depth_after_mm"][laid_on]
     return PenetrationTests(
-        experiment=_at(table.names["experiment"], blocks.start),
-        site=_at(table.names["site"], blocks.start),
-        tool=_at(table.names["tool"], blocks.start),
-        spot=_at(spot, blocks.first_chosen(~spot.is_blank)),
+        experiment=_cells_at(table.names["experiment"], blocks.start),
+        site=_cells_at(table.names["site"], blocks.start),
+        tool=_cells_at(table.names["tool"], blocks.start),
+        spot=_cells_at(spot, blocks.first_chosen(~spot.is_blank)),
         edge_angle=table.numbers["edge_angle_deg"][blocks.start] * DEGREE,
         snow_density=blocks.means(table.numbers["snow_density_kg_per_m3"]),
         drop_cone_depth=blocks.means(table.numbers["drop_cone_depth_mm"]) * MM,
@@ -205,10 +205,10 @@ def shear_tests(table: Table) -> ShearTests:
     is_turned = ~np.isnan(angle)
     spot = table.names["spot"]
     return ShearTests(
-        experiment=_at(table.names["experiment"], largest),
-        site=_at(table.names["site"], largest),
-        plate=_at(table.names["plate"], largest),
-        spot=_at(spot, blocks.first_chosen(~spot.is_blank)),
+        experiment=_cells_at(table.names["experiment"], largest),
+        site=_cells_at(table.names["site"], largest),
+        plate=_cells_at(table.names["plate"], largest),
+        spot=_cells_at(spot, blocks.first_chosen(~spot.is_blank)),
         edge_angle=table.numbers["edge_angle_deg"][largest] * DEGREE,
         penetration_depth=table.numbers["depth_mm"][largest] * MM,
         lever_arm=table.numbers["lever_arm_mm"][largest] * MM,
@@ -251,7 +251,7 @@ def drop_cone_tests(table: Table) -> DropConeTests:
     )
 
 
-def _at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:
+def _cells_at(column: NameColumn, rows: np.typing.NDArray[np.int64]) -> tuple[str, ...]:
     return tuple(map(column.names.__getitem__, column.code[rows].tolist()))
 
 

@@ -100,9 +100,9 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
     if len(missing) == len(form.required):
         return [_all_missing(form, header)]
     repeated = [name for name, times in Counter(filter(None, header.columns)).items() if times > 1]
-    problems = [_repeated(form, name, header.row) for name in repeated]
+    problems = [_repeated_error(form, name, header.row) for name in repeated]
     problems += [_missing(form, name, unknown, header.row) for name in missing]
-    problems += [_unknown(form, name, header) for name in unknown]
+    problems += [_unknown_error(form, name, header) for name in unknown]
     return problems
 
 
@@ -139,7 +139,7 @@ def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
     return unit if unit and unit_of_column(column) and conversion(unit, column) is None else None
 
 
-def _repeated(form: TableForm, name: str, row: int) -> Problem:
+def _repeated_error(form: TableForm, name: str, row: int) -> Problem:
     allowed = Message("each column once")
     action = Message("Rename or remove one of the columns of this name.")
     return error("unreadable_file", form.file, row=row, column=name, value=name, allowed=allowed, action=action)
@@ -179,7 +179,7 @@ def _advise_mapping(heading: str, column: str) -> Message:
     )
 
 
-def _unknown(form: TableForm, name: str, header: Header) -> Problem:
+def _unknown_error(form: TableForm, name: str, header: Header) -> Problem:
     free = [name_of_column for name_of_column in form.known if name_of_column not in header.columns]
     near = difflib.get_close_matches(name, free, n=1)
     if near and _needs_conversion(name, near[0]):
@@ -231,21 +231,21 @@ def column_units(form: TableForm, header: Header, headings: Headings, problems: 
         below = header.units[place] if header.units else ""
         stated = list(filter(None, (headings.unit(form, heading), named, below)))
         if any(conversion(unit_given, column) != conversion(stated[0], column) for unit_given in stated):
-            problems.append(_two_units(form, heading, column, header.row))
+            problems.append(_two_units_error(form, heading, column, header.row))
             continue
         unit = stated[0] if stated else ""
         size = conversion(unit, column) if unit else None
         if not unit:
             unstated |= {column: heading} if column in numbers else {}
         elif size is None or (size.changes and column not in numbers):
-            problems.append(_other_unit(form, heading, column, header.row, is_number=column in numbers))
+            problems.append(_other_unit_error(form, heading, column, header.row, is_number=column in numbers))
         else:
             conversions[column] = size
-            problems += [_note(form, heading, column, size.name)] if size.changes else []
+            problems += [_conversion_note(form, heading, column, size.name)] if size.changes else []
     return ColumnUnits(conversions, unstated)
 
 
-def _note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
+def _conversion_note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
     return warning(
         "converted_unit",
         form.file,
@@ -257,14 +257,14 @@ def _note(form: TableForm, heading: str, column: str, unit: str) -> Problem:
     )
 
 
-def _other_unit(form: TableForm, heading: str, column: str, row: int, *, is_number: bool) -> Problem:
+def _other_unit_error(form: TableForm, heading: str, column: str, row: int, *, is_number: bool) -> Problem:
     units = units_for(column)
     allowed = Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0])
     action = Message("Correct the unit, or convert the numbers.")
     return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)
 
 
-def _two_units(form: TableForm, heading: str, column: str, row: int) -> Problem:
+def _two_units_error(form: TableForm, heading: str, column: str, row: int) -> Problem:
     allowed = Message("one unit among {units}", units=units_for(column))
     action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
     return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)

@@ -138,15 +138,15 @@ def _table_or_empty(
 ) -> Table | None:
     if reading is None:
         if readable:
-            problems.append(_empty(form, "nothing"))
+            problems.append(_empty_error(form, "nothing"))
         return None
     reading.finish()
     if readable and not reading.met_rows and not form.may_be_empty:
-        problems.append(_empty(form, "a header only"))
+        problems.append(_empty_error(form, "a header only"))
     return reading.table() if len(reading) or form.may_be_empty else None
 
 
-def _empty(form: TableForm, what: str) -> Problem:
+def _empty_error(form: TableForm, what: str) -> Problem:
     action = Message("Fill the file, or remove it from the campaign.")
     return error("empty_file", form.file, value=what, allowed=Message("a header and at least one row"), action=action)
 
@@ -219,10 +219,10 @@ class _TableReading:
                 good[0].append(line)
                 good[1].append(cells[:width])
             else:
-                self._problems.append(self._surplus(line, first, width - len(unnamed)))
+                self._problems.append(self._surplus_error(line, first, width - len(unnamed)))
         return good
 
-    def _surplus(self, line: int, cell: str, width: int) -> Problem:
+    def _surplus_error(self, line: int, cell: str, width: int) -> Problem:
         allowed = Message("{width} cells, one below each column name", width=width)
         action = Message("Name the column in the header, or put the cell with a separator or decimal comma in quotes.")
         return error("unreadable_file", self._form.file, row=line, value=cell, allowed=allowed, action=action)

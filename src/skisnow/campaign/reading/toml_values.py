@@ -165,9 +165,9 @@ class TomlValues:
                     value=key,
                 )
             else:
-                self._ignored(key, keys)
+                self._report_ignored(key, keys)
 
-    def _ignored(self, key: str, allowed_keys: Sequence[str]) -> None:
+    def _report_ignored(self, key: str, allowed_keys: Sequence[str]) -> None:
         allowed = Message("the keys {allowed_keys}", allowed_keys=list(allowed_keys))
         action = Message("The key is not used; no action is needed.")
         self.problems.append(

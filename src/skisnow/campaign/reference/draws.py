@@ -174,13 +174,13 @@ def density(generator: np.random.Generator) -> DensitySamples:
     centre = np.array([site.snow_density for site in sites])
     value = _normal_within(generator, centre, design.DENSITY_SD, design.DENSITY_RANGE)
     return DensitySamples(
-        sample=_numbered("D", len(sites)),
+        sample=_numbered_names("D", len(sites)),
         site=tuple(site.name for site in sites),
         snow_density=np.rint(value),
         sample_depth=np.full(len(sites), np.nan),
         sample_thickness=np.full(len(sites), np.nan),
         cancelled=("",) * len(sites),
-        row=_rows(len(sites)),
+        row=_row_numbers(len(sites)),
     )
 
 
@@ -195,12 +195,12 @@ def drop_cone(generator: np.random.Generator) -> DropConeTests:
     centre = np.repeat([site.drop_cone_depth for site in sites], repeats)
     depth = _normal_within(generator, centre, design.DROP_CONE_SD, design.DROP_CONE_RANGE)
     return DropConeTests(
-        test=tuple(name for name in _numbered("C", len(sites)) for _ in range(repeats)),
+        test=tuple(name for name in _numbered_names("C", len(sites)) for _ in range(repeats)),
         site=tuple(site.name for site in sites for _ in range(repeats)),
         repeat=tuple(str(repeat + 1) for _ in sites for repeat in range(repeats)),
         drop_cone_depth=np.round(depth / MM, 1) * MM,
         cancelled=("",) * centre.size,
-        row=_rows(centre.size),
+        row=_row_numbers(centre.size),
     )
 
 
@@ -244,11 +244,11 @@ def _shear_stress(
     return np.concatenate(drawn)
 
 
-def _numbered(letter: str, count: int) -> tuple[str, ...]:
+def _numbered_names(letter: str, count: int) -> tuple[str, ...]:
     return tuple(f"{letter}{number:03d}" for number in range(1, count + 1))
 
 
-def _rows(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
+def _row_numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.arange(2, count + 2, dtype=np.int64)  # the header is line 1
 
 
@@ -260,7 +260,7 @@ def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> Penetration
     count, steps = edge_angle.size, len(design.LOADS)
     sites = [(site, index) for site in design.PENETRATION_SITES for index in range(site.series)]
     return PenetrationTests(
-        experiment=_numbered("P", count),
+        experiment=_numbered_names("P", count),
         site=tuple(site.name for site, _ in sites),
         tool=(design.TOOL,) * count,
         spot=tuple(_spot(site, index) for site, index in sites),
@@ -271,7 +271,7 @@ def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> Penetration
         first=np.arange(0, (count + 1) * steps, steps, dtype=np.int64),
         load=np.tile(design.LOADS, count),
         penetration_depth=depth,
-        row=_rows(count * steps),
+        row=_row_numbers(count * steps),
     )
 
 
@@ -282,7 +282,7 @@ def _shear_tests(angle: FloatArray, depth: FloatArray, moment: FloatArray, densi
     alone = [(site.name, "") for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
     places = varied + beside + alone
     return ShearTests(
-        experiment=_numbered("S", count),
+        experiment=_numbered_names("S", count),
         site=tuple(site for site, _ in places),
         plate=(design.PLATE,) * count,
         spot=tuple(spot for _, spot in places),
@@ -293,5 +293,5 @@ def _shear_tests(angle: FloatArray, depth: FloatArray, moment: FloatArray, densi
         snow_density=density,
         drop_cone_depth=np.full(count, np.nan),
         cancelled=("",) * count,
-        row=_rows(count),
+        row=_row_numbers(count),
     )

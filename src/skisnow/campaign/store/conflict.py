@@ -135,8 +135,8 @@ class Divergence:
             file=self.subject[0],
             test=self.subject[1],
             what=_KINDS[self.kind],
-            here=tuple(_line(entry, self.uid_here, entries_by_uid) for entry in self.here),
-            there=tuple(_line(entry, self.uid_there, entries_by_uid) for entry in self.there),
+            here=tuple(_entry_line(entry, self.uid_here, entries_by_uid) for entry in self.here),
+            there=tuple(_entry_line(entry, self.uid_there, entries_by_uid) for entry in self.there),
             choices=self.choices,
         )
 
@@ -176,7 +176,7 @@ def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict
     }
 
 
-def _line(entry: JournalEntry, uids: Mapping[int, str], entries_by_uid: Mapping[str, JournalEntry]) -> str:
+def _entry_line(entry: JournalEntry, uids: Mapping[int, str], entries_by_uid: Mapping[str, JournalEntry]) -> str:
     about = entries_by_uid.get(uids.get(entry.about or 0, ""))
     return f"{entry.who or 'somebody'}, {entry.at}: {_entry_words(entry, about)}"
 

@@ -57,7 +57,7 @@ _FAILURES: Final = {
 """Template and code of what a store or a file could not do."""
 
 
-def _failure(doing: str, place: object, reason: str) -> StoreError:
+def _store_error(doing: str, place: object, reason: str) -> StoreError:
     text, code = _FAILURES[doing]
     return StoreError(Message(text, place=place, reason=reason)).tag(code)
 
@@ -73,9 +73,9 @@ def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
             why = reason(error, store)
         else:
             why = _file_reason(getattr(error, "orig", error), store)
-        raise _failure(doing, Message("The store {store}", store=store), why) from error
+        raise _store_error(doing, Message("The store {store}", store=store), why) from error
     except UnicodeDecodeError as error:  # SQLite's message contains damaged text from the schema
-        raise _failure(doing, Message("The store {store}", store=store), _DAMAGED) from error
+        raise _store_error(doing, Message("The store {store}", store=store), _DAMAGED) from error
 
 
 def _file_reason(error: BaseException, path: Path) -> str:
@@ -102,7 +102,7 @@ def file_errors(place: Path, doing: str) -> Iterator[None]:
         yield
     except OSError as error:
         why = _SYSTEM_REASONS.get(error.errno or 0, error.strerror or str(error))
-        raise _failure(doing, error.filename or place, why) from error
+        raise _store_error(doing, error.filename or place, why) from error
 
 
 def _remember_place(engine: Engine, place: StorePlace) -> None:

@@ -93,7 +93,7 @@ def parse_entry(row: RowMapping) -> JournalEntry:
     """
     entry = readable_entry(row)
     if row["sha256"] != entry_sha256({str(name): value for name, value in row.items()}):
-        raise _damaged(row)
+        raise _damage_error(row)
     return entry
 
 
@@ -108,11 +108,11 @@ def readable_entry(row: RowMapping) -> JournalEntry:
                 require_integer(values[name])
         cells = {text_of(column): text_of(cell) for column, cell in json_value(text_of(row["cells"])).items()}
     except (TypeError, ValueError, AttributeError) as error:
-        raise _damaged(row) from error
+        raise _damage_error(row) from error
     return JournalEntry(**values, cells=cells)
 
 
-def _damaged(row: RowMapping) -> StoreError:
+def _damage_error(row: RowMapping) -> StoreError:
     return damage_error(
         Message(
             "The entry {number} of the campaign in entry {id}", number=str(row["sequence"]), id=str(row["journal_id"])

@@ -229,9 +229,9 @@ class ServerAddress:
 
     def __str__(self) -> str:
         """User, host, port and database."""
-        host = self.url.host or _first(self.url.query.get("host"))
+        host = self.url.host or _first_value(self.url.query.get("host"))
         user = f"{self.url.username}@" if self.url.username else ""
-        port = self.url.port or _first(self.url.query.get("port"))
+        port = self.url.port or _first_value(self.url.query.get("port"))
         return f"postgresql://{user}{host}{f':{port}' if port else ''}/{self.url.database or ''}"
 
 
@@ -282,5 +282,5 @@ def _server_url(text: str) -> URL:
     return url
 
 
-def _first(value: str | tuple[str, ...] | None) -> str:
+def _first_value(value: str | tuple[str, ...] | None) -> str:
     return (value if isinstance(value, str) else value[0]) if value else ""

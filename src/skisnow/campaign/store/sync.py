@@ -175,7 +175,7 @@ class _Sync:
         if not chosen:
             return 0
         with reading(self._there.engine) as there, writing(self._here.engine) as here:
-            open_ = {divergence.id: divergence for divergence in self._open(here, there)}
+            open_ = {divergence.id: divergence for divergence in self._open_divergences(here, there)}
             if unknown := sorted(chosen.keys() - open_.keys() - {ALL}):
                 raise StoreError(
                     "There is no open conflict {names}: one of its sides may have changed. Nothing was settled; "
@@ -189,11 +189,11 @@ class _Sync:
 
     def _conflicts(self) -> tuple[Conflict, ...]:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
-            open_ = list(self._open(here, there))
+            open_ = list(self._open_divergences(here, there))
             names = names_of(here).all if open_ else {}
         return tuple(divergence.in_words(names.get(divergence.journal_id, "")) for divergence in open_)
 
-    def _open(self, here: Connection, there: Connection) -> Iterator[Divergence]:
+    def _open_divergences(self, here: Connection, there: Connection) -> Iterator[Divergence]:
         for id_ in shared_journals(here, there):
             with self._collect_damage(id_):
                 candidates = find_divergences(here, there, id_, entry_index(here, id_), entry_index(there, id_))
@@ -331,15 +331,15 @@ def settle(here: Connection, there: Connection, divergence: Divergence, side: Si
         _write_chosen_description(here, divergence, side, who)
     elif side == "here":
         taken = [numbers[entry.uid] for entry in divergence.there]
-        _undo_entries(here, divergence, taken, _why(divergence.there), who)
+        _undo_entries(here, divergence, taken, _choice_reason(divergence.there), who)
     elif side == "there":
         own = [entry.sequence for entry in divergence.here]
-        _undo_entries(here, divergence, own, _why(divergence.here), who)
+        _undo_entries(here, divergence, own, _choice_reason(divergence.here), who)
     elif divergence.kind == "begun twice":
         _rename(here, there, divergence, who)
 
 
-def _why(others: Iterable[JournalEntry]) -> str:
+def _choice_reason(others: Iterable[JournalEntry]) -> str:
     names = ", ".join(dict.fromkeys(entry.who for entry in others if entry.who))
     return f"stores synchronised, the other side kept{f'; written by {names}' if names else ''}"
 

@@ -127,29 +127,29 @@ class VolumeWithAnglePoint(PointLaw):
         HypoplasticPoint(self.snow_hardness, self.unloading_ratio)  # which checks both
 
     @property
-    def _flat(self) -> HypoplasticPoint:
+    def _flat_law(self) -> HypoplasticPoint:
         return HypoplasticPoint(ANGLE_TERM[0] * self.snow_hardness, self.unloading_ratio)
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stress`; under a flat base."""
-        return self._flat.stress(depth, deepest)
+        return self._flat_law.stress(depth, deepest)
 
     def stress_and_energy(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray) -> FloatArray:
         """See `PointLaw.stress_and_energy`."""
         b0, b1 = ANGLE_TERM
-        return (1.0 + b1 / b0 * edge_angle) * self._flat.stress_and_energy(depth, deepest, edge_angle)
+        return (1.0 + b1 / b0 * edge_angle) * self._flat_law.stress_and_energy(depth, deepest, edge_angle)
 
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.residual_depth`."""
-        return self._flat.residual_depth(deepest)
+        return self._flat_law.residual_depth(deepest)
 
     def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stored_energy`; under a flat base."""
-        return self._flat.stored_energy(depth, deepest)
+        return self._flat_law.stored_energy(depth, deepest)
 
     def lost_energy(self, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.lost_energy`; under a flat base."""
-        return self._flat.lost_energy(deepest)
+        return self._flat_law.lost_energy(deepest)
 
 
 RAMP_DEPTH: Final = 0.5e-3
@@ -231,19 +231,19 @@ class MeanPressurePoint(PointLaw):
         """k_u (N/m³)."""
         return self.unloading_ratio * (2.0 * self.pressure_slope + self.pressure_offset / self.ramp_depth)
 
-    def _virgin(self, depth: FloatArray) -> FloatArray:
+    def _loading_stress(self, depth: FloatArray) -> FloatArray:
         return 2.0 * self.pressure_slope * depth + self.pressure_offset * np.minimum(1.0, depth / self.ramp_depth)
 
     def stress(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stress`."""
         reached = self.deepest_after(depth, deepest)
         released = self._unloading * (reached - np.asarray(depth, float))
-        return np.asarray(np.maximum(self._virgin(reached) - released, 0.0))
+        return np.asarray(np.maximum(self._loading_stress(reached) - released, 0.0))
 
     def residual_depth(self, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.residual_depth`: ε_max - q(ε_max)/k_u."""
         reached = np.asarray(deepest, float)
-        return reached - self._virgin(reached) / self._unloading
+        return reached - self._loading_stress(reached) / self._unloading
 
     def stored_energy(self, depth: npt.ArrayLike, deepest: npt.ArrayLike) -> FloatArray:
         """See `PointLaw.stored_energy`: p²/(2 k_u)."""
@@ -254,5 +254,5 @@ class MeanPressurePoint(PointLaw):
         reached = np.asarray(deepest, float)
         ramp = np.minimum(reached, self.ramp_depth)
         by_offset = self.pressure_offset * (reached - ramp + 0.5 * ramp**2 / self.ramp_depth)
-        stored = self._virgin(reached) ** 2 / (2.0 * self._unloading)
+        stored = self._loading_stress(reached) ** 2 / (2.0 * self._unloading)
         return np.asarray(np.maximum(self.pressure_slope * reached**2 + by_offset - stored, 0.0))

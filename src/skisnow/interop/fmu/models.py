@@ -62,7 +62,7 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
         for variable in vector(f"{side}.{name}", "output", unit, about, np.zeros(3))
     ]
     variables = (TIME, *_snow_parameters(setup.snow), *inputs, *outputs)
-    data = core.contact_data(setup.snow.compiled, contact.compiled, _starts(variables))
+    data = core.contact_data(setup.snow.compiled, contact.compiled, _start_values(variables))
     about = (
         f"Snow on {'a rigid ski' if skis == 1 else 'two rigid skis'}: poses and motions at a step's beginning in, "
         f"forces and moments there out. {axes_of(scenario)}"
@@ -102,13 +102,13 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
     variables = (TIME, speed, *inputs, *outputs)
     inertia = np.array([ski.inertia for ski in dynamics.body.skis])
     data = core.sledge_data(
-        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, _starts(variables)
+        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, _start_values(variables)
     )
     about = f"A sledge on two flexible skis over snow. {axes_of(scenario)}"
     return Model("skisnow sledge", about, variables, data, step)
 
 
-def _starts(variables: tuple[Variable, ...]) -> FloatArray:
+def _start_values(variables: tuple[Variable, ...]) -> FloatArray:
     return np.array([variable.start for variable in variables])
 
 

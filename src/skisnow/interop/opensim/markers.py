@@ -191,14 +191,14 @@ def boots_of_markers(
 
 def _pose(markers: Markers, of: BootMarkers, turned: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Places (n, 3) and axes (n, 3, 3), rows ahead, left and off the base."""
-    heel, toe, left = (_seen(markers, name) @ turned.T for name in (of.heel, of.toe, of.left))
+    heel, toe, left = (_complete_places(markers, name) @ turned.T for name in (of.heel, of.toe, of.left))
     ahead = _unit(toe - heel, of)
     off = _unit(np.cross(ahead, left - heel), of)
     axes = np.stack([ahead, np.cross(off, ahead), off], axis=1)
     return heel + np.einsum("c,nca->na", np.asarray(of.sole), axes), axes
 
 
-def _seen(markers: Markers, name: str) -> FloatArray:
+def _complete_places(markers: Markers, name: str) -> FloatArray:
     place = markers.of(name)
     unseen = ~np.isfinite(place).all(axis=1)
     if unseen.any():

@@ -182,17 +182,17 @@ def regression_sentences(data: ReportData) -> list[Markup]:
 
 def _sentence(row: Json) -> Markup:
     if row["b"] is None and row["n"] == 0:
-        return _on(row, Message("no data."))
+        return _regression_sentence(row, Message("no data."))
     if row["b"] is None:
-        return _on(row, Message("no slope: too few experiments, or the predictor does not vary."))
+        return _regression_sentence(row, Message("no slope: too few experiments, or the predictor does not vary."))
     if row["withheld"]:
         judgement = prose(
             "not judged: {reason}; the slope over them is {change} {unit} {step}.",
             reason=row["withheld"], **_slope(row),
         )  # fmt: skip
-        return _on(row, judgement)
+        return _regression_sentence(row, judgement)
     if row["p"] is None:
-        return _on(row, Message("too few experiments for an interval or a test."))
+        return _regression_sentence(row, Message("too few experiments for an interval or a test."))
     if row["p"] < SIGNIFICANT:
         judgement = prose(
             "significant ({p}); {response} changes by {change} {unit} {step}, 95 % interval {ends}.",
@@ -204,10 +204,10 @@ def _sentence(row: Json) -> Markup:
             "interval; estimate {change}).",
             p=p_equals(row["p"]), ends=_changes(row, row["interval"][1]), **_slope(row),
         )  # fmt: skip
-    return html(" ").join([_on(row, judgement), *_by_site(row)])
+    return html(" ").join([_regression_sentence(row, judgement), *_by_site(row)])
 
 
-def _on(row: Json, judgement: str) -> Markup:
+def _regression_sentence(row: Json, judgement: str) -> Markup:
     return prose(
         "{response} on {predictor}, {group} (n = {n}): {judgement}",
         response=html(QUANTITY[row["response"]][0]),

@@ -280,14 +280,14 @@ def _relations(data: ReportData) -> Markup | None:
     if not judged and not withheld:
         return None
     lists = {
-        "yes": _listed([row for row in judged if row["p"] < SIGNIFICANT]),
-        "no": _listed([row for row in judged if row["p"] >= SIGNIFICANT]),
+        "yes": _regression_list([row for row in judged if row["p"] < SIGNIFICANT]),
+        "no": _regression_list([row for row in judged if row["p"] >= SIGNIFICANT]),
     }
     if withheld:
         sentence = prose(
             "Relations: significant at 5 %: {yes}; not significant: {no}; not judged, as the predictor takes fewer "
             "than {few} different values: {rows}.",
-            few=FEWEST_VALUES, rows=_listed(withheld), **lists,
+            few=FEWEST_VALUES, rows=_regression_list(withheld), **lists,
         )  # fmt: skip
     else:
         sentence = prose("Relations: significant at 5 %: {yes}; not significant: {no}.", **lists)
@@ -307,7 +307,7 @@ def _significance(row: Json) -> str:
     return f" ({p})" if pair[0] > 0 or pair[1] < 0 else Message(" ({p}; not with sites as clusters)", p=p)
 
 
-def _listed(rows: list[Json]) -> Markup:
+def _regression_list(rows: list[Json]) -> Markup:
     named = [
         prose(
             "{response} on {predictor}{group}{p}",

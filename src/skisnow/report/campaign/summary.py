@@ -99,7 +99,7 @@ def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -
         yield f"{symbol}: none"
         return
     sites = [item for item in results["site_means"] if item["quantity"] == quantity]
-    pooled = _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), _over(sites))
+    pooled = _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), _over_sites(sites))
     if len(sites) > 1:
         yield from (_site(item, symbol, unit, kind) for item in sites[:MOST_SITES])
         if len(sites) > MOST_SITES:
@@ -158,7 +158,7 @@ def _ratio_in_words(row: Json) -> str:
     return "not resolved"
 
 
-def _over(sites: list[Json]) -> str:
+def _over_sites(sites: list[Json]) -> str:
     return f"over {len(sites)} sites" if len(sites) > 1 else f"over the experiments of one site, {sites[0]['site']}"
 
 

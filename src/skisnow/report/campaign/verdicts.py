@@ -54,24 +54,28 @@ def verdicts(results: Mapping[str, Any]) -> list[Message]:
 
     results: contents of `skisnow.results_dict`.
     """
-    return _of_rows(results["group_comparisons"], results["provenance"]["options"]["difference_percent"])
+    return _row_verdicts(results["group_comparisons"], results["provenance"]["options"]["difference_percent"])
 
 
 def quick_verdicts(campaign: Campaign, quantity: str) -> list[Message]:
     """The verdicts on H_V or S_f of a campaign that is still being entered, without the other results."""
     penetration, shear = screened_both(campaign, geometry="extended")
     pairs = compare_campaign(campaign, penetration, shear)
-    return _of_rows([asdict(pair) for pair in pairs if pair.quantity == quantity], 100.0 * DIFFERENCE)
+    return _row_verdicts([asdict(pair) for pair in pairs if pair.quantity == quantity], 100.0 * DIFFERENCE)
 
 
-def _of_rows(rows: list[Json], difference: float) -> list[Message]:
+def _row_verdicts(rows: list[Json], difference: float) -> list[Message]:
     kinds: dict[tuple[str, str], list[Json]] = {}
     for row in rows:
         kinds.setdefault((row["quantity"], row["by"]), []).append(row)
-    return [sentence for (quantity, by), mine in kinds.items() for sentence in _of_kind(mine, quantity, by, difference)]
+    return [
+        sentence
+        for (quantity, by), mine in kinds.items()
+        for sentence in _kind_verdicts(mine, quantity, by, difference)
+    ]
 
 
-def _of_kind(rows: list[Json], quantity: str, by: str, difference: float) -> Iterator[Message]:
+def _kind_verdicts(rows: list[Json], quantity: str, by: str, difference: float) -> Iterator[Message]:
     if len(rows) > MOST_PAIRS:
         uncertain = [row for row in rows if not _is_certain(row)]
         if by == "site":
@@ -107,10 +111,10 @@ def verdict(row: Json, difference_percent: float) -> Message:
     if _is_certain(row) and row["n_pairs"] > 1:
         return Message(
             "{comparison}: certain ({p}, corrected for {pairs} pairs).",
-            comparison=comparison, p=_p(row["p_holm"]), pairs=row["n_pairs"],
+            comparison=comparison, p=_p_text(row["p_holm"]), pairs=row["n_pairs"],
         )  # fmt: skip
     if _is_certain(row):
-        return Message("{comparison}: certain ({p}).", comparison=comparison, p=_p(row["p"]))
+        return Message("{comparison}: certain ({p}).", comparison=comparison, p=_p_text(row["p"]))
     if ends is None or row["n_needed"] is None:
         return Message(
             "{comparison}: not certain. Repeat the test in one of the groups: the scatter is unknown.",
@@ -126,7 +130,7 @@ def verdict(row: Json, difference_percent: float) -> Message:
     if row["n_pairs"] > 1:
         uncertain = Message(
             "{comparison}: not certain ({p}, corrected for {pairs} pairs)",
-            comparison=comparison, p=_p(row["p_holm"]), pairs=row["n_pairs"],
+            comparison=comparison, p=_p_text(row["p_holm"]), pairs=row["n_pairs"],
         )  # fmt: skip
     if more == 0:
         return Message(
@@ -140,7 +144,7 @@ def verdict(row: Json, difference_percent: float) -> Message:
     )  # fmt: skip
 
 
-def _p(p: float) -> Message:
+def _p_text(p: float) -> Message:
     return Message("p < 0.001") if p < 0.001 else Message("p = {p:.2g}", p=p)
 
 

@@ -86,7 +86,7 @@ def gaps_text(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> str:
     for row in gap_rows(gaps):
         rows.append((str(row["gate"]), *(_hundredths(row[name], signed=name in _TIMES[2:]) or "-" for name in _TIMES)))
     heading = Message("Gates of {name} against {name_2}, behind +", name=names[0], name_2=names[1])
-    return "\n".join([heading, *aligned_rows(rows), _result(gaps, names)])
+    return "\n".join([heading, *aligned_rows(rows), _result_sentence(gaps, names)])
 
 
 def write_gaps(
@@ -103,7 +103,7 @@ def write_gaps(
 
 def gaps_section(gaps: tuple[GateGap, ...], names: tuple[str, str], pictures: Sequence[Picture]) -> Section:
     """Section of a page with the time lost from gate to gate, in the current language."""
-    key = [html(_result(gaps, names))]
+    key = [html(_result_sentence(gaps, names))]
     return Section("gates", Message("Gates"), key=key, pictures=pictures, tables=[gaps_table(gaps, names)])
 
 
@@ -152,7 +152,7 @@ def gaps_headline(gaps: tuple[GateGap, ...]) -> Markup:
     return prose("{value} ahead at gate {gate}; {number} of {all} gates were crossed by both.", **fields)
 
 
-def _result(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Message:
+def _result_sentence(gaps: tuple[GateGap, ...], names: tuple[str, str]) -> Message:
     return last_words(gaps, names) if _crossed_by_both(gaps) else Message("No gate was crossed by both.")
 
 

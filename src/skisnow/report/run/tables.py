@@ -96,7 +96,7 @@ def skis_table(run: Run) -> Table:
     """Table with total force, normal force and grip utilisation of each ski."""
     histories = run.skis.total_force, run.skis.normal_force, grip_utilisation(run), gross_grip_utilisation(run)
     rows = [
-        (name, *(value for history in histories for value in _middle_and_high(history[:, ski])))
+        (name, *(value for history in histories for value in _median_and_high(history[:, ski])))
         for ski, name in enumerate(SKIS)
     ]
     return Table(
@@ -121,7 +121,7 @@ def skis_table(run: Run) -> Table:
     )
 
 
-def _middle_and_high(values: FloatArray) -> tuple[float | None, float | None]:
+def _median_and_high(values: FloatArray) -> tuple[float | None, float | None]:
     finite = values[np.isfinite(values)]
     return (float(np.median(finite)), float(np.quantile(finite, 0.95))) if finite.size else (None, None)
 

@@ -270,7 +270,7 @@ def _fitted(comparison: Mapping[str, Any]) -> Iterator[str]:
     if fitted["undetermined"]:
         yield f"  {fitted['undetermined']} direction(s) these tracks do not tell; nothing was moved along them"
     for kind, title in TITLES.items():
-        before, after = (_pair(state[kind], comparison["known_to_m"]) for state in (fitted["before"], comparison))
+        before, after = (_max_mean(state[kind], comparison["known_to_m"]) for state in (fitted["before"], comparison))
         yield f"  {title}: largest and mean {before} before, {after} after"
 
 
@@ -283,7 +283,7 @@ def fitted_words(fitted: Mapping[str, Any]) -> str:
     )
 
 
-def _pair(distances: Mapping[str, Any], exact: float) -> str:
+def _max_mean(distances: Mapping[str, Any], exact: float) -> str:
     largest, mean = (metres(distances[key], exact) for key in ("max_m", "mean_m"))
     return f"both {mean}" if largest == mean else f"{largest} and {mean}"
 

@@ -196,8 +196,8 @@ def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> Non
     reference = named[0][1]
     ski = loaded_ski(reference, moment)
     for place, (_, run) in enumerate(named):
-        axes.plot(run.skis.station, run.skis.edge_depth[_at(run, moment), ski] / MM, **_line_style(place))
-    deepest = max(float(np.nanmax(run.skis.edge_depth[_at(run, moment), ski])) for _, run in named) / MM
+        axes.plot(run.skis.station, run.skis.edge_depth[_time_index(run, moment), ski] / MM, **_line_style(place))
+    deepest = max(float(np.nanmax(run.skis.edge_depth[_time_index(run, moment), ski])) for _, run in named) / MM
     axes.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
     axes.axvline(0.0, color=PALE, linewidth=0.5, zorder=0)
     axes.set_ylim(1.15 * max(deepest, 0.1), -0.35 * max(deepest, 0.1))
@@ -207,10 +207,10 @@ def _draw_depths(axes: Axes, named: list[tuple[str, Run]], moment: float) -> Non
     axes.set_ylabel(sides[ski])
 
 
-def _at(run: Run, moment: float) -> int:
+def _time_index(run: Run, moment: float) -> int:
     return int(np.argmin(abs(run.time - moment)))
 
 
 def loaded_ski(run: Run, moment: float) -> int:
     """Index of the ski with the larger total force at a time (s): 0 left, 1 right."""
-    return int(np.argmax(run.skis.total_force[_at(run, moment)]))
+    return int(np.argmax(run.skis.total_force[_time_index(run, moment)]))

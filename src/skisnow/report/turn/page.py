@@ -210,14 +210,14 @@ def parameters_table(snow: SnowProperties) -> Table:
     """Table of H_V and S_f with their intervals, and of k_u/H_V and u_y if they have one."""
     rows: list[tuple[Any, ...]] = [
         (Message("snow hardness H_V"), "N/mm³", _scaled(snow.snow_hardness, N_PER_MM3),
-         _both(snow.snow_hardness_interval, N_PER_MM3)),
+         _scaled_interval(snow.snow_hardness_interval, N_PER_MM3)),
         (Message("failure shear stress S_f"), "N/mm²", _scaled(snow.failure_shear_stress, N_PER_MM2),
-         _both(snow.failure_shear_stress_interval, N_PER_MM2)),
+         _scaled_interval(snow.failure_shear_stress_interval, N_PER_MM2)),
     ]  # fmt: skip
     if snow.unloading_ratio_interval is not None:
         rows.append(("k_u / H_V", "", snow.unloading_ratio, snow.unloading_ratio_interval))
     if snow.shear_displacement_interval is not None:
-        way = _scaled(snow.shear_displacement, MM), _both(snow.shear_displacement_interval, MM)
+        way = _scaled(snow.shear_displacement, MM), _scaled_interval(snow.shear_displacement_interval, MM)
         rows.append((Message("shear displacement u_y"), "mm", *way))
     return Table(
         "parameters",
@@ -236,7 +236,7 @@ def _scaled(value: float | None, unit: float) -> float | None:
     return None if value is None else value / unit
 
 
-def _both(interval: tuple[float, float] | None, unit: float) -> tuple[float, float] | None:
+def _scaled_interval(interval: tuple[float, float] | None, unit: float) -> tuple[float, float] | None:
     return None if interval is None else (interval[0] / unit, interval[1] / unit)
 
 

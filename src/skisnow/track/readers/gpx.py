@@ -132,7 +132,7 @@ def read_gpx(text: str, name: str) -> Recording:
         height, speed or distance is not a number.
     """
     points = _points(text, name)
-    distance = [_optional(point, name, place, "distance") for place, point in enumerate(points)]
+    distance = [_optional_number(point, name, place, "distance") for place, point in enumerate(points)]
     moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
     return Recording(
         name=name,
@@ -160,15 +160,15 @@ def _points(text: str, name: str) -> list[_Point]:
     try:
         parser.Parse(text.lstrip(), True)
     except _TooMuchError as error:
-        raise _damaged(
+        raise _damage_error(
             name, error.value, error.allowed, Message("No device writes such a file; export it again.")
         ) from error
     except expat.ExpatError as error:
         action = Message("The file is damaged or ends too early; export it again.")
-        raise _damaged(name, str(error), "GPX 1.0, GPX 1.1 or TCX", action) from error
+        raise _damage_error(name, str(error), "GPX 1.0, GPX 1.1 or TCX", action) from error
     if not reader.points and (reader.others or reader.root not in (_POINT[0], _TCX_POINT[0])):
         counted = ", ".join(f"{count} {element}" for element, count in reader.others.items())
-        raise _damaged(
+        raise _damage_error(
             name,
             counted or f"<{reader.root}>",
             " > ".join(_TCX_POINT if reader.root == _TCX_POINT[0] else _POINT),
@@ -177,7 +177,7 @@ def _points(text: str, name: str) -> list[_Point]:
     return reader.points
 
 
-def _damaged(name: str, value: str, allowed: str, action: str) -> Exception:
+def _damage_error(name: str, value: str, allowed: str, action: str) -> Exception:
     return track_error("unreadable_file", name, value=value, allowed=allowed, action=action)
 
 
@@ -226,11 +226,11 @@ def _place(point: _Point, name: str, place: int) -> tuple[float, float, float]:
     return (
         _number(point.texts.get("lat", absent), name, place, "lat", "degrees"),
         _number(point.texts.get("lon", absent), name, place, "lon", "degrees"),
-        _optional(point, name, place, "ele"),
+        _optional_number(point, name, place, "ele"),
     )
 
 
-def _optional(point: _Point, name: str, place: int, key: str) -> float:
+def _optional_number(point: _Point, name: str, place: int, key: str) -> float:
     return _number(point.texts.get(key) or "nan", name, place, key, "m")
 
 

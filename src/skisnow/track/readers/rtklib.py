@@ -130,7 +130,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         moments.append(moment)
         table.append(values)
         not_finite.append(has_not_finite_cell)
-    columns = _by_name(np.array(table, dtype=float).reshape(len(rows), len(header.columns)), header)
+    columns = _columns_by_name(np.array(table, dtype=float).reshape(len(rows), len(header.columns)), header)
     place, is_geodetic = _place(columns, header, base)
     velocity, place_sd = _velocity(columns, header, place), _deviations(columns, header, place)
     quality = columns.get("q")
@@ -258,7 +258,7 @@ def _base(lines: list[str], header: Header) -> GeodeticPoint | None:
     return None
 
 
-def _by_name(table: FloatArray, header: Header) -> dict[str, FloatArray]:
+def _columns_by_name(table: FloatArray, header: Header) -> dict[str, FloatArray]:
     return {column: table[:, place] for place, column in enumerate(header.columns)}
 
 

@@ -178,7 +178,7 @@ class _Table:
             if is_not_finite(cells[place]):
                 self.not_finite[place] = True
             else:
-                raise self._no_number(place, name, cells[place])
+                raise self._number_error(place, name, cells[place])
         return self._signed(name, values * self.columns[name].factor)
 
     def _signed(self, name: str, values: FloatArray) -> FloatArray:
@@ -211,20 +211,20 @@ class _Table:
         moments = [moment(cell) for cell in cells]
         for place, read in enumerate(moments):
             if read is None:
-                raise self._no_time(place, name, cells[place])
+                raise self._time_error(place, name, cells[place])
         times = [read for read in moments if read is not None]
         for place, (one, other) in enumerate(itertools.pairwise(times)):
             if (one.tzinfo is None) != (other.tzinfo is None):
-                raise self._no_time(place + 1, name, cells[place + 1], Message("all with a zone, or all without"))
+                raise self._time_error(place + 1, name, cells[place + 1], Message("all with a zone, or all without"))
         return np.array([(read - times[0]).total_seconds() for read in times]), times[0], None
 
     def _seconds(self, name: str, cells: list[str]) -> FloatArray:
         values = np.array([number(cell, self.mark) for cell in cells]) * self.columns[name].factor
         for place in np.flatnonzero(~(np.abs(values) <= FARTHEST * 100.0)).tolist():
-            raise self._no_time(place, name, cells[place])
+            raise self._time_error(place, name, cells[place])
         return values
 
-    def _no_time(self, place: int, column: str, cell: str, also: str = _IN_EVERY_ROW) -> Exception:
+    def _time_error(self, place: int, column: str, cell: str, also: str = _IN_EVERY_ROW) -> Exception:
         what = (
             Message("a number in {unit}", unit=_unit(column, self.columns[column].factor))
             if column == "time_s"
@@ -240,7 +240,7 @@ class _Table:
             action=Message("A point without a time cannot be put on a track; correct the cell."),
         )
 
-    def _no_number(self, place: int, column: str, cell: str) -> Exception:
+    def _number_error(self, place: int, column: str, cell: str) -> Exception:
         mark = Message("a decimal comma") if self.mark == "," else Message("a decimal point")
         return track_error(
             "not_a_number",

@@ -265,16 +265,18 @@ class Attachments:
         return tests[-1].name if tests else ""
 
     def _take_photo(self, event: Any) -> None:
-        self._take(event.args, lambda file, test, who: photo_entry(file, test, str(event.args["photo"]), who=who))
+        self._store_attachment(
+            event.args, lambda file, test, who: photo_entry(file, test, str(event.args["photo"]), who=who)
+        )
 
     def _take_position(self, event: Any) -> None:
         def entry(file: str, test: str, who: str) -> NewEntry:
             numbers = (float(event.args[key]) for key in ("latitude", "longitude", "accuracy"))
             return position_entry(file, test, Position(*numbers), who=who)
 
-        self._take(event.args, entry)
+        self._store_attachment(event.args, entry)
 
-    def _take(self, answer: Any, entry: Callable[[str, str, str], NewEntry]) -> None:
+    def _store_attachment(self, answer: Any, entry: Callable[[str, str, str], NewEntry]) -> None:
         if "refused" in answer:
             self._view.say(REFUSED[str(answer["refused"])], "bad")
             return
@@ -300,7 +302,7 @@ class Attachments:
                 Words(Message("In the files: {attachment}", attachment=row.get("photo") or place)).classes("quiet")
             for attachment in attachments:
                 with ui.element("div").classes("acts"):
-                    Words(_words(attachment))
+                    Words(_in_words(attachment))
                     button(Message("Remove"), lambda attachment=attachment: self._remove(attachment), "small")
 
     def _remove(self, attachment: ReplayedTest) -> None:
@@ -314,7 +316,7 @@ class Attachments:
         self.show()
 
 
-def _words(attachment: ReplayedTest) -> Message:
+def _in_words(attachment: ReplayedTest) -> Message:
     cells = attachment.rows[0].cells
     if photo := photo_of(attachment):
         return Message("Photo, {size:.0f} kB", size=len(photo) / 1000.0)

@@ -149,7 +149,7 @@ class DepthsAfterWaiting:
         """Unstored texts by load."""
         test = self._test
         typed = {load: str(field.value or "").strip() for load, field in self._fields.items()}
-        return {load: text for load, text in typed.items() if is_other(text, _stored(test, load))}
+        return {load: text for load, text in typed.items() if is_other(text, _depth_after(test, load))}
 
     @property
     def _test(self) -> ReplayedTest:
@@ -158,7 +158,7 @@ class DepthsAfterWaiting:
     def draw(self, loads: Iterable[str], unstored: dict[str, str], ask: ui.element) -> None:
         """Draw the fields, folded without a depth."""
         test = self._test
-        stored = {load: _stored(test, load) for load in loads}
+        stored = {load: _depth_after(test, load) for load in loads}
         is_open = any(stored.values()) or bool(unstored)
         with (
             folded(Message("Depths read once more after waiting"), is_open=is_open),
@@ -185,7 +185,7 @@ class DepthsAfterWaiting:
                 made.props["data-stored"] = stored
 
         def show() -> None:
-            depth_after = _stored(self._test, load)
+            depth_after = _depth_after(self._test, load)
             is_changed = is_other(str(depth.value or ""), depth_after)
             show_state(state, "" if not depth_after else CHANGED if is_changed else STORED)
 
@@ -198,7 +198,7 @@ class DepthsAfterWaiting:
         depths = self._valid_changes()
         if depths is None:
             return False
-        new = {load: text for load, text in depths.items() if not _stored(self._test, load)}
+        new = {load: text for load, text in depths.items() if not _depth_after(self._test, load)}
         others = {load: text for load, text in depths.items() if load not in new}
         listed = [
             Message("{depth} mm under {load} N", depth=number_text(text), load=number_text(load))
@@ -251,7 +251,7 @@ class DepthsAfterWaiting:
             Message(
                 BECOMES if text else IS_EMPTIED,
                 load=number_text(load),
-                old=number_text(_stored(test, load)),
+                old=number_text(_depth_after(test, load)),
                 new=number_text(text),
             )
             for load, text in depths.items()
@@ -259,13 +259,13 @@ class DepthsAfterWaiting:
 
         def leave() -> None:
             for load in depths:
-                self._fields[load].set_value(number_text(_stored(self._test, load), self._fields[load].client))
+                self._fields[load].set_value(number_text(_depth_after(self._test, load), self._fields[load].client))
             self._view.say(LEFT_AS_IT_WAS)
             self._shown()
 
         ask_reason(ask, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=leave)
 
 
-def _stored(test: ReplayedTest, load: str) -> str:
+def _depth_after(test: ReplayedTest, load: str) -> str:
     row = test.row_under(load)
     return "" if row is None else row.cells.get(AFTER, "")

@@ -65,7 +65,7 @@ class SingleForm:
         if not test.rows:
             self.begin()
             return
-        chosen = next((candidate for candidate in test.rows if _number(candidate) == row), test.rows[0])
+        chosen = next((candidate for candidate in test.rows if _entry_number(candidate) == row), test.rows[0])
         self._draw(chosen.cells, (test, chosen))
         self._live_results.follow(name, chosen.cells["site"])
 
@@ -106,7 +106,7 @@ class SingleForm:
                     self._view,
                     correcting[0],
                     self._ask,
-                    lambda: self.show(correcting[0].name, row=_number(correcting[1])),
+                    lambda: self.show(correcting[0].name, row=_entry_number(correcting[1])),
                     is_unanswered=self._is_unanswered,
                 )
         self._list.show(correcting[0].name if correcting else "")
@@ -114,7 +114,7 @@ class SingleForm:
 
     def _address(self) -> str:
         test, row = self._correcting or (None, None)
-        head = {"row": _number(row)} if row is not None else {}
+        head = {"row": _entry_number(row)} if row is not None else {}
         return entering(self._view.session.id, table=self._view.file, test=test.name if test else "", head=head)
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
@@ -207,9 +207,9 @@ class SingleForm:
         ]
         return ask_correction(
             self._view, self._ask, (test, row), changed, lines=lines,
-            show=lambda: self.show(test.name, row=_number(row)), leave=lambda: self._draw(row.cells, (test, row)),
+            show=lambda: self.show(test.name, row=_entry_number(row)), leave=lambda: self._draw(row.cells, (test, row)),
         )  # fmt: skip
 
 
-def _number(row: Reading) -> str:
+def _entry_number(row: Reading) -> str:
     return str(row.entered.sequence)

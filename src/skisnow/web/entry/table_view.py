@@ -312,7 +312,7 @@ class LiveResults:
         classes = "beside" if is_pressed else "beside above"
         with named(ui.element("section").classes(classes), Message("Results of the readings")):
             self._name = Words("").classes("quiet")
-            self._value = Words("").classes("value").props("role=status")
+            self._measured_value = Words("").classes("value").props("role=status")
             self._verdicts = ui.element("ul").classes("verdicts")
             self._marks = ui.element("ul").classes("marks")
             self._chart: LineChart | None = None
@@ -338,7 +338,7 @@ class LiveResults:
                 try:
                     results = await run.io_bound(self._view.session.quick_results, site)
                 except (FieldDataError, StoreError) as error:
-                    self._value.set_text(error_sentence(error))
+                    self._measured_value.set_text(error_sentence(error))
                     continue
                 if self._marks.is_deleted:  # the page was left meanwhile
                     return
@@ -367,7 +367,7 @@ class LiveResults:
             self.entry_list.take(results)
         row = results.experiments.get(key)
         self._name.set_text(Message("Test {name}", name=name) if row else "")
-        self._value.set_text(_value(row, pressed=self._view.file == PENETRATION.file))
+        self._measured_value.set_text(_measured_value(row, pressed=self._view.file == PENETRATION.file))
         self._marks.clear()
         with self._marks:
             flags = results.flags.get(key, {})
@@ -376,7 +376,7 @@ class LiveResults:
             self._chart.show(list(_lines(key, results.curves)), from_zero="xy")
 
 
-def _value(row: dict[str, Any] | None, *, pressed: bool) -> str:
+def _measured_value(row: dict[str, Any] | None, *, pressed: bool) -> str:
     if row is None:
         return ""
     if not pressed:

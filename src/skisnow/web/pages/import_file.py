@@ -84,7 +84,7 @@ class _ImportPage:
             options = {"": said(Message("none")), **templates}
             choice(Message("Template"), options, "").on_value_change(self._use_template)
         with ui.element("div").classes("acts"):
-            self._store = button(Message("Store the campaign"), self._keep, "main", once=True)
+            self._store = button(Message("Store the campaign"), self._keep_campaign, "main", once=True)
             self._status = Outcome()
         self._tables = ui.element("div").classes("importing")
         with ui.element("div").classes("acts"):
@@ -236,7 +236,7 @@ class _ImportPage:
             raise ParameterError("Answer the questions first.").tag("not_ready")
         return self.tried.proposal.files
 
-    async def _keep(self) -> None:
+    async def _keep_campaign(self) -> None:
         added = await run.io_bound(self.imports.store, self.id_, self._ready_files())
         if added is not None:
             ui.navigate.to(f"/?added={added}")

@@ -114,7 +114,7 @@ class _Form:
             place.clear()
         keys = study_keys(of)
         if not self._is_carve:
-            values = self._values()
+            values = self._field_values()
             keys = {name: key for name, key in keys.items() if name in (*basic(values), *expert(values))}
         with self._varied:
             first = FIRST.get(of, FIRST[OTHER])
@@ -136,7 +136,7 @@ class _Form:
     def _draw_scenario(self) -> None:
         from ...scenario.keys import SCENARIO_KEYS
 
-        values = self._values()
+        values = self._field_values()
 
         def draw(names: list[str]) -> None:
             with ui.element("div").classes("inputs"):
@@ -154,7 +154,7 @@ class _Form:
         self._fields[made.key.name] = made
         made.element.on_value_change(self._follow)
 
-    def _values(self) -> dict[str, Any]:
+    def _field_values(self) -> dict[str, Any]:
         from ...scenario import scenario_file
 
         return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
@@ -187,7 +187,7 @@ class _Form:
         """Solver, and time of a point with the middles of the ranges, see `unit_s`."""
         if self._is_carve:
             return "", unit_s(CARVE, {})
-        values = self._values()
+        values = self._field_values()
         for name in TIMES:
             try:
                 values[name] = float(self._fields[name].text or 0.0)
@@ -204,7 +204,7 @@ class _Form:
     async def ask(self) -> None:
         """Add the study to the queue if it is valid."""
         try:
-            question = self._question()
+            question = self._build_question()
             job = await run.io_bound(self._studies.ask_for, question, language_of())
         except SkisnowError as error:
             keys = [field.key for field in self._fields.values()]
@@ -214,7 +214,7 @@ class _Form:
         if job is not None:
             self._status.say(Message("{name} is in the queue.", name=job.name))
 
-    def _question(self) -> StudyQuestion:
+    def _build_question(self) -> StudyQuestion:
         axes = [axis for axis in self._axes if axis.name]
         if len({axis.name for axis in axes}) < len(axes):
             raise ParameterError("the first and the second input are the same; choose another one").tag("same_input")

@@ -141,7 +141,7 @@ class _ResultsView:
         """Values that the points of a line share."""
         return tuple(row["ski_name" if name == SKI else name] for name in self._others)
 
-    def _called(self, name: str) -> str:
+    def _input_name(self, name: str) -> str:
         return Message("Ski") if name == SKI else field_label(self._keys[name])
 
     def _order(self) -> list[int]:
@@ -156,7 +156,7 @@ class _ResultsView:
         rows.sort(key=lambda row: row[self._x])
         styles = {column: style for style, column in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
         words = [
-            value if name == SKI else f"{said(self._called(name))}: {_short(value)}"
+            value if name == SKI else f"{said(self._input_name(name))}: {_short(value)}"
             for name, value in zip(self._others, values, strict=True)
         ]
         name = ", ".join(words) if number in styles else ""
@@ -165,7 +165,7 @@ class _ResultsView:
 
     def _rows(self, study: Study) -> None:
         heading(Message("Table"))
-        columns = {name: self._called(name) for name in study.varied} | self._results
+        columns = {name: self._input_name(name) for name in study.varied} | self._results
         place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), Message("Table"))
         with place, ui.element("table"):
             add_head((*columns.values(), Message("Outcome")))

@@ -40,7 +40,7 @@ from .shared import greeting, raising
 HOST = "127.0.0.1:8765"
 
 
-class CarveInputs:
+class Asked:
     """The guard's answer to a request."""
 
     def __init__(self, desk: Desk, *, token: str | None = None, body_bytes: int = 100, host: str = "127.0.0.1") -> None:
@@ -107,21 +107,21 @@ FOREIGN, TOO_MUCH, OTHER_HOST, NO_ADDRESS = 403, 413, 421, 400
     ],
 )
 def test_requests_that_the_guard_answers(desk: Desk, method: str, headers: dict[str, str], answer: int) -> None:
-    assert CarveInputs(desk).status("/", method, **headers)[0] == answer
+    assert Asked(desk).status("/", method, **headers)[0] == answer
     if answer in (FOREIGN, OTHER_HOST, NO_ADDRESS):
-        assert CarveInputs(desk).send("websocket", **headers)[0]["type"] != "websocket.accept"
+        assert Asked(desk).send("websocket", **headers)[0]["type"] != "websocket.accept"
     if answer == NO_ADDRESS:
-        assert CarveInputs(desk, token="snow").status("/", method, **headers)[0] == NO_ADDRESS
+        assert Asked(desk, token="snow").status("/", method, **headers)[0] == NO_ADDRESS
 
 
 def test_a_body_without_its_size_is_cut_off_beyond_the_limit(desk: Desk) -> None:
-    lab = CarveInputs(desk)
+    lab = Asked(desk)
     assert lab.status("/", "POST", b"x" * 60, b"x" * 40, **OWN) == (200, "100")
     assert lab.send("http", "/", "POST", b"x" * 60, b"x" * 41, **OWN) == [{"type": "disconnected"}]
 
 
 def test_every_answer_has_the_headers_and_a_stricter_policy_stays(desk: Desk) -> None:
-    lab = CarveInputs(desk)
+    lab = Asked(desk)
     expected = {
         "content-security-policy": CONTENT_POLICY,
         "x-content-type-options": "nosniff",
@@ -141,18 +141,18 @@ def test_every_answer_has_the_headers_and_a_stricter_policy_stays(desk: Desk) ->
 
 
 def test_a_socket_of_another_site_is_closed(desk: Desk) -> None:
-    lab = CarveInputs(desk)
+    lab = Asked(desk)
     assert lab.send("websocket", **OWN) == [{"type": "websocket.accept"}]
     assert lab.received == 0
     for headers in ({}, {"origin": "http://evil.example"}):
         assert lab.send("websocket", **headers) == [{"type": "websocket.close", "code": 1008}]
     assert lab.received == 2
-    assert CarveInputs(desk, token="snow").send("websocket", **OWN) == [{"type": "websocket.close", "code": 1008}]
+    assert Asked(desk, token="snow").send("websocket", **OWN) == [{"type": "websocket.close", "code": 1008}]
     assert lab.send("lifespan", host="evil.example") == [{"type": "lifespan.startup.complete"}]
 
 
 def test_the_token_is_requested_until_the_cookie_is_there(desk: Desk) -> None:
-    lab, cookie = CarveInputs(desk, token="snow"), hmac.new(b"snow", b"skisnow lab", hashlib.sha256).hexdigest()
+    lab, cookie = Asked(desk, token="snow"), hmac.new(b"snow", b"skisnow lab", hashlib.sha256).hexdigest()
     for path, method in (("/", "GET"), ("/token", "GET"), ("/", "POST")):
         assert lab.status(path, method, **OWN)[0] == 401
     assert lab.status(cookie=f"{COOKIE}={cookie}") == (200, "0")
@@ -168,7 +168,7 @@ def test_the_token_is_requested_until_the_cookie_is_there(desk: Desk) -> None:
 
 def test_too_many_tries_are_reported_when_to_try_again(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.web.guard._WAIT_S", 0.0)
-    lab = CarveInputs(desk, token="snow")
+    lab = Asked(desk, token="snow")
     assert [lab.status("/token", "POST", b"token=ice", **OWN)[0] for _ in range(10)] == [403] * 10
     start = lab.send("http", "/token", "POST", b"token=snow", **OWN)[0]
     headers = dict(start["headers"])

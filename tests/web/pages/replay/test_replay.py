@@ -245,8 +245,8 @@ def test_a_track_is_placed_by_what_it_is_in(tmp_path: Path) -> None:
     with raises(ParameterError, "no_direction"):
         track_on_slope(tmp_path / "earth.gpx", Placing("mine.gpx"), 0.0)
     slope = replace(read_track(tmp_path / "own.csv"), axes="slope")
-    with pytest.MonkeyPatch.context() as interpolate_patches:
-        interpolate_patches.setattr(lab_tracks, "read_track", lambda _: slope)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(lab_tracks, "read_track", lambda _: slope)
         with raises(ParameterError, "needless_direction"):
             check_track(tmp_path / "own.csv", Placing("mine.csv", 90.0))
     (tmp_path / "track.csv").write_bytes(b"nonsense")
