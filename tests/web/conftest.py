@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import multiprocessing
+import pkgutil
 import runpy
 import shutil
 import subprocess
@@ -22,6 +23,7 @@ pytest.importorskip("nicegui", reason="the web lab is not installed: pip install
 
 from multiprocessing.process import BaseProcess
 
+import skisnow.web.pages
 from skisnow.campaign.store import Store
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
@@ -39,6 +41,9 @@ DRAWS_IF_ASKED = """["drawArrays", "drawArraysInstanced", "drawElements", "drawE
   WebGL2RenderingContext.prototype[name] = function (...given) { if (window.draws) draw.apply(this, given); };
 })"""
 """Drawing replays in software takes most of the time of these tests, and most of them look at no picture."""
+LOADED_LATE = ("alembic.command", "nicegui.ui_run_with", "sqlalchemy.dialects.sqlite", "uvicorn.lifespan.on",
+               "uvicorn.loops.uvloop", "uvicorn.protocols.websockets.auto")  # fmt: skip
+"""Modules that every server would load when it starts."""
 
 
 @dataclass
@@ -77,7 +82,8 @@ class Served:
 
     def _by_fork(self, port: int) -> str:
         context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload(["skisnow.web.server", "skisnow.web.pages.replay", "skisnow.web.pages.analysis"])
+        pages = (f"skisnow.web.pages.{each.name}" for each in pkgutil.iter_modules(skisnow.web.pages.__path__))
+        context.set_forkserver_preload(["skisnow.web.server", *pages, *LOADED_LATE])
         hears, tells = context.Pipe(duplex=False)
         program = str(Path(__file__).with_name("served_here.py"))
         given = self.store, port, tells
