@@ -8,7 +8,7 @@ import pytest
 
 from skisnow.geometry.vectors import axes_of
 from skisnow.replay import Replay, moving_replay_model, replay_bytes, replay_of_bytes, replay_of_file, replay_of_run
-from skisnow.replay.meshes import _normals, grid_mesh, snow_mesh
+from skisnow.replay.meshes import _snow_normals, grid_mesh, snow_mesh
 from skisnow.replay.replay import ski_edges
 from skisnow.scenario import Profile, Terrain, read_terrain
 from skisnow.simulation.moving_boots import BootHistory
@@ -103,7 +103,7 @@ def test_normals_are_those_of_the_snow_down_and_aside() -> None:
     replay = replay_of_run(over(-0.2 * X[:, None] + 0.3 * Y))
     normal = np.array([0.2, -0.3, 1.0]) / np.sqrt(1.0 + 0.2**2 + 0.3**2)
     places = np.array([[1.0, 2.0, 0.0], [7.3, -4.1, 0.0]])
-    assert _normals(replay, places) == pytest.approx(np.tile(normal, (2, 1)), abs=1e-9)
+    assert _snow_normals(replay, places) == pytest.approx(np.tile(normal, (2, 1)), abs=1e-9)
 
 
 def test_gates_of_the_course_stand_on_the_snow() -> None:

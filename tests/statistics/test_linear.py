@@ -12,7 +12,7 @@ from tests.coded import Coded, coded, raises
 from skisnow._support.errors import FitError, FitWarning, ParameterError
 from skisnow.statistics import linear_fit, polynomial_fit, regress, variance_shares
 from skisnow.statistics.clusters import cluster_intervals
-from skisnow.statistics.linear import chebyshev_columns, exact_way_back
+from skisnow.statistics.linear import chebyshev_columns, exact_power_basis
 
 from ..versions import EXACT_QUANTILES
 
@@ -200,9 +200,9 @@ def test_bad_input_is_named() -> None:
 
 def test_first_chebyshev_polynomials() -> None:
     # T_2 = 2 t² - 1 and T_3 = 4 t³ - 3 t with t = (x - 1)/2: T_2 = x²/2 - x - 1/2
-    back = exact_way_back(3, 1.0, 2.0)
+    back = exact_power_basis(3, 1.0, 2.0)
     assert [row[2] for row in back] == [Fraction(-1, 2), -1, Fraction(1, 2), 0]
-    assert [row[3] for row in exact_way_back(3, 0.0, 1.0)] == [0, -3, 0, 4]
+    assert [row[3] for row in exact_power_basis(3, 0.0, 1.0)] == [0, -3, 0, 4]
 
 
 def test_columns_are_cosines_and_stay_near_one() -> None:

@@ -223,7 +223,7 @@ class CsvRow:
     mark: str = "."
 
     def number(self, column: str) -> float:
-        """A finite number."""
+        """The finite number in a column; an error names the cell of any other text."""
         value = number(self.cells[column], self.mark)
         if not math.isfinite(value):
             raise self.refused(column, Message("A finite number is needed."), code="not_a_number")

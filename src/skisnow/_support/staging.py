@@ -33,7 +33,7 @@ _MOST_STALE: Final = 10_000
 
 @dataclass(slots=True)
 class Stage:
-    """Folder to write to.
+    """Hidden folder whose files replace those of the target folder when all are written.
 
     path: the folder to fill.
     stale: paths in the target of files that only an earlier run can have left; they are removed if there are no new

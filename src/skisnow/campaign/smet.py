@@ -161,7 +161,7 @@ class _Reading:
         return self._refuse(len(self._lines), "", "no [DATA]", allowed, action)
 
     def series(self) -> StationSeries:
-        """Everything of the file."""
+        """All readings of the file with the station."""
         for key in _NEEDED:
             if key not in self._header:
                 self._refuse(self._data, key, "nothing", f"the key {key} in the header", "Add it.")

@@ -59,7 +59,7 @@ def add_reference(commands: argparse._SubParsersAction[argparse.ArgumentParser])
 
 
 def write_reference(options: argparse.Namespace) -> int:
-    """Write the campaign."""
+    """Write the files of a synthetic campaign and print their paths."""
     from ..campaign import reference
 
     reference.write_reference(
@@ -87,7 +87,7 @@ def write_samples(options: argparse.Namespace) -> int:
 
 
 def add_ski(kinds: argparse._SubParsersAction[Parser]) -> None:
-    """Add the command to those of ``skisnow new``."""
+    """Add ``skisnow new ski`` to the program."""
     ski = kinds.add_parser(
         "ski",
         help="a ski file of tables, bend and torsion tests, or of three widths alone",

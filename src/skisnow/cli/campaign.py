@@ -150,7 +150,7 @@ PREVIEW_ROWS: Final = 3
 
 
 def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow import`` to the program."""
     parser = commands.add_parser(
         "import",
         help="make a campaign of a workbook or CSV file in any layout",

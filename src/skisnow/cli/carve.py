@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def add_carve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow carve`` to the program."""
     parser = commands.add_parser(
         "carve",
         help="equilibrium of a ski in snow: depth, pressure, deflection, twist, turn radius",
@@ -162,7 +162,7 @@ def _print_warnings(answers: list[CarveAnswer]) -> None:
 
 
 def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow design`` to the program."""
     parser = commands.add_parser(
         "design",
         help="the ski that makes a wanted turn: variables, conditions and goals in, a ski file out",

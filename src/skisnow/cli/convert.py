@@ -11,7 +11,7 @@ from .output import announced
 
 
 def add_convert(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow convert`` to the program."""
     parser = commands.add_parser(
         "convert",
         help="files between formats: CAAML, NetCDF, SnowMicroPen, SMET, SnowEx, OpenSim",
@@ -67,7 +67,7 @@ def convert_file(options: argparse.Namespace) -> int:
 
 
 def add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow export`` to the program."""
     parser = commands.add_parser(
         "export",
         help="models for other programs: FMUs, MJCF",

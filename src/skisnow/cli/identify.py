@@ -34,7 +34,7 @@ KEPT = "simulations.partial"
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow identify`` to the program."""
     parser = commands.add_parser(
         "identify",
         help="friction, drag, snow and more from tracks, photo-cell times or measured grooves",

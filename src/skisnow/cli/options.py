@@ -166,7 +166,7 @@ LOCAL = ("processes", "threads")
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
-    """Add the option to a command's."""
+    """Add the option for the address of a Dask scheduler to a command."""
     about = "who computes: processes (default) or threads of this computer, or the workers of a Dask scheduler"
     parser.add_argument("--scheduler", metavar="WORD|URL", help=about)
 

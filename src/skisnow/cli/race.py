@@ -38,7 +38,7 @@ MOST_EVALUATIONS, MOST_GATES, MOST_SNOWS = 1_000_000, 1_000, 10_000
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow race`` to the program."""
     parser = commands.add_parser(
         "race",
         help="the quickest line through a course, and what ski and snow are worth on it in time",

@@ -20,7 +20,7 @@ LARGEST_FACTOR: Final = 20.0
 
 
 def add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow replay`` to the program."""
     parser = commands.add_parser(
         "replay",
         help="a simulated run in three dimensions: a page that plays, glTF models",
@@ -129,7 +129,7 @@ def _write_replay(options: argparse.Namespace, shown: Replay, ghost: Replay | No
 
 
 def add_serve(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow serve`` to the program."""
     parser = commands.add_parser(
         "serve",
         help="open the web lab: enter a campaign, look at it, play with the turn",

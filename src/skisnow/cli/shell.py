@@ -139,7 +139,7 @@ def add_man(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
 
 
 def print_manual(options: argparse.Namespace) -> int:
-    """Print the page."""
+    """Print the manual page of the program in roff."""
     from importlib.metadata import version
 
     print(manual_page(options.program, version("skisnow")), end="")
@@ -235,7 +235,7 @@ NAMES: Final = (*INPUTS, *OUTPUTS)
 
 
 def add_schema(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow schema`` to the program."""
     parser = commands.add_parser(
         "schema",
         help="the JSON Schema of campaign.toml, of a scenario, or of the JSON of a command",

@@ -26,7 +26,7 @@ LOADING = "loading"
 
 
 def add_simulate(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow simulate`` to the program."""
     parser = commands.add_parser(
         "simulate",
         help="a simulated run of a sledge on two flexible skis",
@@ -203,7 +203,7 @@ MOST_RUNS = 10_000
 
 
 def add_turn(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow turn`` to the program."""
     parser = commands.add_parser(
         "turn",
         help="from a campaign to a turn: analysis, the snow of a site, a simulated turn, a band over what is not known",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow study`` to the program."""
     parser = commands.add_parser(
         "study",
         help="carved turns or simulated runs over a grid or a sample of inputs, as one table",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow track`` to the program."""
     parser = commands.add_parser(
         "track",
         help="evaluation of a measured track: distance, speed, runs, lifts, turns and their radii",
@@ -60,7 +60,7 @@ def add_track(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 
 def summarise(options: argparse.Namespace) -> int:
-    """Read, look, print, draw."""
+    """Read a track, print its summary, and write its report if a folder is given."""
     if options.discipline is not None and options.course is None:
         options.parser.error("--discipline needs --course: name the file of the gates")
     if options.out is not None:
@@ -122,7 +122,7 @@ def _course_origin(course: Course) -> GeodeticPoint | None:
 
 
 def add_compare(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the command to the program's."""
+    """Add ``skisnow compare`` to the program."""
     parser = commands.add_parser(
         "compare",
         help="distances between a simulated and a measured track",
@@ -176,7 +176,7 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
 
 
 def compare(options: argparse.Namespace) -> int:
-    """Compare, print, write."""
+    """Compare two tracks, print the distances, and write the comparison if a folder is given."""
     fitted = {"start", "heading"} <= set(_offsets(options))
     if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None and not fitted:
         options.parser.error(

@@ -54,7 +54,7 @@ DEFAULT_SEED: Final = 1
 
 @dataclass(frozen=True, repr=False)
 class Analysis(Shown):
-    """A campaign analysed.
+    """Result of `skisnow.analyse`: estimates of a campaign.
 
     Attributes
     ----------

@@ -50,7 +50,7 @@ class Parts(NamedTuple):
         return Parts(*(part * factor for part in self))
 
     def of(self, chosen: BoolArray) -> Parts:
-        """Keep the chosen series."""
+        """The same for the chosen series only."""
         return Parts(*(part[chosen] for part in self))
 
 

@@ -65,7 +65,7 @@ class FittedHardness(ShownFields):
     scatter: FloatArray
 
     def of(self, chosen: BoolArray) -> FittedHardness:
-        """Keep the chosen series."""
+        """The same for the chosen series only."""
         value = {symbol: H[chosen] for symbol, H in self.value.items()}
         readings = self.readings.of(chosen)
         return FittedHardness(readings, self.offset[chosen], value, self.interval[chosen], self.scatter[chosen])

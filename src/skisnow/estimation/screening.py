@@ -154,7 +154,7 @@ def series_estimates(
     counts: BoolArray | None = None,
     not_falling: BoolArray | None = None,
 ) -> SeriesEstimates:
-    """Estimates of all series.
+    """Estimates of all series: campaign model, hardness by each definition, and unloading.
 
     counts: mask of the series that the spreads are estimated from (default: all).
     not_falling: mask of the series whose unloading is omitted (default: none).

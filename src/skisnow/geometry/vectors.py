@@ -28,17 +28,17 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def plus(a: Vector, b: Vector) -> Vector:
-    """Sum."""
+    """Sum of two vectors."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 def minus(a: Vector, b: Vector) -> Vector:
-    """Difference."""
+    """Difference of two vectors."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 def times(factor: float, a: Vector) -> Vector:
-    """Multiple."""
+    """Product of a number and a vector."""
     return factor * a[0], factor * a[1], factor * a[2]
 
 

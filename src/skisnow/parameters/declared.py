@@ -53,7 +53,7 @@ class Word(Quantity):
 
 
 class Section(NamedTuple):
-    """Place of the quantities of a field's own dataclass; with `otherwise` words may replace them."""
+    """File section for the quantities of a nested dataclass; `otherwise`: a single word may replace the section."""
 
     name: str
     otherwise: bool = False

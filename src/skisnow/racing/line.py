@@ -154,7 +154,7 @@ class RacingLine(Shown):
         return self.turns[min(bisect_right(self._x, x, lo=1), len(self.turns)) - 1].speed
 
     def greatest_curvature(self) -> float:
-        """At any apex (1/m)."""
+        """Largest curvature at any apex (1/m)."""
         return max(abs(self.at(x + side * 1e-9)[2]) for x in self._x for side in (-1.0, 1.0))
 
     def _repr_facts(self) -> Facts:
@@ -214,7 +214,7 @@ def with_numbers(line: RacingLine, numbers: Sequence[Sequence[float]], first: in
 
 
 def first_gates(line: RacingLine, gates: int) -> RacingLine:
-    """Its first gates."""
+    """The line cut to its first gates."""
     return RacingLine(replace(line.course, gates=line.course.gates[:gates]), line.start, line.turns[:gates])
 
 

@@ -24,7 +24,7 @@ FAILED: Final = 1e6
 
 @dataclass(frozen=True, slots=True)
 class Evaluated:
-    """One evaluation.
+    """Result of one evaluation: its number, place in the unit cube, and row.
 
     number: in the order of the search, 0 or more.
     place: in the unit cube (n,).
@@ -98,7 +98,7 @@ class Batches:
         return min(self.found, key=lambda evaluation: _finite(evaluation.value))
 
     def evaluate(self, batch: Sequence[FloatArray]) -> None:
-        """A batch of places."""
+        """Evaluate a batch of places in the unit cube."""
         for more in self.evaluations.of([(self.point_of(place), place) for place in batch]):
             self.told(len(self.found) + more, self.least.value if self.found else FAILED)
 

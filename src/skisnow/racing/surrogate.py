@@ -117,7 +117,7 @@ def _factorise_kernel(places: FloatArray, lengths: FloatArray, noise: float) -> 
 
 
 def _kernel(first: FloatArray, second: FloatArray, lengths: FloatArray) -> FloatArray:
-    """Matérn 5/2 (n, m)."""
+    """Matérn kernel 5/2 between two sets of places, (n, m)."""
     a, b = first / lengths, second / lengths
     square = np.sum(a * a, axis=1)[:, None] + np.sum(b * b, axis=1)[None, :] - 2.0 * a @ b.T
     apart = np.sqrt(5.0 * np.maximum(square, 0.0))
@@ -265,7 +265,7 @@ BATCH: Final = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SurrogateSearch:
-    """Settings of the search.
+    """Search by a surrogate model: its settings and evaluations.
 
     count: evaluations after which no new batch begins.
     kinds: numbers of a turn.

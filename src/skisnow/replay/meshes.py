@@ -84,7 +84,7 @@ def groove_mesh(replay: Replay, pieces_mask: BoolArray) -> Mesh:
     """Mesh of the masked pieces of groove, as rectangles of their width slightly above the snow."""
     groove = replay.groove
     half = 0.5 * groove.width[pieces_mask, None] * groove.left[pieces_mask]
-    up = _normals(replay, groove.middle[pieces_mask])
+    up = _snow_normals(replay, groove.middle[pieces_mask])
     ahead = 0.5 * groove.spacing * np.cross(groove.left[pieces_mask], up)
     middle = groove.middle[pieces_mask] + LIFTED * up
     corners = np.stack([middle - half - ahead, middle + half - ahead, middle + half + ahead, middle - half + ahead], 1)
@@ -95,7 +95,7 @@ def groove_mesh(replay: Replay, pieces_mask: BoolArray) -> Mesh:
     return Mesh(corners.reshape(-1, 3), colours, triangles)
 
 
-def _normals(replay: Replay, place: FloatArray) -> FloatArray:
+def _snow_normals(replay: Replay, place: FloatArray) -> FloatArray:
     if replay.terrain is not None:
         beside = 0.5 * float(replay.terrain.x[1] - replay.terrain.x[0])
         (x, y), heights = place[:, :2].T, replay.terrain.heights
@@ -141,7 +141,7 @@ def grid_mesh(replay: Replay) -> Mesh:
         tones.append(np.repeat(across % 5.0 == 0.0, 2 * len(ends)))
     place, dark = np.concatenate(pieces), np.concatenate(tones)
     vertices = np.column_stack([place, surface_heights(replay, *place.T)])
-    vertices += LIFTED * _normals(replay, vertices)
+    vertices += LIFTED * _snow_normals(replay, vertices)
     colours = np.where(dark[:, None], linear_light(_GRID[True]), linear_light(_GRID[False]))
     return Mesh(vertices, colours, np.arange(len(vertices)).reshape(-1, 2))
 

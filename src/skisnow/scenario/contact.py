@@ -302,7 +302,7 @@ class Contact:
 
     @property
     def glide_friction(self) -> FrictionLaw:
-        """μ over the speed."""
+        """Friction law along the ski: μ as a function of the speed."""
         with without_range_warnings():  # a scenario has its own words for friction that is unlikely
             if self.friction_law is not None:
                 return self.friction_law.at(self.temperature, self.liquid_water or 0.0)

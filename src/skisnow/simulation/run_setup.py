@@ -141,7 +141,7 @@ class Setup:
 
     @property
     def time(self) -> float:
-        """Simulated so far (s)."""
+        """Time simulated so far (s)."""
         return self.dynamics.time
 
     @property

@@ -34,7 +34,7 @@ _TABLE_TOO_LONG: Final = template(
 
 @dataclass(frozen=True, slots=True)
 class FileParts:
-    """A ski file, parsed.
+    """Parts of a ski, read from its parsed file.
 
     table: the columns of its table by name, empty without one.
     """

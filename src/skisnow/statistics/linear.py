@@ -37,7 +37,7 @@ Polynomial = list[Fraction]
 
 @dataclass(frozen=True, repr=False)
 class LinearFit(ShownFields):
-    """A linear least-squares fit.
+    """Result of a linear least-squares fit.
 
     Attributes
     ----------
@@ -204,11 +204,11 @@ def chebyshev_columns(x: FloatArray, degree: int) -> Columns:
     middle = round((0.5 * low + 0.5 * high) / scale * 16.0) / 16.0 * scale
     t = (x[:, 0] - middle) / scale
     scaled: FloatArray = np.polynomial.chebyshev.chebvander(t, degree).astype(float)
-    back = np.array([[float(c) for c in row] for row in exact_way_back(degree, middle, scale)])
+    back = np.array([[float(c) for c in row] for row in exact_power_basis(degree, middle, scale)])
     return Columns(scaled, back, tuple(f"power {j}" for j in range(degree + 1)))
 
 
-def exact_way_back(degree: int, middle: float, scale: float) -> list[list[Fraction]]:
+def exact_power_basis(degree: int, middle: float, scale: float) -> list[list[Fraction]]:
     """Matrix B, B[j][k] = coefficient of x^j in T_k((x - middle)/scale), exactly."""
     t: Polynomial = [Fraction(-middle) / Fraction(scale), 1 / Fraction(scale)]
     basis: list[Polynomial] = [[Fraction(1)], t]

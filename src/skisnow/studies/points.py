@@ -66,7 +66,7 @@ class Points(LazySequence):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ListedPoints(Points):
-    """Listed points."""
+    """Points of a study as a list."""
 
     points: Sequence[Point]
 

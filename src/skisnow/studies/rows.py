@@ -81,7 +81,7 @@ class CsvRows(StoredRows):
         weakref.finalize(self, file.close)
 
     def block(self, number: int) -> list[Row]:
-        """Some rows."""
+        """Rows of one block, read from the CSV file."""
         begin, end = self._begins[number : number + 2]
         self._file.seek(begin)
         return csv_block(
@@ -129,7 +129,7 @@ class DatabaseRows(StoredRows):
             raise _table_error(self._path, place_reason(error) or damage or error) from error
 
     def block(self, number: int) -> list[Row]:
-        """Some rows."""
+        """Rows of one block, read from the database."""
         query = "select * from study where rowid >= ? order by rowid limit ?"
         with self._errors():
             rows = self._database.execute(query, (self._firsts[number], ROWS_OF_A_BLOCK)).fetchall()
@@ -192,7 +192,7 @@ class ParquetRows(StoredRows):
             raise _table_error(self._path, " ".join(str(error).split())) from error
 
     def block(self, number: int) -> list[Row]:
-        """Some rows."""
+        """Rows of one block, read from the Parquet file."""
         first = number * ROWS_OF_A_BLOCK
         last = min(first + ROWS_OF_A_BLOCK, len(self))
         rows: list[Row] = []

@@ -166,7 +166,7 @@ class Inclination(NamedTuple):
 
 
 def lay_on_slope(track: Track, slope_angle: float) -> Track:
-    """The track with x horizontal down the fall line, y to the left and z up.
+    """Track in horizontal axes: x horizontal down the fall line, y to the left and z up.
 
     track: in the axes of a plane slope; a point without height is taken to be on the plane.
     slope_angle: rad, inclination of the slope.

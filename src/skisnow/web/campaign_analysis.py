@@ -49,7 +49,7 @@ SHOWN_TABLES: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Included data.
+    """The user's choice of quality flags and tests to include in an analysis.
 
     excluding: codes of the quality flags that exclude an experiment (default: those of the campaign).
     left_out: further excluded experiments by file and name.

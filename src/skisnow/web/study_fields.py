@@ -253,7 +253,7 @@ class AxisFields:
         self._range.set_text(Message("Allowed: {allowed}.", allowed=self._keys[self.name].allowed) if self.name else "")
 
     def range(self) -> Range:
-        """The typed range.
+        """The range typed into the fields.
 
         Raises ParameterError: the range is not valid for the input.
         """

@@ -198,7 +198,7 @@ class Note:
 
 
 def length_mm(number: str, unit: str) -> float:
-    """A length in mm.
+    """A length in mm from a number and its unit.
 
     >>> length_mm("6,2", "cm")
     62.0

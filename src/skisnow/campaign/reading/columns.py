@@ -29,7 +29,7 @@ class Rows:
     key: Sequence[str]
 
     def problem(self, code: str, index: int, *, column: str, value: str, allowed: str, action: str) -> Problem:
-        """Error of one cell."""
+        """Error of one cell, with its file, line and experiment."""
         return error(
             code,
             self.file,
@@ -67,7 +67,7 @@ class NameColumn:
         return self.names[self.code[index]]
 
     def cells(self) -> tuple[str, ...]:
-        """All cells."""
+        """Text of the cell of each row."""
         return tuple(map(self.names.__getitem__, self.code.tolist()))
 
 
@@ -188,7 +188,7 @@ class TextCollector:
         self._texts.extend(once.setdefault(cell, cell) for cell in map(str.strip, cells))
 
     def column(self) -> tuple[str, ...]:
-        """Give the column."""
+        """The column: one stripped text for each row."""
         return tuple(self._texts)
 
 
@@ -271,7 +271,7 @@ class DateCollector:
         ]
 
     def column(self) -> tuple[str, ...]:
-        """Give the column."""
+        """The column: one ISO 8601 text, or the unreadable text, for each row."""
         return tuple(self._texts)
 
 

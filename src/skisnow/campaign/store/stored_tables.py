@@ -150,7 +150,7 @@ class CellError(ParameterError):
         super().__init__(self.problem(code, column), code=code)
 
     def problem(self, code: str, name: str) -> Message:
-        """Both sentences, with another name of the column."""
+        """Sentences with the problem and the fix, under another name of the column."""
         return joined([Message(_PROBLEMS[code], column=name, value=self.value), self.fix])
 
 

@@ -114,7 +114,7 @@ def sync(
 
 
 class _Sync:
-    """One synchronisation."""
+    """Steps of one synchronisation between two stores."""
 
     def __init__(self, here: Store, there: Store) -> None:
         self._here, self._there = here, there
@@ -230,7 +230,7 @@ class Names:
 
     @property
     def all(self) -> dict[str, str]:
-        """Both kinds."""
+        """Names of stored campaigns and of campaigns in entry by id."""
         return {**self.entered, **self.stored}
 
 

@@ -212,7 +212,7 @@ _LAST_COUNTED: Final = 65_535
 
 @dataclass(frozen=True, slots=True)
 class C3dContent:
-    """A file's content.
+    """Points and parameters of a C3D file.
 
     parameters: values by group and name, both in capitals.
     rate: frames a second (Hz).

@@ -24,7 +24,7 @@ _OWN_KEYS: Final = ("nrows", "ncolumns", "indegrees", "version")
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class MotionTable(Shown):
-    """Columns over time.
+    """Columns of an OpenSim motion or storage file over time.
 
     time: (n,), rising (s).
     columns: columns by name, (n,) each; the name states the quantity.

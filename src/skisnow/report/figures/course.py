@@ -44,7 +44,7 @@ def course_line(
     diverging: bool,
     axes_words: str = "$x$ (m)",
 ) -> Figure:
-    """Draw the figure.
+    """Draw a run from above with the gates of its course, coloured by a quantity.
 
     result: course with the passages of its gates.
     place: places of the line (m), shape (n, 2) or (n, 3).

@@ -34,7 +34,7 @@ def comparison_page(
     further: Sequence[Section] = (),
     back: str = "",
 ) -> str:
-    """HTML of the page.
+    """HTML of the page that compares two tracks.
 
     comparison: contents of `skisnow.comparison.comparison_dict`.
     pictures: pictures of the tracks, and of the gates.

@@ -66,7 +66,7 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
 
 
 def turn_page(chain: TurnChain, pictures: Sequence[Picture], *, language: str = ENGLISH) -> str:
-    """HTML of the report."""
+    """HTML of the report of a chain from campaign to turn."""
     with in_language(language):
         return sheet(_header(chain), _sections(chain, pictures))
 

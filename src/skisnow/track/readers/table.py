@@ -298,7 +298,7 @@ _MOST_ABOVE: Final = 50
 
 
 def _unit(column: str, factor: float) -> str:
-    """Unit of a size.
+    """Name of the unit that has this size.
 
     >>> _unit("time_s", 1e-3)
     'ms'

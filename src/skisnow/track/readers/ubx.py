@@ -181,7 +181,7 @@ def _row(epoch: _Epoch) -> tuple[float, ...]:
 
 
 def _place_sd(place: Any, covariance: Any) -> tuple[float, float, float]:
-    """East, north, up (m)."""
+    """Standard deviations of the place: east, north, up (m)."""
     if covariance is not None and covariance.posCovValid:
         variances = (covariance.posCovEE, covariance.posCovNN, covariance.posCovDD)
         if min(variances) > 0.0 and math.isfinite(sum(variances)):

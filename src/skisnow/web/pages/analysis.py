@@ -46,7 +46,7 @@ def add_page(lab: Lab) -> None:
 
         ui.context.client.on_delete(closed)
         with framed(Message("Analysis"), here=HERE):
-            _links(kind, id_, key)
+            _add_links(kind, id_, key)
             view = AnalysisView(page, analyses)
         view.show_cached()
         background_tasks.create(view.compute(), name="analysis")
@@ -86,7 +86,7 @@ async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -
     return out
 
 
-def _links(kind: str, id_: str, key: str) -> None:
+def _add_links(kind: str, id_: str, key: str) -> None:
     with ui.element("div").classes("acts"):
         if kind == "entry":
             link(Message("Enter tests"), entering(id_))

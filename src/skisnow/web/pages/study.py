@@ -290,7 +290,7 @@ class _Card(JobCard):
         self._table = named(table, Message("Table and figure of {name}", name=job.name))
 
     def inputs(self, job: StudyJob) -> tuple[str, ...]:
-        """Subject and varied inputs."""
+        """Subject and varied inputs of the study in words."""
         return CARVED if job.scenario == CARVE else job.scenario, job.given
 
     def show(self, job: StudyJob) -> None:
