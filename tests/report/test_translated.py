@@ -27,7 +27,7 @@ from skisnow.report.race import folder as gaps_report
 from skisnow.report.run.drawings import run_drawings
 from skisnow.report.run.page import run_page
 from skisnow.report.table import Column, record_table, table_html
-from skisnow.report.track.comparison_page import comparison_page
+from skisnow.report.track.page import comparison_page
 from skisnow.report.track.report import comparison_drawing, track_drawings
 from skisnow.report.turn import page as turn_report
 from skisnow.report.turn.chain import TurnChain

@@ -256,7 +256,7 @@ def print_schema(options: argparse.Namespace) -> int:
 def json_schema(name: str) -> Schema:
     """The schema with one of `NAMES`."""
     from .._support.user_files import read_json
-    from ..campaign.reading.campaign_schema import campaign_schema
+    from ..campaign.reading.campaign_file import campaign_schema
     from ..carving.question import CARVE_KEYS
     from ..parameters.json_schema import output_schema
     from ..scenario.schema import output_scenario_schema, scenario_schema

@@ -265,7 +265,7 @@ def _write(
     from ..report.figures.figure_files import write_pictures
     from ..report.formatting import json_text
     from ..report.race.folder import FILES, write_gaps
-    from ..report.track.comparison_page import comparison_page
+    from ..report.track.page import comparison_page
     from ..report.track.report import comparison_drawing
 
     with staged(folder, last="compare.json") as stage:

@@ -23,8 +23,7 @@ from ..replay.model import moving_replay_model, replay_model
 from ..replay.page import MODULES, STYLE, in_language, page_words, static_text
 from ..replay.replay import Replay
 from ..replay.run_file import RUN_FILE, replay_of_file
-from ..report.track.comparison_page import page_of_folders, page_of_tracks
-from ..report.track.page import file_of_track, page_of_track
+from ..report.track.page import file_of_track, page_of_folders, page_of_track, page_of_tracks
 from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import Ski, read_ski
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope

@@ -12,7 +12,7 @@ import pytest
 from skisnow._support.errors import ParameterError
 from skisnow.report.race.figures import gate_gaps_drawing, last_words
 from skisnow.report.race.folder import gaps_text
-from skisnow.report.track.comparison_page import page_of_folders
+from skisnow.report.track.page import page_of_folders
 from skisnow.track.course import Course, CourseResult, Gate, MovingPoint, passages
 from skisnow.track.course.course import Point, Side
 from skisnow.track.course.gates_table import COLUMNS, gaps_csv, gates_csv, gates_dict, read_gate_gaps, time_warnings

@@ -1,7 +1,8 @@
-"""Page of a measured track: pictures from above, and a table of its turns."""
+"""Pages of measured tracks: one track with its turns, and the comparison of two tracks or runs."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
@@ -10,14 +11,19 @@ import numpy as np
 
 from ..._support.errors import ParameterError
 from ..._support.messages import ENGLISH, Message, in_language, outcome_words
+from ...comparison import compare_tracks, comparison_dict
+from ...track.course.gates_table import GateGap, read_gate_gaps
 from ...track.read import read_track
 from ...track.summary import TrackSummary, track_summary
+from ..figures.drawing import Picture
 from ..figures.figure_files import render_pictures
-from ..formatting import counted
+from ..formatting import counted, html
+from ..pair_verdicts import read_compared, time_verdict
+from ..race.folder import gap_drawings, gaps_headline, gaps_section
 from ..sheet import Header, Section, sheet
 from ..table import Column, Table, record_table
-from .report import track_drawings
-from .summary import GPX_FILE, TURNS_FILE, track_gpx, turn_rows, turns_csv
+from .report import comparison_drawing, track_drawings
+from .summary import GPX_FILE, TITLES, TURNS_FILE, track_gpx, track_verdict, turn_rows, turns_csv
 
 _COLUMNS: Final = (
     Column("turn", Message("Turn"), "count"),
@@ -78,3 +84,89 @@ def file_of_track(path: Path, name: str, file: str) -> str:
             "no_origin", track=name
         )
     return text
+
+
+def comparison_page(
+    comparison: Mapping[str, Any],
+    pictures: Sequence[Picture],
+    *,
+    verdict: Message | None = None,
+    gaps: tuple[GateGap, ...] | None = None,
+    language: str = ENGLISH,
+    further: Sequence[Section] = (),
+    back: str = "",
+) -> str:
+    """HTML of the page that compares two tracks.
+
+    comparison: contents of `skisnow.comparison.comparison_dict`.
+    pictures: pictures of the tracks, and of the gates.
+    verdict: verdict on the times of two computed runs (default: none).
+    gaps: time lost from gate to gate (default: no gates in common).
+    language: language of the page (en, de).
+    further: sections at the end.
+    back: address of the page of the lab that links here (default: none).
+    """
+    names = comparison["simulated"]["name"], comparison["measured"]["name"]
+    with in_language(language):
+        measured = comparison["nearest"]["rms_m"] is not None
+        key = [html(text) for text in (verdict, track_verdict(comparison) if measured else None) if text]
+        of_gates = [picture for picture in pictures if picture.name == "gate_gaps"]
+        tracks = [picture for picture in pictures if picture.name != "gate_gaps"]
+        sections = [
+            Section("tracks", Message("Tracks"), key=key, pictures=tracks, tables=[_distances_table(comparison)]),
+        ]
+        if gaps is not None:
+            sections.insert(0 if not measured else 1, gaps_section(gaps, names, of_gates))
+        title = Message("{run} compared with {other}", run=names[0], other=names[1])
+        headline = (gaps_headline(gaps) if gaps is not None else "") or next(iter(key), "")
+        return sheet(Header(Message("Two tracks"), title, [], headline=headline, back=back), [*sections, *further])
+
+
+def _distances_table(comparison: Mapping[str, Any]) -> Table:
+    keys = (("max_m", Message("Maximum")), ("mean_m", Message("Mean")), ("rms_m", Message("Root mean square")))
+    columns = (
+        Column("definition", Message("Distance at"), "text"),
+        *(Column(key, words, unit="m") for key, words in (*keys, ("compared_m", Message("Compared length")))),
+    )
+    rows = [
+        (title, *(comparison[kind][column.key] for column in columns[1:]))
+        for kind, title in TITLES.items()
+    ]  # fmt: skip
+    exact = comparison["known_to_m"]
+    note = Message("A place is known to {exact:g} m.", exact=exact) if exact else ""
+    return Table("distances", Message("Distances between the tracks."), columns, rows, note=note)
+
+
+def page_of_tracks(
+    path: Path, name: str, other: Path, other_name: str, language: str = ENGLISH, *, back: str = ""
+) -> str:
+    """HTML of the page that compares two measured tracks, with the turns of both; errors as in `page_of_track`."""
+    first, second = replace(read_track(path), name=name), replace(read_track(other), name=other_name)
+    comparison = compare_tracks(first, second)
+    pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
+    with in_language(language):
+        tables = [
+            replace(turns_table(summary), name=f"turns_{number}")
+            for number, summary in enumerate(map(track_summary, (first, second)), start=1)
+            if summary.turns
+        ]
+        further = [Section("turns", Message("Turns"), tables=tables)] if tables else []
+    return comparison_page(comparison_dict(comparison), pictures, language=language, further=further, back=back)
+
+
+def page_of_folders(
+    folder: Path, other: Path, language: str = ENGLISH, *, names: tuple[str, str] | None = None, back: str = ""
+) -> str:
+    """HTML of the page that compares the runs of two folders, with a link back; nothing is written.
+
+    names: names of the runs on the page (default: those of the folders).
+    """
+    shown = names or (folder.name, other.name)
+    first, second = (replace(read_compared(path), name=name) for path, name in zip((folder, other), shown, strict=True))
+    comparison, gaps = compare_tracks(first, second), read_gate_gaps(folder, other)
+    pictures = render_pictures(map(comparison_drawing, [comparison]), language=language)
+    if gaps is not None:
+        pictures += render_pictures(gap_drawings(gaps, comparison.names), language=language)
+    verdict = time_verdict(first, second)
+    compared = comparison_dict(comparison)
+    return comparison_page(compared, pictures, verdict=verdict, gaps=gaps, language=language, back=back)
