@@ -13,10 +13,10 @@ import pytest
 
 import skisnow
 from skisnow._support.arrays import FloatArray
-from skisnow._support.errors import ParameterError
+from skisnow._support.errors import OutputError, ParameterError
 from skisnow.cli import main
 from skisnow.design.evaluation import Evaluator
-from skisnow.design.front import design_front
+from skisnow.design.front import FrontPoint, design_front, write_front
 from skisnow.design.problem import Search
 from skisnow.design.search import begins_of, searched_starts
 from skisnow.design.task import design_task
@@ -237,11 +237,25 @@ def test_command_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     for number, wanted in ((1, 12.5), (2, 8.5)):
         lines += ["[[goals]]", 'output = "turn_radius_boot_m"', f"target = {wanted}", f"conditions = [{number}]"]
     (tmp_path / "two.toml").write_text("\n".join(lines), encoding="utf-8")
-    assert main(["design", str(tmp_path / "two.toml"), "--front", "2", "--json"]) == 0
-    printed = json.loads(capsys.readouterr().out)
+    words = ["design", str(tmp_path / "two.toml"), "--front", "2", "--json"]
+    assert main(words) == main(words) == 0
+    printed = json.loads((tmp_path / "front.json").read_text(encoding="utf-8"))
+    assert capsys.readouterr().out.count('"second_percent"') == 2 * len(printed)
     rows = list(csv.DictReader((tmp_path / "front.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["sidecut_mm"]) for row in rows] == pytest.approx([row["values"]["sidecut_mm"] for row in printed])
     assert float(rows[0]["second_percent"]) == pytest.approx(0.0, abs=1e-4) != float(rows[1]["second_percent"])
+
+
+@pytest.mark.parametrize("name", ["front.csv", "ski.toml"])
+def test_files_of_others_are_kept(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    with raises(OutputError, "file_kept"):
+        if name == "front.csv":
+            write_front([FrontPoint(0.1, 0.2, {"sidecut_mm": 1.0})], tmp_path)
+        else:
+            skisnow.design_ski(TWELVE | {"starts": 1}).write(tmp_path)
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
 
 
 def test_a_front_is_beaten_by_no_other_sidecut() -> None:

@@ -174,7 +174,10 @@ def add_design(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--out", type=Path, metavar="FOLDER", help="folder for the files (default: that of DESIGN.toml)"
     )
     parser.add_argument(
-        "--front", type=whole_number(2, 1000), metavar="N", help="front.csv instead: N designs between two targets"
+        "--front",
+        type=whole_number(2, 1000),
+        metavar="N",
+        help="front.csv and front.json instead: N designs between two targets",
     )
     drawn = "draw both skis in the turn of the first condition: .png, .svg or .pdf"
     parser.add_argument("--figure", type=Path, metavar="FILE", help=drawn)
@@ -222,22 +225,15 @@ def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) 
 
 def _front(options: argparse.Namespace, task: DesignTask) -> int:
     """Write the Pareto front of two targets."""
-    from .._support.staging import write_file
-    from ..design import design_front
+    from ..design.front import design_front, write_front
 
     with announced("searching"):
         front = design_front(task, points=options.front)
-    rows = [["first_percent", "second_percent", *front[0].values]]
-    rows += [
-        [f"{n:.9g}" for n in (point.first_percent, point.second_percent, *point.values.values())] for point in front
-    ]
-    path = (options.out or options.design.parent) / "front.csv"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_file(path, "".join(f"{','.join(row)}\n" for row in rows))
+    paths = write_front(front, options.out or options.design.parent)
     if options.json:
         print_json([asdict(point) for point in front])
     else:
-        print(f"written: {path}")
+        print("\n".join(f"written: {path}" for path in paths))
     return 0
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError, SolverError
+from .._support.staging import prepare_folder, staged, write_file
 from .evaluation import Evaluator
 from .problem import Search
 from .search import begins_of, searched_starts, task_of
@@ -63,6 +65,29 @@ def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: i
         bounds = [_limit(second, allowed, 1.0), _limit(second, allowed, -1.0)]
         found.append(_best(evaluator, [first, *limits, *bounds], [*begins, found[-1]]))
     return _front(evaluator, first, second, [*found, ends[0]])
+
+
+def write_front(front: Sequence[FrontPoint], folder: Path) -> tuple[Path, ...]:
+    """Write ``front.csv`` and ``front.json``; returns their paths.
+
+    Raises
+    ------
+    OutputError
+        A file cannot be written, or a ``front.csv`` is not from an earlier front.
+    """
+    rows = [["first_percent", "second_percent", *front[0].values]]
+    rows += [
+        [f"{n:.9g}" for n in (point.first_percent, point.second_percent, *point.values.values())] for point in front
+    ]
+    contents = {
+        "front.csv": "".join(f"{','.join(row)}\n" for row in rows),
+        "front.json": json.dumps([asdict(point) for point in front], indent=1) + "\n",
+    }
+    prepare_folder(folder)
+    with staged(folder, last="front.json") as stage:
+        for name, content in contents.items():
+            write_file(stage.path / name, content)
+    return tuple(folder / name for name in contents)
 
 
 def _limit(goal: Goal, allowed: float, side: float) -> Goal:
