@@ -13,25 +13,27 @@ namespace skisnow {
 // chord replaces the round. Both raise the base near the edge in proportion to the way from their inner end, a hinge.
 //
 // Equations: docs/methods/ski.md.
-class EdgeShape {
+template <class T>
+class GroundEdge {
  public:
   static constexpr double SQUARE = 0.5 * std::numbers::pi;  // a side at right angles to the base (rad)
   static constexpr int HINGES = 2;  // at the inner ends of strip and rounding; the rounding is narrower
 
-  EdgeShape() = default;
+  GroundEdge() = default;
   // Angle (rad) and width (m) of the strip; angle between base and side (rad); radius of the corner (m).
-  EdgeShape(double bevel, double strip, double side, double radius)
-      : given_{bevel, strip, side, radius},
-        bevel_(strip > 0.0 ? bevel : 0.0),
-        sine_(std::sin(bevel_)),
-        cosine_(std::cos(bevel_)),
-        half_tangent_(std::tan(0.5 * (side + bevel_))),
-        width_{strip, radius / half_tangent_} {}
+  GroundEdge(T bevel, T strip, T side, T radius)
+      : given_{bevel, strip, side, radius}, bevel_(strip > T(0.0) ? bevel : T(0.0)), width_{strip, T(0.0)} {
+    using std::cos;
+    using std::sin;
+    using std::tan;
+    sine_ = sin(bevel_), cosine_ = cos(bevel_), half_tangent_ = tan(T(0.5) * (side + bevel_));
+    width_[1] = radius / half_tangent_;
+  }
 
-  const std::array<double, 4>& given() const { return given_; }  // the numbers that it was made of
-  bool acts() const { return bevel_ > 0.0 || width_[1] > 0.0; }
-  double bevel() const { return bevel_; }
-  double width(int hinge) const { return width_[hinge]; }  // of base, from the edge (m)
+  const std::array<T, 4>& given() const { return given_; }  // the numbers that it was made of
+  bool acts() const { return bevel_ > T(0.0) || width_[1] > T(0.0); }
+  T bevel() const { return bevel_; }
+  T width(int hinge) const { return width_[hinge]; }  // of base, from the edge (m)
 
   // What is lost of the depth for each metre of base from a hinge to the edge, at the edge's angle in the snow.
   template <class V>
@@ -58,8 +60,9 @@ class EdgeShape {
   }
 
  private:
-  std::array<double, 4> given_{0.0, 0.0, SQUARE, 0.0};
-  double bevel_ = 0.0, sine_ = 0.0, cosine_ = 1.0, half_tangent_ = 1.0, width_[HINGES] = {};
+  std::array<T, 4> given_{0.0, 0.0, SQUARE, 0.0};
+  T bevel_ = 0.0, sine_ = 0.0, cosine_ = 1.0, half_tangent_ = 1.0, width_[HINGES] = {};
 };
+using EdgeShape = GroundEdge<double>;
 
 }  // namespace skisnow

@@ -100,7 +100,7 @@ CarveSection Pass::section(const CarveStation& s) const {
   const double angle = conditions_.edge_angle + twist(s), sine = std::sin(angle), cosine = std::cos(angle);
   const double height = cosine_ * (s.base_height + deflection);
   const double corner = at_.border[0] + at_.border[1] * s.place - height + s.half_width * sine;
-  CarveSection out{s.half_width, sine, cosine, sine / cosine, corner, corner, 2.0 * s.half_width * cosine};
+  CarveSection out{{s.half_width, sine, cosine, sine / cosine, corner, corner, 2.0 * s.half_width * cosine}};
   if (edges_.acts()) out.grind(edges_);
   return out;
 }
@@ -120,7 +120,7 @@ Load Pass::load(const CarveSection& section, const StripSums& sums, const Streng
   const double bite_by_depth = reacts ? by_depth : growth;
   const double bite_by_twist = reacts ? by_twist : growth * section.edge_by_angle() + strength.by_angle * held;
   const double shears = conditions_.side_force_bending ? 1.0 : 0.0;
-  const double other = reacts ? 0.0 : std::max(section.corner - 2.0 * section.half * section.sine, 0.0);
+  const double other = reacts ? 0.0 : std::max(section.other_depth(), 0.0);
   const double other_by_depth = other > 0.0 ? strength.share + strength.by_depth * other : 0.0;
   const double other_by_twist = other > 0.0 ? strength.by_depth * other * section.edge_by_angle() +
                                                   strength.by_angle * other - strength.share * lever

@@ -11,28 +11,41 @@ namespace skisnow {
 
 constexpr double FAR_ABOVE = -1e3;  // depth (m) that marks untouched snow
 
-// One section of the ski in the snow. ξ: distance from the edge in the snow surface (m).
-struct CarveSection {
-  double half;                   // half its width
-  double sine, cosine, tangent;  // functions of its edge angle, twist included
-  double corner;                 // depth that an edge would have that is not ground
-  double depth;                  // depth of the edge (m)
-  double reach;                  // reach of the base across (m)
-  const EdgeShape* edge = nullptr;
-  double rise[EdgeShape::HINGES] = {}, rise_by_angle[EdgeShape::HINGES] = {};  // see `EdgeShape`
+// One section of the ski in the snow, on any kind of number. ξ: distance from the edge in the snow surface (m).
+template <class T>
+struct SnowSection {
+  T half;                   // half its width
+  T sine, cosine, tangent;  // functions of its edge angle, twist included
+  T corner;                 // depth that an edge would have that is not ground
+  T depth;                  // depth of the edge (m)
+  T reach;                  // reach of the base across (m)
+  const GroundEdge<T>* edge = nullptr;
+  T rise[EdgeShape::HINGES] = {};  // see `GroundEdge`
 
-  void grind(const EdgeShape& shape) {
+  void grind(const GroundEdge<T>& shape) {
     edge = &shape;
     shape.find_rises(sine, cosine, rise);
-    shape.find_growth(sine, cosine, rise_by_angle);
-    depth = base_depth(0.0);
+    depth = base_depth(T(0.0));
   }
   // Depth ε of the base: a straight line except for the ground strip along the edge.
-  double base_depth(double xi) const {
-    double out = corner - xi * tangent;
-    for (int h = 0; edge != nullptr && h < EdgeShape::HINGES; h++)
-      out -= std::max(0.0, edge->width(h) - xi / cosine) * rise[h];
+  T base_depth(const T& xi) const {
+    T out = corner - xi * tangent;
+    if (edge == nullptr) return out;
+    const T far = xi / cosine;
+    for (int h = 0; h < EdgeShape::HINGES; h++) out -= std::max(T(0.0), edge->width(h) - far) * rise[h];
     return out;
+  }
+  // Depth of the other edge; the bevel there is not counted.
+  T other_depth() const { return corner - T(2.0) * half * sine; }
+};
+
+// The same with its derivatives.
+struct CarveSection : SnowSection<double> {
+  double rise_by_angle[EdgeShape::HINGES] = {};
+
+  void grind(const EdgeShape& shape) {
+    SnowSection::grind(shape);
+    shape.find_growth(sine, cosine, rise_by_angle);
   }
   // Derivative of that depth by the edge angle α, the corner held: -ξ/cos² α, and for each hinge at a distance b from
   // the edge that ξ lies before also ξ sin α/cos² α · rise - (b - ξ/cos α) ∂rise/∂α.

@@ -107,7 +107,7 @@ struct CarvePoint::Passed {
         at.border[0] + at.border[1] * s.place - cosine * (s.base_height + f.deflection) + s.half_width * section.sine;
     section.reach = 2.0 * section.half * section.cosine;
     if (ground) section.grind(edges), grow_with_bevel(f);
-    f.other = section.corner - 2.0 * section.half * section.sine;
+    f.other = section.other_depth();
     f.touches = section.depth > 0.0 || f.other > 0.0;
     f.begin = pieces.size();
     double depth[MOST_PLACES];

@@ -24,7 +24,7 @@ template <class T>
 struct Conditions {
   T edge_angle, hardness, excess, load, moment, side_force, bevel, bevel_width, pitch_of_force, pitch_of_shear;
   bool shears, twists, by_reaction;
-  double side, radius;
+  GroundEdge<T> edges;
 
   Conditions(const CarveConditions& c, const auto& number)
       : edge_angle(number(c.edge_angle, &CarveDirection::edge_angle)),
@@ -40,11 +40,7 @@ struct Conditions {
         shears(c.side_force_bending),
         twists(c.twists),
         by_reaction(c.by_reaction),
-        side(c.side),
-        radius(c.radius) {}
-
-  T on_strip() const { return bevel_width > T(0.0) ? bevel : T(0.0); }
-  T half_corner() const { return T(0.5) * (T(side) + on_strip()); }
+        edges(bevel, bevel_width, T(c.side), T(c.radius)) {}
 };
 
 template <class T>
@@ -81,16 +77,23 @@ class Residual {
     T deflection(0.0), angle = given_.edge_angle;
     for (std::size_t a = 0; a < 4; a++) deflection += s.deflection[a] * u_[s.first + std::size_t(BENDS[a])];
     for (std::size_t a = 0; a < 2 && given_.twists; a++) angle += T(s.twist[a]) * u_[s.first + std::size_t(TURNS[a])];
-    const T corner = at_[0] + at_[1] * s.place - cosine * (s.base_height + deflection) + s.half * sin(angle);
-    SectionIn<T> section(corner, angle, s.half, given_.bevel, given_.bevel_width);
-    if (given_.radius > 0.0) section.round_off(angle - given_.on_strip(), given_.half_corner(), given_.radius);
+    const T turned_sine = sin(angle), turned_cosine = cos(angle);
+    const T corner = at_[0] + at_[1] * s.place - cosine * (s.base_height + deflection) + s.half * turned_sine;
+    SnowSection<T> section{.half = s.half,
+                           .sine = turned_sine,
+                           .cosine = turned_cosine,
+                           .tangent = turned_sine / turned_cosine,
+                           .corner = corner,
+                           .depth = corner,
+                           .reach = T(2.0) * s.half * turned_cosine};
+    if (given_.edges.acts()) section.grind(given_.edges);
     const auto sums = strip_across<T>(section, place_, groove_, given_.hardness, given_.excess);
     for (std::size_t k = 0; k < place_.size(); k++) {
       const T base = section.base_depth(place_[k]);
       event(base - groove_[k]);
       if (!(base < groove_[k])) groove_[k] = base;
     }
-    const T edge = section.edge_depth(), other = section.other_depth(), held = edge > zero ? edge : zero;
+    const T edge = section.depth, other = section.other_depth(), held = edge > zero ? edge : zero;
     event(edge);
     const auto [bite, turned, normal, moment] = section_load<T>(
         sums.force, sums.moment, given_.by_reaction, held, other > zero ? other : zero, given_.shears ? at_[2] : zero,

@@ -64,6 +64,10 @@ struct Slopes {
     return a.mapped(root, 1.0 / (3.0 * root * root));
   }
   friend Slopes cos(const Slopes& a) { return a.mapped(std::cos(a.value), -std::sin(a.value)); }
+  friend Slopes tan(const Slopes& a) {
+    const double tangent = std::tan(a.value);
+    return a.mapped(tangent, 1.0 + tangent * tangent);
+  }
 };
 
 // Each is one number for `pressed_part`.
@@ -72,48 +76,12 @@ inline constexpr int WIDTH<Slopes<N>> = 1;
 template <>
 inline constexpr int WIDTH<long double> = 1;
 
-// One section in the snow; see `CarveSection`.
-template <class T>
-struct SectionIn {
-  T half, sine, cosine, tangent, corner, strip, rise;
-  T round = 0.0, round_rise = 0.0;  // width of the rounding of the corner, what is lost for each metre of it
-
-  SectionIn(const T& corner_depth, const T& angle, const T& half_width, const T& bevel, const T& bevel_width)
-      : half(half_width), corner(corner_depth), strip(bevel_width) {
-    using std::cos;
-    using std::sin;
-    sine = sin(angle), cosine = cos(angle), tangent = sine / cosine;
-    rise = strip > T(0.0) ? sine - sin(angle - bevel) : T(0.0);
-  }
-  // `on_strip`: the edge angle less the bevel; `half_corner`: half the angle between strip and side.
-  void round_off(const T& on_strip, const T& half_corner, double radius) {
-    using std::cos;
-    using std::sin;
-    const T half_tangent = sin(half_corner) / cos(half_corner);
-    const T lost = sin(on_strip) - (T(1.0) - cos(on_strip)) * half_tangent;
-    round = T(radius) / half_tangent;
-    if (lost > T(0.0)) round_rise = lost;
-  }
-  T reach() const { return T(2.0) * half * cosine; }
-  T edge_depth() const { return corner - strip * rise - round * round_rise; }
-  // depth of the other edge; the bevel there is not counted
-  T other_depth() const { return corner - T(2.0) * half * sine; }
-  T base_depth(const T& xi) const {
-    T out = corner - xi * tangent;
-    if (!(strip > T(0.0)) && !(round > T(0.0))) return out;
-    const T far = xi / cosine;
-    if (strip > far) out -= (strip - far) * rise;
-    if (round > far) out -= (round - far) * round_rise;
-    return out;
-  }
-};
-
 // [across] Over all places; `groove`: depth at each.
 template <class T>
-Strip<T, WithoutGrowth> strip_across(const SectionIn<T>& section, const std::vector<T>& place,
+Strip<T, WithoutGrowth> strip_across(const SnowSection<T>& section, const std::vector<T>& place,
                                      const std::vector<T>& groove, const T& hardness, const T& excess) {
   Strip<T, WithoutGrowth> out;
-  const T zero(0.0), reach = section.reach();
+  const T zero(0.0), reach = section.reach;
   for (std::size_t k = 0; k + 1 < place.size(); k++) {
     const T start = place[k], length = (place[k + 1] < reach ? place[k + 1] : reach) - start;
     if (!(length > zero)) break;
