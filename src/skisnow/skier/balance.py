@@ -91,6 +91,7 @@ class BalancedSkier:
     skier: Skier = field(init=False)
     posture: Posture = field(init=False, repr=False)
     _flies_from: float = field(init=False, repr=False)  # height of the feet (m)
+    _on_plane: Gravity | None = field(init=False, repr=False, default=None)
 
     def __post_init__(self) -> None:
         scenario = self.scenario
@@ -163,7 +164,8 @@ class BalancedSkier:
         """Normal of the snow (3,) and gravity there."""
         slope, gravity = self.scenario.slope, self.scenario.gravity
         if isinstance(slope, Plane):
-            return LEVEL, Gravity(gravity * math.cos(slope.angle), gravity * math.sin(slope.angle))
+            self._on_plane = self._on_plane or Gravity(gravity * math.cos(slope.angle), gravity * math.sin(slope.angle))
+            return LEVEL, self._on_plane
         normal = normals_of(slope, x, y)
         down = -gravity * float(down_and_left(normal)[0][2])
         return normal, Gravity(gravity * float(normal[2]) + self._pressed(x, y), down)
@@ -223,7 +225,7 @@ class BalancedSkier:
         normal, gravity = self._stand_on(*moment.position[:2].tolist())
         weight = sledge.mass * self.scenario.gravity
         seen = self._in_flight(moment, seen_at(moment, sledge.centre_of_mass, normal, weight, sledge.inertia[2]))
-        built_in = control if isinstance(control, SkidControl | CarveControl | WedgeControl) else None
+        built_in = control if isinstance(control, BuiltIn) else None
         if built_in is not None:
             built_in.gravity = gravity
         if built_in is not None and seen.flies:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from numbers import Real
 from typing import Final
@@ -13,7 +14,7 @@ from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
 from .._support.units import STANDARD_GRAVITY
 from ..dynamics import BootPose
-from ..geometry.vectors import axis_rows, combined, cross, minus, plus, times
+from ..geometry.vectors import Vector, axis_rows, combined, cross, minus, plus, times
 from ..scenario.skier import Skier
 from .seen import Seen
 
@@ -171,27 +172,34 @@ class Posture:
         body = ((cy, -sy, 0.0), (cl * sy, cl * cy, sl), (-sl * sy, -sl * cy, cl))
         origin = (self.centre[0], 0.0, self.centre[1])
         spin = minus(times(lean_rate, body[0]), (0.0, 0.0, yaw_rate))
+        left, right, left_toe, right_toe = zip(edges_and_toes, turns, strict=True)
+        skis = [self._ski(*left, *left_toe, pitch, pitch_rate, body)]
+        alike = left == right and left_toe == right_toe
+        skis.append(skis[0] if alike else self._ski(*right, *right_toe, pitch, pitch_rate, body))
         poses = []
-        for k, side in enumerate((0.5, -0.5)):
-            edge, toe, edge_rate, toe_rate = edges_and_toes[k], edges_and_toes[k + 2], turns[k], turns[k + 2]
-            sine = math.sin(edge)
-            bent = math.hypot(sine, BLUNT)
-            lift_rate = self.half_width * sine * math.cos(edge) * edge_rate / bent
-            from_centre = (-ahead, side * stance - aside, self.half_width * (bent - BLUNT) - height)
-            arm = combined(from_centre, body)
+        for side, (lift, lift_rate, axes, turning) in zip((0.5, -0.5), skis, strict=True):
+            arm = combined((-ahead, side * stance - aside, lift - height), body)
             moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
-            rows = axis_rows(edge, pitch, toe)
-            turns_by = minus(
-                (pitch_rate * math.sin(toe), -pitch_rate * math.cos(toe), toe_rate), times(edge_rate, rows[0])
-            )
-            numbers = (
-                plus(arm, origin),
-                [combined(axis, body) for axis in rows],
-                plus(moving, cross(spin, arm)),
-                plus(spin, combined(turns_by, body)),
-            )
-            poses.append(BootPose(*map(np.array, numbers)))
+            numbers = plus(arm, origin), plus(moving, cross(spin, arm)), plus(spin, turning)
+            place, velocity, whole = map(np.array, numbers)
+            poses.append(BootPose(place, axes, velocity, whole))
         return poses
+
+    def _ski(
+        self, edge: float, edge_rate: float, toe: float, toe_rate: float, pitch: float, pitch_rate: float,
+        body: Sequence[Vector],
+    ) -> tuple[float, float, FloatArray, Vector]:  # fmt: skip
+        """Lift of a ski (m) and its rate (m/s), axes and angular velocity against the body, by angles (rad)."""
+        sine = math.sin(edge)
+        bent = math.hypot(sine, BLUNT)
+        rows = axis_rows(edge, pitch, toe)
+        turns_by = (pitch_rate * math.sin(toe), -pitch_rate * math.cos(toe), toe_rate)
+        return (
+            self.half_width * (bent - BLUNT),
+            self.half_width * sine * math.cos(edge) * edge_rate / bent,
+            np.array([combined(axis, body) for axis in rows]),
+            combined(minus(turns_by, times(edge_rate, rows[0])), body),
+        )
 
     def step(self, command: Command, seen: Seen, dt: float) -> None:
         """Move by a period (s), as far as joints and legs allow."""
@@ -214,6 +222,8 @@ class Posture:
     def _follow(self, place: int, wanted: float, corner: float, dt: float, *, fastest: float = math.inf) -> None:
         """Critically damped."""
         value, rate = float(self.numbers[place]), float(self.rates[place])
+        if value == wanted and rate == 0.0:
+            return
         later = rate + dt * (corner**2 * (wanted - value) - 2.0 * corner * rate)
         later = max(-fastest, min(fastest, later))
         self.numbers[place] = value + 0.5 * (rate + later) * dt
