@@ -44,10 +44,8 @@ class Decay:
     def depends_on(self, key: str) -> bool:
         return key in ("a", "b")
 
-    def residuals(self, many: Sequence[Values]) -> list[np.ndarray | None]:
+    def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[np.ndarray | None]:  # noqa: ARG002
         return [(each["a"] * np.exp(-each["b"] * X) - self.y) / SD for each in many]
-
-    final_residuals = residuals
 
     def fits(self, values: Values) -> tuple[Fit, ...]:  # noqa: ARG002
         return ()

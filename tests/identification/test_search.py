@@ -136,20 +136,30 @@ def test_broydens_update_replaces_jacobians_on_the_way() -> None:
 
 
 def test_the_last_steps_use_the_jacobian_of_cheaper_residuals() -> None:
-    """The cheap ones miss by 0.01; two or three of the expensive ones suffice."""
+    """The cheap ones miss by 0.01; two or three of the expensive ones suffice.
+
+    One-sided differences begin where the cheap search ended; two more are along b + c, which is hardly determined.
+    """
     calls: list[int] = []
+    cheap_calls: list[int] = []
+
+    def counted(many: Places) -> list[np.ndarray | None]:
+        cheap_calls.append(len(many))
+        return bent(many)
 
     def expensive(many: Places) -> list[np.ndarray | None]:
         calls.append(len(many))
         return bent(many, 0.41)
 
-    far, options = np.full(3, 1e3), replace(SearchOptions(), accuracy_is_stated=True)
+    far, options = np.full(3, 1e3), replace(SearchOptions(), accuracy_is_stated=True, renews=False)
     found = Search(bent, -far, far, options).run(np.zeros(3))
     assert found is not None
-    last = Search(expensive, -far, far, replace(options, tolerance=0.2), differences=bent)
+    options = replace(options, renews=True)
+    last = Search(expensive, -far, far, replace(options, tolerance=0.2), differences=counted)
     better, apart = last.resume(found)
     assert better.cost < 0.1
     assert calls in ([1, 1], [1, 1, 1])
+    assert cheap_calls == [3, 2]
     (cheap,), (dear,) = bent([better.place]), bent([better.place], 0.41)
     assert cheap is not None
     assert dear is not None
@@ -166,21 +176,34 @@ def test_a_side_without_residuals_is_replaced_by_the_other() -> None:
     assert found.place == pytest.approx([-0.1], abs=2e-5)  # the damping is 1e-5
 
 
-def test_columns_hardly_told_apart_are_differentiated_on_one_side_of_a_bound() -> None:
-    """Two almost parallel columns next to the minimum need central differences; below b = 0 nothing is allowed."""
+def nearly_parallel(bend: float, asked: list[Places]) -> Any:
+    """Residuals with two almost parallel columns, whose difference is 1/1000 of them, and the bend of one."""
     t = np.linspace(0.1, 1.0, 20)
 
     def residuals(many: Places) -> list[np.ndarray | None]:
-        return [100.0 * (a * t + b * (t + 1e-3 * t**2) - 0.5 * t) + 1.0 for a, b in many]
+        asked.append(many)
+        return [100.0 * (a * t + b * (t + 1e-3 * t**2) - 0.5 * t + bend * t**2 * b**2) + 1.0 for a, b in many]
 
-    search = Search(
-        residuals, np.array([-2.0, 0.0]), np.full(2, 2.0), replace(SearchOptions(), accuracy_is_stated=True)
-    )
+    return residuals
+
+
+@pytest.mark.parametrize("lowest", [-2.0, 0.0])
+def test_columns_hardly_told_apart_are_differentiated_along_their_difference(lowest: float) -> None:
+    """Beside a bound, b = 0, on one side; inside, on both sides, which cancels the bend that hides the difference."""
+    t, asked = np.linspace(0.1, 1.0, 20), list[Places]()
+    options = replace(SearchOptions(), accuracy_is_stated=True)
+    low = np.array([-2.0, lowest])
+    search = Search(nearly_parallel(0.1 if lowest else 0.0, asked), low, np.full(2, 2.0), options)
     begun = search._differentiate(np.zeros(2))
     assert begun is not None
-    renewed = search._differentiate(begun.place, begun)
-    assert renewed is not None
-    assert renewed.jacobian == pytest.approx(100.0 * np.column_stack([t, t + 1e-3 * t**2]))
+    renewed = search._sharpened(begun)
+    assert renewed.jacobian is not None
+    wanted = 100.0 * np.column_stack([t, t + 1e-3 * t**2])
+    errors = [linear_uncertainty(jacobian, degrees_of_freedom=None).alone[0] for jacobian in (renewed.jacobian, wanted)]
+    assert errors[0] == pytest.approx(errors[1], rel=0.01)
+    weakest = [np.linalg.svd(jacobian, compute_uv=False)[-1] for jacobian in (renewed.jacobian, wanted)]
+    assert weakest[0] == pytest.approx(weakest[1], rel=0.02)
+    assert [len(many) for many in asked] == [3, 2]
 
 
 def test_uncertainty_is_that_of_linear_least_squares() -> None:

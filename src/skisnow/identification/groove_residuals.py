@@ -102,11 +102,9 @@ class GrooveResiduals:
         """Number of depths, widths and radii that are used."""
         return tuple(int(np.sum(use)) for _, _, use in self._columns())
 
-    def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
+    def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of depths, widths, radii."""
         return [self._residual(values) for values in many]
-
-    final_residuals = residuals
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """The three quantities, place by place."""

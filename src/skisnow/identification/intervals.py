@@ -16,10 +16,8 @@ from .._support.messages import Message
 from ..statistics import percentile_interval
 from .parameter import Parameter, bounds_of
 from .result import Identification, Identified, Interval, Profile
-from .search import step_inside
+from .search import Progress, step_inside
 from .solution import Solution, best_fit_residuals, values_at
-
-Progress = Callable[[str], None]
 
 PLACES: Final = (-3.0, -2.0, -1.0, 1.0, 2.0, 3.0)
 """Positions of the values of a profile, in standard errors from the best value."""

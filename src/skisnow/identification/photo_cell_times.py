@@ -108,7 +108,7 @@ class PhotoCellTimes:
         """Passages of each run."""
         return tuple(len(self._informative(run)[0]) for run in self.cells.runs)
 
-    def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
+    def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of every passage, run after run, for each set of values; never None."""
         residuals: list[list[FloatArray]] = [[] for _ in many]
         for run in self.cells.runs:
@@ -116,8 +116,6 @@ class PhotoCellTimes:
             for parts, late in zip(residuals, self._times(run, station, many) - time, strict=True):
                 parts.append(self._without_offset(late, sd) / sd)
         return [np.concatenate(parts) for parts in residuals]
-
-    final_residuals = residuals
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Times over the distance."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal, Protocol, TypeAlias
 
@@ -58,13 +58,14 @@ class Problem:
         """Number of residuals of each kind of data."""
         return tuple(sum(observation.series) for observation in self.observations)
 
-    def residuals(self, places: Sequence[FloatArray]) -> list[FloatArray | None]:
-        """Residuals of data and priors at each place of the search; None for a place without a simulation."""
-        return self._stacked(places, lambda observation, many: observation.residuals(many))
+    def residuals(self, places: Sequence[FloatArray], *, final: bool = False) -> list[FloatArray | None]:
+        """Residuals of data and priors at each place of the search; None for a place without a simulation.
 
-    def final_residuals(self, places: Sequence[FloatArray]) -> list[FloatArray | None]:
-        """Residuals computed with the scenario's solver, at the accuracy of the result."""
-        return self._stacked(places, lambda observation, many: observation.final_residuals(many))
+        final: True for the scenario's solver, at the accuracy of the result.
+        """
+        many = [self.values(place) for place in places]
+        parts = [observation.residuals(many, final=final) for observation in self.observations]
+        return [self._one([part[i] for part in parts], many[i]) for i in range(len(many))]
 
     def values(self, place: FloatArray) -> dict[str, float]:
         """Parameters by key."""
@@ -88,15 +89,6 @@ class Problem:
             for length, theirs, ours in zip(self.lengths, other.noise, self.noise, strict=True)
         ]
         return np.concatenate([*ratios, np.ones(self.priors)])
-
-    def _stacked(
-        self,
-        places: Sequence[FloatArray],
-        of: Callable[[Observations, Sequence[Values]], list[FloatArray | None]],
-    ) -> list[FloatArray | None]:
-        many = [self.values(place) for place in places]
-        parts = [of(observation, many) for observation in self.observations]
-        return [self._one([part[i] for part in parts], many[i]) for i in range(len(many))]
 
     def _one(self, parts: Sequence[FloatArray | None], values: Values) -> FloatArray | None:
         pieces = []
@@ -170,11 +162,8 @@ class Observations(Protocol):
     def series(self) -> tuple[int, ...]:
         """Lengths of the time series in the residuals."""
 
-    def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
+    def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:
         """(Computed - measured)/standard deviation (n,) for each set of parameters; None if it cannot be computed."""
-
-    def final_residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
-        """Residuals at the accuracy of the result; those of the search can be less accurate."""
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Measured and fitted values of each run."""

@@ -29,8 +29,8 @@ _SLIGHT: Final = 6.0
 """Change of the residuals (in standard deviations of one) up to which a Jacobian stays valid after a long move."""
 _PREDICTED_FALL: Final = 0.25
 """The Jacobian is computed again if the sum of squares fell by less than this share of the predicted fall."""
-_DOUBTFUL: Final = 0.02
-"""Smallest singular value of a scaled Jacobian for which one-sided differences suffice."""
+_WEAK: Final = 0.02
+"""Singular value of a scaled Jacobian below which differences are also taken along its direction."""
 _AT_BOUND: Final = 1e-9
 """Distance (sizes) from a bound that counts as on it."""
 
@@ -121,6 +121,7 @@ class Search:
     progress: called with a line of text after each round.
     best: best place so far.
     differences: cheaper residuals for derivatives (default: `residuals`).
+    middle: state of a search of these, the middle of differences next to it.
     """
 
     residuals: Residuals
@@ -130,6 +131,7 @@ class Search:
     progress: Progress = field(default=lambda _: None)
     best: SearchState | None = None
     differences: Residuals | None = None
+    middle: SearchState | None = None
 
     def run(self, start: FloatArray) -> SearchState | None:
         """Search from a place; return None if the residuals cannot be computed there.
@@ -158,7 +160,7 @@ class Search:
                 renewed = self._differentiate(here.place, here)
                 if renewed is None:
                     break
-                here = self.best = renewed
+                here = self.best = self._sharpened(renewed) if near_minimum else renewed
                 self.progress(f"round {here.rounds}: rms residual {np.sqrt(here.cost / len(here.residuals)):.4g}")
                 continue
             if ends:
@@ -185,35 +187,50 @@ class Search:
         keeps = self.options.keeps_jacobian
         return bool(np.max(np.abs(away)) > keeps and self._in_noise(state, away) > min(_SLIGHT, 1e3 * keeps))
 
-    def _differentiate(
-        self, place: FloatArray, before: SearchState | None = None, *, central: bool = False
-    ) -> SearchState | None:
+    def _differentiate(self, place: FloatArray, before: SearchState | None = None) -> SearchState | None:
         """State with derivatives by differences; `before` is the state at a place after the start."""
-        central = central or self.options.central
-        sides = (1.0, -1.0) if central else (1.0,)
-        steps = self._difference_steps(place, before)
-        ends = [self._beside(place, j, side * step, is_pair=central) for j, step in enumerate(steps) for side in sides]
+        middle = self.middle if before and self.differences else before
+        if middle and np.max(np.abs(place - middle.place), initial=0.0) > self.options.keeps_jacobian:
+            middle = None
+        at = middle.place if middle else place
+        steps, is_pair = self._difference_steps(at, before), self.options.central
+        sides = (1.0, -1.0) if is_pair else (1.0,)
+        ends = [self._beside(at, j, side * step, is_pair=is_pair) for j, step in enumerate(steps) for side in sides]
         simulate = self.differences or self.residuals
-        batch: list[FloatArray | None] = [] if before is None or self.differences else [before.residuals]
-        batch += simulate([place, *ends][len(batch) :])
+        batch: list[FloatArray | None] = [middle.residuals] if middle else []
+        batch += simulate([at, *ends][len(batch) :])
         first, others = batch[0], batch[1:]
         if first is None:
             return None
         for j, value in enumerate(others):
-            if value is None and not central:  # the other side of a place without residuals
-                ends[j] = self._beside(place, j, -steps[j], is_pair=True)
+            if value is None and not is_pair:  # the other side of a place without residuals
+                ends[j] = self._beside(at, j, -steps[j], is_pair=True)
                 others[j] = simulate([ends[j]])[0]
-        jacobian = np.zeros((len(first), len(steps)))
-        second = np.zeros_like(jacobian)
+        jacobian, second = np.zeros((2, len(first), len(steps)))
         for j in range(len(steps)):
             of_j = slice(j * len(sides), (j + 1) * len(sides))
-            moved = [(end[j] - place[j], value) for end, value in zip(ends[of_j], others[of_j], strict=True)]
+            moved = [(end[j] - at[j], value) for end, value in zip(ends[of_j], others[of_j], strict=True)]
             jacobian[:, j], second[:, j] = _slope_and_bend(moved, first)
-        length = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
-        if before and not central and np.linalg.svd(jacobian / length, compute_uv=False)[-1] < _DOUBTFUL:
-            return self._differentiate(place, before, central=True)
-        state = SearchState(place, first, jacobian, second, rounds=1, differentiated_at=place)
-        return state if before is None else replace(state, residuals=before.residuals, rounds=before.rounds + 1)
+        rounds, residuals = (before.rounds + 1, before.residuals) if before else (1, first)
+        return SearchState(place, residuals, jacobian, second, rounds=rounds, differentiated_at=place)
+
+    def _sharpened(self, state: SearchState) -> SearchState:
+        """State with central differences along the directions in which errors of one-sided ones hide the derivative."""
+        jacobian = state.jacobian
+        assert jacobian is not None
+        length = _lengths(jacobian)
+        _, singular, directions = np.linalg.svd(jacobian / length, full_matrices=False)
+        if self.options.central or singular[-1] >= _WEAK:
+            return state
+        weak, keeps = directions[singular < _WEAK] / length, self.options.keeps_jacobian
+        most = np.maximum(singular[singular < _WEAK], np.max(np.abs(weak), axis=1) / keeps)
+        moves = weak / most[:, None]  # over a standard error, or as far as a Jacobian is used
+        ends = [np.clip(state.place + move, self.lower, self.upper) for each in moves for move in (each, -each)]
+        values = (self.differences or self.residuals)(ends)
+        for one, other, first, second in zip(ends[::2], ends[1::2], values[::2], values[1::2], strict=True):
+            if first is not None and second is not None:
+                jacobian = _with_secant(jacobian / length, (one - other) * length, first - second) * length
+        return replace(state, jacobian=jacobian)
 
     def _beside(self, place: FloatArray, j: int, step: float, *, is_pair: bool) -> FloatArray:
         """Place with parameter j changed by a step, inside the bounds; a single step that leaves them is reversed."""
@@ -230,6 +247,7 @@ class Search:
         first = self.residuals([state.place + step])[0]
         if first is None:
             return state, 0.0
+        self.middle = state
         apart = float(np.sqrt(np.mean((first - state.residuals - state.jacobian @ step) ** 2)))
         self.best = replace(state, place=state.place + step, residuals=first)
         return self._iterate(self.best), apart
@@ -278,7 +296,7 @@ class Search:
         predicted_fall = state.cost - float(predicted @ predicted)
         actual_fall = state.cost - float(residuals @ residuals)
         if self._is_far(state, step):
-            jacobian = jacobian + np.outer(residuals - predicted, step) / (step @ step)
+            jacobian = _with_secant(jacobian, step, residuals - state.residuals)
         is_trusted = actual_fall >= _PREDICTED_FALL * predicted_fall
         return replace(state, place=place, residuals=residuals, jacobian=jacobian, is_trusted=is_trusted)
 
@@ -289,10 +307,19 @@ class Search:
         if before is None or before.jacobian is None:
             return sizes
         if low < high:
-            length = np.linalg.norm(before.jacobian, axis=0)
-            with np.errstate(divide="ignore"):
-                sizes = np.clip(self.noise(before) / length, low, high)
+            sizes = np.clip(self.noise(before) / _lengths(before.jacobian), low, high)
         return np.copysign(sizes, self._full_step(before))
+
+
+def _with_secant(jacobian: FloatArray, step: FloatArray, change: FloatArray) -> FloatArray:
+    """Broyden's update: the nearest Jacobian that gives the change of the residuals over a step."""
+    return jacobian + np.outer(change - jacobian @ step, step) / max(float(step @ step), 1e-300)
+
+
+def _lengths(jacobian: FloatArray) -> FloatArray:
+    """Lengths (p,) of the columns; 1 for a column of zeros."""
+    length = np.linalg.norm(jacobian, axis=0)
+    return np.where(length > 0.0, length, 1.0)
 
 
 def step_inside(
@@ -308,8 +335,7 @@ def step_inside(
     >>> step_inside(np.eye(2), np.array([-3.0, -1.0]), np.full(2, -2.0), np.full(2, 2.0)).round(6).tolist()
     [2.0, 1.0]
     """
-    scale = np.linalg.norm(jacobian, axis=0)
-    scale = np.where(scale > 0.0, scale, 1.0)
+    scale = _lengths(jacobian)
     system = np.vstack([jacobian / scale, np.sqrt(damping) * np.eye(len(scale))])
     wanted = np.concatenate([-residuals, np.zeros(len(scale))])
     room = np.maximum(high - low, _AT_BOUND)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -15,10 +15,8 @@ from .intervals import BootstrapBy, add_bootstrap_intervals, add_posterior_inter
 from .parameter import bounds_of
 from .problem import Problem
 from .result import Identification
-from .search import CLOSED_FORM_SEARCH, Search, SearchOptions, SearchState
+from .search import CLOSED_FORM_SEARCH, Progress, Search, SearchOptions, SearchState
 from .solution import Solution, build_identification
-
-Progress = Callable[[str], None]
 
 GROOVE_SEARCH: Final = replace(
     CLOSED_FORM_SEARCH,
@@ -126,7 +124,7 @@ class _Solver:
         return any(observation.kind == "track" for observation in self.problem.observations)
 
     def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
-        residuals, options = problem.final_residuals if final else problem.residuals, search_options(problem, self.plan)
+        residuals, options = partial(problem.residuals, final=final), search_options(problem, self.plan)
         if final:
             options = replace(options, tolerance=_LAST_TOLERANCE)
         elif self._has_tracks and (self.plan.starts > 1 or not problem.accuracy_is_stated):

@@ -178,13 +178,11 @@ class TrackPositions:
             if length
         )
 
-    def residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
-        """Residuals of the fast runs of a search."""
-        return self._residuals(many, final=False)
-
-    def final_residuals(self, many: Sequence[Values]) -> list[FloatArray | None]:
-        """Residuals of runs with the scenario's solver."""
-        return self._residuals(many, final=True)
+    def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:
+        """Residuals of the fast runs of a search, or of runs with the scenario's solver."""
+        tasks = [self._tasks(values, final=final) for values in many]
+        rows = iter(self.simulate([task for batch in tasks for task in batch]))
+        return [_join([_residual(track, next(rows)) for track in self.tracks]) for _ in many]
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Measured and simulated x, y and speed over time."""
@@ -226,11 +224,6 @@ class TrackPositions:
             ]
         except KeyboardInterrupt:
             return ["whether the run is near the limit of grip was not checked: interrupted"]
-
-    def _residuals(self, many: Sequence[Values], *, final: bool) -> list[FloatArray | None]:
-        tasks = [self._tasks(values, final=final) for values in many]
-        rows = iter(self.simulate([task for batch in tasks for task in batch]))
-        return [_join([_residual(track, next(rows)) for track in self.tracks]) for _ in many]
 
     def _tasks(self, values: Values, *, final: bool) -> list[RunTask]:
         return [
