@@ -15,6 +15,7 @@ from skisnow.carving.solve import solved
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import clamped
 from skisnow.snow.properties import SnowProperties
+from tests.present import present
 
 from .synthetic import circular_sidecut, plain_ski, race_profile, snow
 
@@ -198,11 +199,6 @@ def carved(
     )
 
 
-def known(value: float | None) -> float:
-    assert value is not None
-    return value
-
-
 def circle_ski(*, race: bool = False) -> Ski:
     bending = race_profile(300.0) if race else 300.0
     return plain_ski(width=circular_sidecut(SIDECUT), bending=bending)
@@ -224,7 +220,7 @@ def test_hard_snow_gives_the_sidecut_times_the_cosine(angle_deg: float, race: bo
     for hardness in (1.0, 10.0, 90.0):
         found = carved(circle_ski(race=race), angle_deg, hardness)
         room = float(np.max(np.asarray(found.edge_depth))) * math.sin(angle) / sagitta
-        assert abs(known(found.turn_radius_chord) / limit - 1.0) < room
+        assert abs(present(found.turn_radius_chord) / limit - 1.0) < room
     assert room < 0.015  # 0.4 mm under the point load at 60°, against δ = 25 mm
 
 
@@ -249,7 +245,7 @@ def test_depth_of_the_middle_tightens_the_turn(hardness: float, angle_deg: float
 def test_the_depth_formula_on_the_contact_chord() -> None:
     """The same with the returned radius: symmetric ski, ends of the contact at the surface, D = depth at the boot."""
     found = carved(plain_ski(width=circular_sidecut(SIDECUT)), 30.0, 0.2)
-    half = known(found.contact_length) / 2.0
+    half = present(found.contact_length) / 2.0
     depth = np.asarray(found.edge_depth)
     # the ski ends in the snow: D is the depth at the boot less that at the ends
     deeper = float(np.interp(0.0, found.station[::-1], depth[::-1])) - float((depth[0] + depth[-1]) / 2.0)
@@ -265,7 +261,7 @@ def test_a_radius_is_a_definition(angle_deg: float, race: bool) -> None:
     """Boot ± 0.4 m: 4 to 22 % smaller than R_sc cos ϑ under a point load of 800 N, larger with a clamp of 0.3 m."""
     limit = SIDECUT * math.cos(math.radians(angle_deg))
     free, clamped = (
-        known(carved(circle_ski(race=race), angle_deg, 90.0, clamp=clamp, load=800.0).turn_radius_boot)
+        present(carved(circle_ski(race=race), angle_deg, 90.0, clamp=clamp, load=800.0).turn_radius_boot)
         for clamp in (0.0, 0.3)
     )
     assert 0.78 < free / limit < 0.96
@@ -294,7 +290,7 @@ def test_twisting_opens_the_angle_of_the_ends() -> None:
     stiff, soft = (carved(circle_ski(), 45.0, 0.2, twist=twist) for twist in (False, True))
     assert np.all(np.asarray(stiff.twist) == 0.0)
     assert np.all(np.asarray(soft.twist)[np.abs(soft.station) > 0.1] < 0.0)
-    assert known(soft.turn_radius_boot) != pytest.approx(known(stiff.turn_radius_boot), rel=0.01)
+    assert present(soft.turn_radius_boot) != pytest.approx(present(stiff.turn_radius_boot), rel=0.01)
 
 
 @pytest.mark.parametrize("radius", [4.0, -25.0])

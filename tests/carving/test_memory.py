@@ -15,7 +15,8 @@ from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import CLAMP_LENGTH
 
-from .synthetic import FloatArray, snow, weights
+from .synthetic import snow, weights
+from .tables import depth
 
 RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0)
 
@@ -29,11 +30,6 @@ def carved(ski: Ski, ratio: float, *, clamp: float = 0.0, angle_deg: float = 45.
         unloading_ratio=ratio,
         clamp_length=clamp,
     )
-
-
-def depth(found: Equilibrium) -> FloatArray:
-    assert found.edge_depth is not None
-    return found.edge_depth
 
 
 @pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
