@@ -27,6 +27,7 @@ from tests.coded import raises
 from .confined_work import dies, is_wrong, other_process, refuse, takes_memory, takes_time
 from .conftest import Served, fill
 from .test_day import create
+from .test_typing import entered
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -202,9 +203,7 @@ def test_nothing_that_was_shown_as_stored_is_lost(trials: int, page: Page, serve
         page.goto(place)
         page.get_by_role("heading", name="New series").wait_for()
         page.wait_for_function(f"Object.keys(({UNANSWERED})()).length === 0")
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        tests = replay_journal(Journals(store).entries(head.id)).of_file("penetration.csv")
+    tests = entered(served).of_file("penetration.csv")
     assert sum(len(test.rows) for test in tests) == sum(kept for _, kept in counts)
     if trials == 50:  # the moments of death were spread over the entering
         assert len({shown for shown, _ in counts}) >= 3

@@ -10,11 +10,12 @@ import numpy as np
 from PIL import Image
 
 from skisnow import samples
-from skisnow.campaign.store import Journals, Store, attachments_of, replay_journal
+from skisnow.campaign.store import attachments_of
 from skisnow.campaign.store.attachments import photo_of
 
 from .conftest import Served, ready
 from .test_day import create, enter_series
+from .test_typing import entered
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -26,10 +27,7 @@ TABLE = "penetration.csv"
 
 def attached(served: Served) -> list[ReplayedTest]:
     """Photos and positions of the only campaign's first test."""
-    with Store.open(served.store) as store:
-        journals = Journals(store)
-        (head,) = journals.list()
-        return list(attachments_of(replay_journal(journals.entries(head.id)), TABLE, "1"))
+    return list(attachments_of(entered(served), TABLE, "1"))
 
 
 def camera_picture() -> bytes:

@@ -41,10 +41,12 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     lab.kill()
 
 
-def asked(served: Served, path: str, *, method: str = "GET", **headers: str) -> tuple[int, dict[str, str], str]:
+def asked(
+    served: Served, path: str, *, method: str = "GET", body: str | None = None, **headers: str
+) -> tuple[int, dict[str, str], str]:
     parts = urlsplit(served.address)
     connection = http.client.HTTPConnection(present(parts.hostname), parts.port, timeout=300)
-    connection.request(method, path, headers=headers)
+    connection.request(method, path, body=body, headers=headers)
     answer = connection.getresponse()
     found = answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read().decode()
     connection.close()
@@ -133,17 +135,6 @@ def test_a_store_that_broke_is_reported_in_a_sentence(tmp_path: Path) -> None:
     assert "Traceback" not in text
 
 
-def ask_lab(served: Served, path: str, body: str | None = None) -> tuple[int, str]:
-    parts = urlsplit(served.address)
-    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=300)
-    own = {"Origin": served.address.rstrip("/"), "Content-Type": "text/plain;charset=UTF-8"}
-    connection.request("GET" if body is None else "POST", path, body=body, headers=own)
-    answer = connection.getresponse()
-    found = answer.status, answer.read().decode()
-    connection.close()
-    return found
-
-
 MESSAGES = (
     '42["event"]',
     '42["event",{}]',
@@ -163,12 +154,13 @@ MESSAGES = (
 
 def test_malformed_messages_leave_a_line_each_and_no_trace(served: Served, capfd: pytest.CaptureFixture[str]) -> None:
     opened = "/_nicegui_ws/socket.io/?EIO=4&transport=polling"
-    session = json.loads(ask_lab(served, opened)[1][1:])["sid"]
+    own = {"Origin": served.address.rstrip("/"), "Content-Type": "text/plain;charset=UTF-8"}
+    session = json.loads(asked(served, opened, **own)[2][1:])["sid"]
     for message in ("40", *MESSAGES):
-        ask_lab(served, f"{opened}&sid={session}", message)
-    nobody = json.loads(ask_lab(served, f"{opened}&implicit_handshake=true")[1][1:])["sid"]
-    ask_lab(served, f"{opened}&sid={nobody}", "40")
-    assert ask_lab(served, "/")[0] == 200
+        asked(served, f"{opened}&sid={session}", method="POST", body=message, **own)
+    nobody = json.loads(asked(served, f"{opened}&implicit_handshake=true", **own)[2][1:])["sid"]
+    asked(served, f"{opened}&sid={nobody}", method="POST", body="40", **own)
+    assert asked(served, "/", **own)[0] == 200
     log = (served.store.parent / "lab" / "lab.log").read_text(encoding="utf-8")
     for kind in ("connect", "event"):
         assert log.count(f"malformed {kind} (KeyError)") == 1

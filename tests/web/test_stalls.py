@@ -10,16 +10,15 @@ import time
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
 
-from skisnow.campaign.store import Journals, Store, replay_journal
 from tests.key_names import SNOW_DENSITY
 
 from .conftest import Served, fill, has_text, ready
-from .test_typing import begun, depths
+from .test_typing import begun, depths, entered
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -50,16 +49,8 @@ def of_seconds(*normal: float) -> pytest.MarkDecorator:
 
 
 def rows(served: Served, file: str, *columns: str) -> list[list[str]]:
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        tests = replay_journal(Journals(store).entries(head.id)).of_file(file)
+    tests = entered(served).of_file(file)
     return [[row.cells[column] for column in columns] for test in tests for row in test.rows]
-
-
-def the_description(served: Served) -> dict[str, Any]:
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        return tomllib.loads(replay_journal(Journals(store).entries(head.id)).description)
 
 
 def opened(page: Page, served: Served, table: str = "") -> None:
@@ -120,7 +111,7 @@ def test_all_rows_outlive_a_reload_and_a_kill(page: Page, served: Served) -> Non
     fill(page, {f"Length (mm) of plate {number}": f"{number}00" for number in (2, 3)})
     page.get_by_role("button", name="Store and enter tests").press("Enter")
     page.get_by_role("heading", name="New series").wait_for()
-    described = the_description(served)
+    described = tomllib.loads(entered(served).description)
     assert [tuple(each.values()) for each in described["tool"]] == [
         ("piece", "ski", 200.0, 62.0),
         ("round", "disc", 30.0),

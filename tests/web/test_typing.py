@@ -15,6 +15,8 @@ from .test_day import create, enter_series, next_series
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page, WebSocketRoute
 
+    from skisnow.campaign.store import ReplayedCampaign
+
 LOADS = (20.0, 40.0, 60.0)
 TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
 
@@ -27,11 +29,16 @@ def begun(served: Served) -> str:
         return f"{served.address}enter/{Journals(store).begin(text)}"
 
 
-def depths(served: Served) -> dict[str, list[str]]:
-    """Contents of the store: the depths of each series in the order of their loads."""
+def entered(served: Served) -> ReplayedCampaign:
+    """The only campaign of the store."""
     with Store.open(served.store) as store:
         (head,) = Journals(store).list()
-        tests = replay_journal(Journals(store).entries(head.id)).of_file("penetration.csv")
+        return replay_journal(Journals(store).entries(head.id))
+
+
+def depths(served: Served) -> dict[str, list[str]]:
+    """Contents of the store: the depths of each series in the order of their loads."""
+    tests = entered(served).of_file("penetration.csv")
     return {test.name: [row.cells["depth_mm"] for row in test.rows] for test in tests}
 
 
@@ -41,9 +48,7 @@ def test_a_whole_series_and_the_next_without_a_pause(page: Page, served: Served)
     page.keyboard.type("A\n30\n1.5\n2.15\n2,6\n\n45\n1.9\n2.7\n3.3\n")
     page.get_by_text("Stored: 3.3 mm under 60 N.").wait_for()
     assert depths(served) == {"1": ["1.5", "2.15", "2.6"], "2": ["1.9", "2.7", "3.3"]}
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        rows = replay_journal(Journals(store).entries(head.id)).test("penetration.csv", "2").rows
+    rows = entered(served).test("penetration.csv", "2").rows
     assert [row.cells["edge_angle_deg"] for row in rows] == ["45"] * 3
 
 
@@ -52,9 +57,7 @@ def test_shear_tests_without_a_pause(page: Page, served: Served) -> None:
     page.locator("fieldset.lab").wait_for(state="attached")
     page.keyboard.type("A\n90\n6\n250\n30\n8\n36\n7\n33\n")
     page.get_by_text("Stored: test 3.").wait_for()
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        tests = replay_journal(Journals(store).entries(head.id)).of_file("shear.csv")
+    tests = entered(served).of_file("shear.csv")
     found = [[test.rows[0].cells[column] for column in ("depth_mm", "lever_arm_mm", "moment_Nm")] for test in tests]
     assert found == [["6", "250", "30"], ["8", "250", "36"], ["7", "250", "33"]]
 
@@ -354,7 +357,5 @@ def test_the_keyboard_alone_on_a_phone(page: Page, served: Served) -> None:
     fits(page)
     press(page, "link", "Analysis")
     page.get_by_text("1 penetration experiment (1 used), 1 shear experiment (1 used)").wait_for()
-    with Store.open(served.store) as store:
-        (found,) = Journals(store).list()
-        rows = replay_journal(Journals(store).entries(found.id)).test("penetration.csv", "1").rows
+    rows = entered(served).test("penetration.csv", "1").rows
     assert [row.cells["depth_mm"] for row in rows] == ["1.5", "2.15", "2.6"]
