@@ -118,8 +118,8 @@ def test_the_worst_of_three_snows(tmp_path: Path) -> None:
     assert rows == pytest.approx(radii.tolist(), rel=1e-6)
 
 
-def test_a_search_does_not_creep_up_to_a_kink() -> None:
-    """The best ski for the worst of three snows is at a kink, where the line search halves its steps for ever."""
+def test_most_starts_reach_an_optimum_at_a_kink() -> None:
+    """The best ski for the worst of three snows is at a kink, where a line search can divide its steps for ever."""
     snows = [{**RACE, "H_V_N_per_mm3": each, "edge_angle_deg": 45} for each in (0.08, 0.21, 0.55)]
     task = TWELVE | {
         "variables": {"sidecut_mm": [-10, 10], "waist_width_mm": [64, 74], "EI_factor": [0.7, 1.6],
@@ -131,8 +131,15 @@ def test_a_search_does_not_creep_up_to_a_kink() -> None:
     search = Search(Evaluator(design_task(task)))
     best, *others = searched_starts(search, begins_of(search.evaluator))
     assert best.result == pytest.approx(0.0143525, rel=1e-2)
-    assert max(each.equilibria for each in others) < 100
+    assert max(each.equilibria for each in others) < 200
     assert np.median([each.result for each in others]) < 1.02 * best.result
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_all_starts_reach_a_smooth_optimum(seed: int) -> None:
+    """Two of these starts begin with a trial that is twelve times worse."""
+    found = skisnow.design_ski(TWELVE | {"starts": 8, "seed": seed})
+    assert [each.share for each in found.optima] == [1.0]
 
 
 def test_what_is_out_of_reach_is_named() -> None:

@@ -23,10 +23,9 @@ REACHED: Final = 1e-6
 _NO_SKI: Final = 1e3  # objective where there is no ski or no equilibrium
 _FTOL: Final = 5e-6  # of the objective: at a kink it does not fall smoothly
 _POLISHED_FTOL: Final = 1e-7  # the same for the best start
-_LEAST_GAIN: Final = 1e-4  # relative, of the result: an iteration that gains less is idle
-_IDLE_ITERATIONS: Final = 2  # in a row, that end the search from a start
-_MOST_TRIALS: Final = (2, 4)  # of a line search, from a start and for the best: more would only creep up to a kink
-_FRESH_MODELS: Final = (1, 3)  # for a search that was stopped so, from a start and for the best
+_LEAST_GAIN: Final = 1e-4  # relative, of the result, for another run
+_MOST_TRIALS: Final = 4  # of a line search: the next ones would only creep up to a kink
+_MOST_RUNS: Final = 4  # of SLSQP, each from the end of the one before
 _NEAREST_FTOL: Final = 1e-8  # of changes, and of relative deviations where all targets are reached
 _PERCENT: Final = 1e4  # squares of deviations count in %
 _BROKEN: Final = 1e9  # value of a design that breaks a limit: above that of each that keeps them
@@ -121,52 +120,45 @@ class Search:
     def _smallest_deviations(self, z: FloatArray, polish: bool) -> FloatArray:
         """SLSQP, and where it stops at a kink again from there: its quadratic model of one side misleads it."""
         best: list[Any] = [self.result(z), z]
-        stopped, fresh_models = True, _FRESH_MODELS[polish]
-        while stopped and fresh_models >= 0:
+        for _ in range(_MOST_RUNS):
             before = best[0]
-            stopped = self._descend(best, polish) and (fresh_models == _FRESH_MODELS[polish] or _gains(best[0], before))
-            fresh_models -= 1
+            if not self._descend(best, polish) or best[0] > (1.0 - _LEAST_GAIN) * before:
+                break
         return np.asarray(best[1])
 
     def _descend(self, best: list[Any], polish: bool) -> bool:
         """One run of SLSQP from the best design, which it replaces by better ones; whether it stopped at a kink."""
-        trials = idle = 0
+        trials = iterations = 0
 
         def objective(x: FloatArray) -> float:
             nonlocal trials
             trials += 1
-            if trials > _MOST_TRIALS[polish]:
+            if iterations > 1 and trials > _MOST_TRIALS:
                 raise _StoppedError
             return self.objective(x)
 
-        def gradient(x: FloatArray) -> FloatArray:
-            nonlocal trials
-            trials = 0
-            return self.gradient(x)
-
-        def gains(x: FloatArray) -> bool:
+        def keep(x: FloatArray) -> None:
             z = np.clip(x[: self.count], 0.0, 1.0)
-            result, before = self.result(z), best[0]
-            if result < before:
+            result = self.result(z)
+            if result < best[0]:
                 best[:] = result, z
-            return _gains(result, before) or result >= _BROKEN
 
-        def judge(x: FloatArray) -> None:
-            nonlocal idle
-            idle = 0 if gains(x) else idle + 1
-            if idle == _IDLE_ITERATIONS and not polish:
-                raise _StoppedError
+        def gradient(x: FloatArray) -> FloatArray:  # where SLSQP accepts a design; its callback sees trials
+            nonlocal trials, iterations
+            trials, iterations = 0, iterations + 1
+            keep(x)
+            return self.gradient(x)
 
         slack = [float(np.max(np.abs(self.deviations(goal, best[1])))) for goal in self.worst]
         try:
             solution = _minimize(
-                objective, np.concatenate([best[1], slack]), jac=gradient, callback=judge,
+                objective, np.concatenate([best[1], slack]), jac=gradient,
                 bounds=[(0.0, 1.0)] * self.count + [(0.0, None)] * len(slack), constraints=self.constraints(),
                 ftol=_POLISHED_FTOL if polish else _FTOL,
             )  # fmt: skip
         except _StoppedError:
             return True
-        gains(solution.x)
+        keep(solution.x)
         return False
 
     def _nearest(self, z: FloatArray) -> FloatArray:
@@ -210,10 +202,6 @@ def _minimize(objective: Any, x: FloatArray, *, ftol: float, **arguments: Any) -
 
     minimize: Any = optimize.minimize  # its overloads know no vectors of constraints
     return minimize(objective, x, method="SLSQP", options={"ftol": ftol, "maxiter": _MOST_ITERATIONS}, **arguments)
-
-
-def _gains(result: float, before: float) -> bool:
-    return result < (1.0 - _LEAST_GAIN) * before
 
 
 def _constraint(search: Search, value: Any, growth: Any, goal: Goal, *, kind: str = "ineq") -> dict[str, Any]:
