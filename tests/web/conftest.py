@@ -24,7 +24,7 @@ pytest.importorskip("nicegui", reason="the web lab is not installed: pip install
 from multiprocessing.process import BaseProcess
 
 import skisnow.web.pages
-from skisnow.campaign.store import Store
+from skisnow.campaign.store import Journals, ReplayedCampaign, Store, replay_journal
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
 
@@ -232,6 +232,13 @@ def file_page(chromium: Browser) -> Iterator[Page]:
     made = chromium.new_page()
     yield made
     made.close()
+
+
+def entered(served: Served) -> ReplayedCampaign:
+    """The only campaign of the store."""
+    with Store.open(served.store) as store:
+        (head,) = Journals(store).list()
+        return replay_journal(Journals(store).entries(head.id))
 
 
 def killed_and_started_again(page: Page, served: Served) -> None:

@@ -25,9 +25,8 @@ from skisnow.web.words import typed_number
 from tests.coded import raises
 
 from .confined_work import dies, is_wrong, other_process, refuse, takes_memory, takes_time
-from .conftest import Served, fill
+from .conftest import Served, entered, fill
 from .test_day import create
-from .test_typing import entered
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -14,11 +14,11 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from skisnow.campaign.store import Journals, Store, replay_journal
+from skisnow.campaign.store import Journals, Store
 from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.cli import main
 
-from .conftest import Served, downloaded_results, fill, follow, has_text, killed_and_started_again, ready
+from .conftest import Served, downloaded_results, entered, fill, follow, has_text, killed_and_started_again, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Download, Locator, Page
@@ -158,9 +158,7 @@ def unpacked(download: Download, place: Path) -> Path:
 @pytest.mark.slow
 def test_a_day(page: Page, served: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     describe(page, served)
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        found = tomllib.loads(replay_journal(Journals(store).entries(head.id)).description)
+    found = tomllib.loads(entered(served).description)
     listed = {key: list(value) if isinstance(value, tuple) else value for key, value in VALUES.items()}
     assert found == {**listed, "tool": [TOOL], "plate": [PLATE]}
     enter_series(page, "1")

@@ -13,9 +13,8 @@ from skisnow import samples
 from skisnow.campaign.store import attachments_of
 from skisnow.campaign.store.attachments import photo_of
 
-from .conftest import Served, ready
+from .conftest import Served, entered, ready
 from .test_day import create, enter_series
-from .test_typing import entered
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

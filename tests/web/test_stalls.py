@@ -17,8 +17,8 @@ import pytest
 
 from tests.key_names import SNOW_DENSITY
 
-from .conftest import Served, fill, has_text, ready
-from .test_typing import begun, depths, entered
+from .conftest import Served, entered, fill, has_text, ready
+from .test_typing import begun, depths
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

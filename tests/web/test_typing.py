@@ -6,16 +6,14 @@ from typing import TYPE_CHECKING, Literal
 
 import pytest
 
-from skisnow.campaign.store import Journals, Store, replay_journal
+from skisnow.campaign.store import Journals, Store
 from skisnow.campaign.store.replayed import Description, description_text
 
-from .conftest import Served, fill, has_text, ready
+from .conftest import Served, entered, fill, has_text, ready
 from .test_day import create, enter_series, next_series
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page, WebSocketRoute
-
-    from skisnow.campaign.store import ReplayedCampaign
 
 LOADS = (20.0, 40.0, 60.0)
 TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
@@ -27,13 +25,6 @@ def begun(served: Served) -> str:
     text = description_text(Description({"name": "Quick", "load_steps_N": LOADS}, [TOOL], plates))
     with Store.open(served.store) as store:
         return f"{served.address}enter/{Journals(store).begin(text)}"
-
-
-def entered(served: Served) -> ReplayedCampaign:
-    """The only campaign of the store."""
-    with Store.open(served.store) as store:
-        (head,) = Journals(store).list()
-        return replay_journal(Journals(store).entries(head.id))
 
 
 def depths(served: Served) -> dict[str, list[str]]:
