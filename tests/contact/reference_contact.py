@@ -24,10 +24,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass
 class Hold:
-    """One edge on a line at the last accepted pose: place, depth, and where it held if in the snow."""
+    """One edge on a line at the last accepted pose: place, depth, skew, and where it held if in the snow."""
 
     place: float
     depth: float
+    skew: float
     anchor: float = math.nan
 
 
@@ -52,7 +53,10 @@ class Line:
 
 @dataclass
 class Edge:
-    """Left or right edge of a section: place on the line, depth, reach, position, across and off the edge."""
+    """Left or right edge of a section: place on the line, depth, reach, position, across and off the edge.
+
+    skew: growth of the place for each metre that the line moves ahead.
+    """
 
     place: float
     depth: float
@@ -60,6 +64,7 @@ class Edge:
     at: FloatArray
     across: FloatArray
     off: FloatArray
+    skew: float
 
 
 @dataclass
@@ -153,10 +158,12 @@ class ReferenceRunner:
             line.passed = (section.on_ski, section.climb) if section.deepest > 0.0 else None
             holds, slipped = [], 0.0
             for k, edge in enumerate(section.edges):
-                hold = Hold(edge.place, edge.depth)
+                hold = Hold(edge.place, edge.depth, edge.skew)
                 if edge.depth > 0.0:
                     held = section.anchor(k)
-                    hold.anchor = float(np.clip(held, edge.place - reach, edge.place + reach))
+                    hold.anchor = held
+                    for place in (section.farthest(k), edge.place):
+                        hold.anchor = float(np.clip(hold.anchor, place - reach, place + reach))
                     slipped = max(slipped, abs(hold.anchor - held))
                 holds.append(hold)
             line.strength = section.strength()[0] if section.deepest > 0.0 else 0.0
@@ -207,7 +214,8 @@ class _Section:
             across_edge = np.cross(n, direction)
             across_edge /= float(np.linalg.norm(across_edge))
             off = n - float(n @ direction) / float(direction @ direction) * direction
-            self.edges.append(Edge(crossing, edge_depth, to * self.half, at, across_edge, off / float(off @ n)))
+            skew = float(direction @ y / (direction @ ahead))
+            self.edges.append(Edge(crossing, edge_depth, to * self.half, at, across_edge, off / float(off @ n), skew))
         self.deepest = max(edge.depth for edge in self.edges)
         low, high = self.edges[1].place, self.edges[0].place
         if fall > 1e-12:
@@ -310,6 +318,18 @@ class _Section:
             aside = float(np.interp(y, width, moved[::-1]))
             out.append((y + back * aside, float(self.touch.base(y)) - 0.5 * slope_change * back**2))
         return out
+
+    def farthest(self, k: int) -> float:
+        """Place at which an edge turned back between two poses, by the parabola with its skews; or its end."""
+        before, edge = self.stood(k), self.edges[k]
+        if before is None or self.line.passed is None:
+            return edge.place
+        slope_change = (self.line.passed[0] - self.on_ski) * (before.skew - edge.skew)
+        share = 0.5 - (edge.place - before.place) / slope_change if slope_change else 0.0
+        if not 0.0 < share < 1.0:
+            return edge.place
+        slope = edge.place - before.place - 0.5 * slope_change
+        return before.place + slope * share + 0.5 * slope_change * share**2
 
     def unbent(self, s: float) -> tuple[float, float]:
         """Height and slope of the unbent base at a station."""

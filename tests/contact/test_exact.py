@@ -203,6 +203,27 @@ def test_a_base_that_rolls_is_deepest_elsewhere_at_each_place() -> None:
     assert groove_of_rocker(1.0, 0.018, turn=0.002) == pytest.approx(fine, rel=3e-5)
 
 
+def test_the_shear_of_a_waist_turns_where_the_edge_does() -> None:
+    """An edge with a sidecut of 15 m passes over snow, 18 mm in a step: y = x²/(2 R cos ϑ) of its place turns back.
+
+    Behind the waist S_f e turns from one side to the other within x₀ = √(4 R cos ϑ u_y): 4/3 x₀ are left over.
+    Ends of steps alone leave 5 % more.
+    """
+    station, angle, depth, radius = np.linspace(0.8, -0.8, 1601), math.radians(45), 2e-3, 15.0
+    wider = station**2 / (2.0 * radius)
+    runner = Runner(station, 0.5 * WIDTH + wider, wider * math.tan(angle))
+    contact = SnowContact(SnowField(H, S, 10.0, part_along=1.0, part_across=1.0), [runner])
+    sheared = []
+    for x in 0.018 * np.arange(100):
+        pose = placed(angle, depth, x=x)
+        contact.update(*pose, 1e-3)
+        contact.force(*pose, AT_REST, 1e-3)
+        sections = contact.sections()
+        sheared.append(np.sum(sections.shear[np.abs(sections.position_along_ski) < 0.2005]))
+    expected = 4.0 / 3.0 * math.sqrt(4.0 * radius * math.cos(angle) * SHEAR_DISPLACEMENT)
+    assert np.mean(sheared[-10:]) / (S * depth) == pytest.approx(expected, rel=1e-3)
+
+
 # Glide friction: against the sliding velocity, at any slip angle
 
 

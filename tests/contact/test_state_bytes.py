@@ -47,7 +47,7 @@ def fresh() -> SnowContact:
     return SnowContact(SnowField(2e8, 3e5, 10.0), [Runner(*SHAPE)])
 
 
-def sealed(payload: bytes, *, version: int = 5, kind: int = 1) -> bytes:
+def sealed(payload: bytes, *, version: int = 6, kind: int = 1) -> bytes:
     """A head, the payload, and FNV-1a of both."""
     body = b"skisnow\n" + struct.pack("<QQQ", version, kind, len(payload)) + payload
     digest = 14695981039346656037

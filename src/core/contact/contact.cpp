@@ -120,7 +120,7 @@ SnowContact::SnowContact(std::shared_ptr<Snow> snow, std::vector<Runner> runners
   trial_ = state_.lines;
   std::size_t slots = 0;
   for (const GrooveLines& each : state_.lines) slots = std::max(slots, std::size_t(each.capacity()));
-  scratch_.resize(slots), slips_.resize(slots), is_needed_.resize(slots);
+  scratch_.resize(slots), is_needed_.resize(slots);
   before_.resize(runners_.size());
   for (const GrooveLines& each : state_.lines) sections_.emplace_back(each.capacity());
   if (snow_->rate.acts()) rated_.resize(runners_.size());
@@ -234,7 +234,6 @@ void SnowContact::begin(const Situation& foreseen) {
     Before& before = before_[std::size_t(k)];
     before.first = lines.first, before.end = lines.end;
     before.lines.clear();
-    for (Column& each : before.slips) each.clear();
     prepare(k, lines, foreseen.poses[std::size_t(k)]);
   }
   for (int k = 0; k < runners(); k++) march_where_needed(k, foreseen);

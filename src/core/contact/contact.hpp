@@ -124,13 +124,9 @@ class SnowContact {
   std::vector<std::int64_t> needed_;  // lines, the foremost first
   Column scratch_;                    // by slot
   Column is_needed_;                  // by slot: 1 for these
-  Column slips_;                      // by slot: 1 where the anchor alone is marched
-  bool drags_ = false;                // whether there is one
   struct Before {                     // of one runner, what `begin` has changed
     std::int64_t first, end;
     std::vector<GrooveLines::Line> lines;
-    Column slips[3];  // anchors and slip of all slots, or empty
-    void keep_anchors(const GrooveLines& of);
     void put_back(GrooveLines& into) const;
   };
   std::vector<Before> before_;

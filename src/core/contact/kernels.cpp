@@ -19,8 +19,8 @@ extern const Kernels SET{.name = SKISNOW_NAME(SKISNOW_LANES),
                          .add_stiffness = add_stiffness,
                          .find_unknown = find_unknown<Width>,
                          .square_depths = square_depths<Width>,
-                         .drag_anchors = drag_anchors<Width>,
                          .mark = mark<Width>,
+                         .drag_anchors = drag_anchors<Width>,
                          .band = {eliminate, substitute_forwards, substitute_backwards, add_band, add_coupling,
                                   add_coupled, combine, add_congruent}};
 

@@ -1,5 +1,4 @@
-// Lines of snow without the base above them: which of them need a search for older tracks, their grooves' energy, and
-// anchors that slip.
+// Lines of snow without the base above them: which of them need a search for older tracks, and their grooves' energy.
 #pragma once
 
 #include <algorithm>
@@ -59,28 +58,6 @@ void square_depths(const GrooveLines& lines, double* out) {
       }
     }
     store(out + j, total / 3.0);
-  });
-}
-
-// [drag_anchors] Where `slips` (by slot) is 1, the anchors follow the edges at their full displacement; the longer way
-// counts as slip.
-template <class V>
-void drag_anchors(const Snow& snow, const Base& s, const double* slips, GrooveLines& lines) {
-  const double reach = snow.shear_displacement;
-  for_lanes<V>(s, lines, [&](int i, int j) {
-    const MaskOf<V> drags = (load<V>(slips + j) > 0.5) & (load<V>(s[SHARE] + i) > 0.0);
-    V slipped{};
-    for (int k = 0; k < 2; k++) {
-      const MaskOf<V> in_snow = drags & (load<V>(s[of_edge(LEFT_DEPTH, k)] + i) > 0.0);
-      if (!any(in_snow)) continue;
-      const V edge = load<V>(s[GRIP_PLACE] + i) + load<V>(s[of_edge(LEFT_X, k)] + i);
-      double* anchors = lines.values[of_edge(LEFT_ANCHOR, k)];
-      const V before = load<V>(anchors + j);
-      const V anchor = select(in_snow, minimum(maximum(before, edge - reach), edge + reach), before);
-      store(anchors + j, anchor);
-      slipped = maximum(slipped, absolute(V(anchor - before)));
-    }
-    store(lines.values[SLIPPED] + j, load<V>(lines.values[SLIPPED] + j) + slipped);
   });
 }
 

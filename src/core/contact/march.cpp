@@ -11,20 +11,8 @@
 
 namespace skisnow {
 
-namespace {
-
-constexpr LineField SLIPS[3] = {LEFT_ANCHOR, RIGHT_ANCHOR, SLIPPED};  // fields that a slip changes
-
-}  // namespace
-
-void SnowContact::Before::keep_anchors(const GrooveLines& of) {
-  const auto count = std::size_t(of.capacity());
-  for (std::size_t i = 0; i < 3; i++) slips[i].assign(of.values[SLIPS[i]], of.values[SLIPS[i]] + count);
-}
-
 void SnowContact::Before::put_back(GrooveLines& into) const {
   into.first = first, into.end = end;
-  for (std::size_t i = 0; i < 3; i++) std::copy(slips[i].begin(), slips[i].end(), into.values[SLIPS[i]]);
   for (const GrooveLines::Line& line : lines) into.put_back(line);
 }
 
@@ -265,13 +253,13 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
 }
 
 // The lines whose ground depends on the way between two poses and not on its ends alone: ahead, where the snow was not
-// touched yet, and where the base passes its deepest place or did so less than the way before. Where an edge slips,
-// only its anchor depends on the way, unless all of the edge that comes to the line slips to the same side.
+// touched yet, where the base passes its deepest place or did so less than the way before, and where an edge slips
+// unless all of the edge that comes to the line slips to the same side.
 void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner& runner, const Pose& to) {
   const auto& v = lines.values;
   const double most = snow_->shear_displacement - THIN;  // a slip leaves the anchor as far off, but for rounding
   const auto over = std::int64_t(std::ceil(way / lines.spacing()));
-  for (Column* each : {&slips_, &is_needed_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
+  for (Column* each : {&is_needed_, &scratch_}) std::fill(each->begin(), each->end(), 0.0);
   Column& marked_depth = scratch_;  // by slot; 0 where the ski was not in the snow
   int side[2] = {}, alike[2] = {};  // of each edge: whether it slips to the left, 1, or to the right, -1; lines before
   for (std::int64_t n = lines.first; n < lines.end; n++) {
@@ -283,7 +271,7 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
       const bool slips = is_marked && v[of_edge(LEFT_MARK_DEPTH, k)][slot] > 0.0 && std::fabs(slipped) > most;
       const int here = !slips ? 0 : slipped > 0.0 ? 1 : -1;
       alike[k] = here == side[k] ? alike[k] + 1 : 0, side[k] = here;
-      if (here != 0 && alike[k] <= over) slips_[slot] = 1.0;
+      if (here != 0 && alike[k] <= over) is_needed_[slot] = 1.0;
     }
   }
   const auto depth = [&](std::int64_t n) {
@@ -291,7 +279,6 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
   };
   const double reach = runner.tip + lines.spacing();  // lines that the tip does not reach stay as they are
   needed_.clear();
-  drags_ = false;
   bool ahead = true;
   std::int64_t deepest = lines.end + over + 1;
   for (std::int64_t n = lines.end - 1; n >= lines.first; n--) {
@@ -299,16 +286,14 @@ void SnowContact::find_needed(const GrooveLines& lines, double way, const Runner
     const double rear = depth(n - over - 1), here = depth(n - over), front = depth(n - over + 1);
     if (std::min({rear, here, front}) > 0.0 && here >= std::max(rear, front)) deepest = n - over;
     ahead = ahead && !(depth(n) > 0.0);
-    if (ahead || (n >= deepest - over && n <= deepest + over)) {
-      slips_[slot] = 0.0;
-      if (lines.station(n, to) > reach) continue;
-      needed_.push_back(n), is_needed_[slot] = 1.0;
-    }
-    drags_ = drags_ || slips_[slot] > 0.0;
+    if ((ahead || (n >= deepest - over && n <= deepest + over)) && !(lines.station(n, to) > reach))
+      is_needed_[slot] = 1.0;
+    if (is_needed_[slot] > 0.0) needed_.push_back(n);
   }
 }
 
-// [march] As `march`, for the lines that need it, which also take the base's deepest place on the way to the end.
+// [march] As `march`, for the lines that need it. They also take the base's deepest place on the way to the end, and
+// the places where its edges turn back.
 void SnowContact::march_where_needed(int k, const Situation& to) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
   if (state_.accepted.empty()) return;
@@ -317,22 +302,19 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   if (parts < 2) return;
   const Vector3 way = end.position - from.position;
   find_needed(lines, std::sqrt(dot(way, way)), runner(k), end);
-  if (needed_.empty() && !drags_) return;
+  if (needed_.empty()) return;
   Before& before = before_[std::size_t(k)];
   for (const std::int64_t n : needed_) before.lines.push_back(lines.line(lines.slot(n)));
-  if (drags_) before.keep_anchors(lines);
-  Column& is_followed = scratch_;
-  for (std::size_t i = 0; i < is_followed.size(); i++) is_followed[i] = is_needed_[i] + slips_[i];
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
     interpolate(from, end, double(part) / parts, on_way_);
-    kernels_->find_sections(runner(k), on_way_, lines, is_followed.data(), s.base);
+    kernels_->find_sections(runner(k), on_way_, lines, is_needed_.data(), s.base);
     for (const std::int64_t n : needed_) press_base(k, n, lines);
     kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);
-    if (drags_) kernels_->drag_anchors(*snow_, s.base, slips_.data(), lines);
   }
   kernels_->find_sections(runner(k), end, lines, is_needed_.data(), s.base);
   for (const std::int64_t n : needed_) press_deepest(k, n, lines);
+  kernels_->drag_anchors(*snow_, s.base, is_needed_.data(), lines);
 }
 
 }  // namespace skisnow

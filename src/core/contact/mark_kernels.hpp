@@ -12,14 +12,42 @@ SKISNOW_INLINE void put(GrooveLines& lines, LineField field, int j, MaskOf<V> wh
   store(to, select(where, value, load<V>(to)));
 }
 
-// Keep where an edge in the snow holds, not farther off than its full displacement. Returns how far it slips; `eased`:
-// share of the displacement by which it was eased, see [ease].
+// How far the place of an edge on a line moves as the line moves ahead by one.
 template <class V>
-SKISNOW_INLINE V keep_anchor(const Snow& snow, GrooveLines& lines, int j, int k, MaskOf<V> in_snow, V edge, V depth,
+SKISNOW_INLINE V edge_skew(const Cut<V>& c, int k) {
+  const Vector<V> along = c.direction(all<V>(k == 0 ? 1.0 : -1.0));
+  return dot(along, c.left) / dot(along, c.ahead);
+}
+
+// [turn] Where across an edge turned back since its mark. Over the way w from 0 to 1 its place is a parabola
+// y₀ + (y₁ - y₀) w + b w (1 - w), b half the way along the ski times the change of the skew. Where the vertex at 1 - u
+// lies on the way, it is u² b beyond y₁. Elsewhere y₁.
+template <class V>
+SKISNOW_INLINE V turning_place(const GrooveLines& lines, int j, const Cut<V>& c, int k) {
+  const auto before = [&](LineField left) { return load<V>(lines.values[of_edge(left, k)] + j); };
+  const V edge = c.place + c.x[k], way = edge - before(LEFT_MARK), none{};
+  const V bend =
+      0.5 * (load<V>(lines.values[MARK_STATION] + j) - c.station) * (edge_skew(c, k) - before(LEFT_MARK_SKEW));
+  const MaskOf<V> turns = (load<V>(lines.values[MARKED] + j) > 0.5) & (before(LEFT_MARK_DEPTH) > 0.0) &
+                          (c.depth[k] > 0.0) & (absolute(way) < absolute(bend));
+  const V u = 0.5 - 0.5 * way / select(turns, bend, all<V>(1.0));
+  return edge + select(turns, V(bend * u * u), none);
+}
+
+// An anchor that an edge drags along where it is farther off than the full displacement.
+template <class V>
+SKISNOW_INLINE V dragged(const Snow& snow, V anchor, V edge) {
+  return minimum(maximum(anchor, edge - snow.shear_displacement), edge + snow.shear_displacement);
+}
+
+// Keep where an edge in the snow holds, on its way and at its end. Returns how far it slips; `eased`: share of the
+// displacement by which it was eased, see [ease].
+template <class V>
+SKISNOW_INLINE V keep_anchor(const Snow& snow, GrooveLines& lines, int j, const Cut<V>& c, int k, MaskOf<V> in_snow,
                              V eased) {
-  const double reach = snow.shear_displacement;
-  const V anchor = anchor_before(lines, j, k, edge, depth) + reach * eased;
-  const V kept = minimum(maximum(anchor, edge - reach), edge + reach);
+  const V edge = c.place + c.x[k];
+  const V anchor = anchor_before(lines, j, k, edge, c.depth[k]) + snow.shear_displacement * eased;
+  const V kept = dragged(snow, dragged(snow, anchor, turning_place(lines, j, c, k)), edge);
   put(lines, of_edge(LEFT_ANCHOR, k), j, in_snow, kept);
   return select(in_snow, absolute(V(kept - anchor)), V{});
 }
@@ -50,14 +78,15 @@ void mark(const Snow& snow, const Base& s, const double* of, const EdgeHold* eas
     if (!any(chosen)) return;
     const MaskOf<V> on_ski = chosen & (load<V>(s[SHARE] + i) > 0.0), touches = on_ski & (load<V>(s[DEEPEST] + i) > 0.0);
     if (any(on_ski)) {
+      const Cut<V> c = Cut<V>::stored(s, i);
       V slipped{};
       for (int k = 0; k < 2; k++) {
-        const V edge = load<V>(s[GRIP_PLACE] + i) + load<V>(s[of_edge(LEFT_X, k)] + i);
-        const V depth = load<V>(s[of_edge(LEFT_DEPTH, k)] + i);
         const V eased_by = eased == nullptr ? none : load<V>((*eased)[of_edge(LEFT_EASED, k)] + i);
-        const MaskOf<V> in_snow = on_ski & (depth > 0.0);
-        if (any(in_snow)) slipped = maximum(slipped, keep_anchor(snow, lines, j, k, in_snow, edge, depth, eased_by));
-        put(lines, of_edge(LEFT_MARK, k), j, on_ski, edge), put(lines, of_edge(LEFT_MARK_DEPTH, k), j, on_ski, depth);
+        const MaskOf<V> in_snow = on_ski & (c.depth[k] > 0.0);
+        if (any(in_snow)) slipped = maximum(slipped, keep_anchor(snow, lines, j, c, k, in_snow, eased_by));
+        put(lines, of_edge(LEFT_MARK, k), j, on_ski, V(c.place + c.x[k]));
+        put(lines, of_edge(LEFT_MARK_SKEW, k), j, on_ski, edge_skew(c, k));
+        put(lines, of_edge(LEFT_MARK_DEPTH, k), j, on_ski, c.depth[k]);
       }
       store(lines.values[SLIPPED] + j, load<V>(lines.values[SLIPPED] + j) + slipped);
       if (any(touches)) keep_stuck<V>(snow, s, i, lines, j, touches);
@@ -66,6 +95,26 @@ void mark(const Snow& snow, const Base& s, const double* of, const EdgeHold* eas
     put(lines, MARK_CLIMB, j, touches, load<V>(s[DEPTH_CLIMB] + i));
     put(lines, STUCK, j, chosen, select(touches, one, none));
     put(lines, MARKED, j, chosen, select(on_ski, one, none));
+  });
+}
+
+// [drag_anchors] Edges of these lines drag their anchors along on the way since their marks.
+template <class V>
+void drag_anchors(const Snow& snow, const Base& s, const double* of, GrooveLines& lines) {
+  for_lanes<V>(s, lines, [&](int i, int j) {
+    const MaskOf<V> drags =
+        (load<V>(of + j) > 0.5) & (load<V>(s[SHARE] + i) > 0.0) & (load<V>(lines.values[MARKED] + j) > 0.5);
+    if (!any(drags)) return;
+    const Cut<V> c = Cut<V>::stored(s, i);
+    V slipped{};
+    for (int k = 0; k < 2; k++) {
+      const V before = load<V>(lines.values[of_edge(LEFT_ANCHOR, k)] + j), at = turning_place(lines, j, c, k);
+      const MaskOf<V> turns = drags & (at != c.place + c.x[k]);
+      const V anchor = select(turns, dragged(snow, before, at), before);
+      store(lines.values[of_edge(LEFT_ANCHOR, k)] + j, anchor);
+      slipped = maximum(slipped, absolute(V(anchor - before)));
+    }
+    store(lines.values[SLIPPED] + j, load<V>(lines.values[SLIPPED] + j) + slipped);
   });
 }
 

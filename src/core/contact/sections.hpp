@@ -190,9 +190,9 @@ struct Kernels {
   // loops over lines only, see line_kernels.hpp; all by slot
   bool (*find_unknown)(const GrooveLines&, const Pose&, double room, double* is_unknown);
   void (*square_depths)(const GrooveLines&, double* out);
-  void (*drag_anchors)(const Snow&, const Base&, const double* slips, GrooveLines&);
-  // marks of a base on its lines, see mark_kernels.hpp; `of`, by slot, and `eased` may be null
+  // marks of a base on its lines, see mark_kernels.hpp; `of`, by slot, and `eased` of `mark` may be null
   void (*mark)(const Snow&, const Base&, const double* of, const EdgeHold* eased, GrooveLines&);
+  void (*drag_anchors)(const Snow&, const Base&, const double* of, GrooveLines&);
   BandKernels band;
 };
 

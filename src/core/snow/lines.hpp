@@ -25,8 +25,9 @@ enum LineField {
   FRICTION,                      // and μ there over that of the law
   MARKED,                        // whether the ski was over it at the last accepted pose (0 or 1)
   MARK_STATION, MARK_CLIMB,      // place along the ski then (m), and how fast the depth grew ahead there
-  // each edge then: where across it was, how deep, and where it holds if it was in the snow (m)
-  LEFT_MARK, RIGHT_MARK, LEFT_MARK_DEPTH, RIGHT_MARK_DEPTH, LEFT_ANCHOR, RIGHT_ANCHOR,
+  // each edge then: where across it was, how far this moves as the line moves ahead by one, how deep, and where it holds
+  // if it was in the snow (m)
+  LEFT_MARK, RIGHT_MARK, LEFT_MARK_SKEW, RIGHT_MARK_SKEW, LEFT_MARK_DEPTH, RIGHT_MARK_DEPTH, LEFT_ANCHOR, RIGHT_ANCHOR,
   SLIPPED,                       // how far an edge has slipped across here, the one that slipped farther (m)
   // where the strength varies: that of the edges then (Pa); depth of each and its displacement from the anchor (m)
   STRENGTH_HELD, LEFT_DEPTH_HELD, RIGHT_DEPTH_HELD, LEFT_SHEAR_HELD, RIGHT_SHEAR_HELD,

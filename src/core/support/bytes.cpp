@@ -9,7 +9,7 @@ namespace skisnow {
 namespace {
 
 constexpr unsigned char MAGIC[8] = {'s', 'k', 'i', 's', 'n', 'o', 'w', '\n'};
-constexpr std::uint64_t VERSION = 5;                           // of all that is written
+constexpr std::uint64_t VERSION = 6;                           // of all that is written
 constexpr std::size_t WORD = 8, HEAD = 4 * WORD, FOOT = WORD;  // magic, version, kind, length; digest
 
 std::uint64_t word_at(const unsigned char* at) {
