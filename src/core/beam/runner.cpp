@@ -17,13 +17,6 @@ Vector3 rotation_vector(const double (&m)[3][3]) {
   return {factor * twice[0], factor * twice[1], factor * twice[2]};
 }
 
-// A body that turns at a steady rate and keeps its velocity in its own axes moves along an arc: its distance from the
-// straight way, to the second order of the turn (in the axes of the start).
-void bend_way(const Pose& from, const Pose& to, const Vector3& turn, double share, Vector3& place) {
-  const Vector3 axis = turn[0] * from.axis(0) + turn[1] * from.axis(1) + turn[2] * from.axis(2);
-  place = place + (0.5 * share * (share - 1.0)) * cross(axis, to.position - from.position);
-}
-
 constexpr double TABLE_STEP = 1e-3;  // (m) of the table, at most; between its rows it is linear
 
 // A column over falling positions, straight between them, at a place within.
@@ -82,7 +75,7 @@ void rotation_matrix(const Vector3& v, double (&out)[3][3]) {
     for (int b = 0; b < 3; b++) out[a][b] = (a == b ? 1.0 - c * square : 0.0) + s * cross[a][b] + c * v[a] * v[b];
 }
 
-void interpolate(const Pose& from, const Pose& to, double share, Pose& middle) {
+void interpolate(const Pose& from, const Pose& to, const Motion* at_end, double dt, double share, Pose& middle) {
   middle.beam = to.beam;
   double relative[3][3], step[3][3];
   for (int a = 0; a < 3; a++) {
@@ -92,9 +85,17 @@ void interpolate(const Pose& from, const Pose& to, double share, Pose& middle) {
       for (int c = 0; c < 3; c++) relative[a][b] += from.rotation[c][a] * to.rotation[c][b];
     }
   }
-  Vector3 turn = rotation_vector(relative);
-  bend_way(from, to, turn, share, middle.position);
-  for (double& each : turn) each *= share;
+  const Vector3 way = to.position - from.position, whole = rotation_vector(relative);
+  const double bent = share * (share - 1.0);
+  Vector3 turn = share * whole;
+  if (at_end == nullptr) {
+    const Vector3 axis = whole[0] * from.axis(0) + whole[1] * from.axis(1) + whole[2] * from.axis(2);
+    middle.position = middle.position + (0.5 * bent) * cross(axis, way);
+  } else {  // how far the rates at the end lead beyond the way
+    const Vector3& o = at_end->turning;
+    middle.position = middle.position + bent * (dt * at_end->velocity - way);
+    turn = turn + bent * (dt * Vector3{dot(o, to.axis(0)), dot(o, to.axis(1)), dot(o, to.axis(2))} - whole);
+  }
   rotation_matrix(turn, step);
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++) {

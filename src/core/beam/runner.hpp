@@ -42,9 +42,9 @@ struct Motion {
   std::vector<double> beam;
 };
 
-// The pose a share (0 to 1) of the way from one to another: rotation about the axis that leads from one to the other at
-// a steady rate, along the arc that goes with it.
-void interpolate(const Pose& from, const Pose& to, double share, Pose& middle);
+// The pose a share (0 to 1) of the way from one to another, in a time dt (s) at a steady acceleration. If no motion at
+// the end is given, at a steady rate of rotation and along the arc that goes with it.
+void interpolate(const Pose& from, const Pose& to, const Motion* at_end, double dt, double share, Pose& middle);
 
 void rotation_matrix(const Vector3& v, double (&out)[3][3]);  // from a rotation vector
 

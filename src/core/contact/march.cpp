@@ -246,7 +246,8 @@ void SnowContact::march(int k, GrooveLines& lines, const Situation& to) {
   if (state_.accepted.empty()) return;
   const int parts = this->parts(k, to);
   for (int part = 1; part < parts; part++) {
-    interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], double(part) / parts, on_way_);
+    interpolate(state_.accepted[std::size_t(k)], to.poses[std::size_t(k)], nullptr, to.dt, double(part) / parts,
+                on_way_);
     kernels_->find_sections(runner(k), on_way_, lines, nullptr, sections_[std::size_t(k)].base);
     remember(k, lines, false);
   }
@@ -307,7 +308,7 @@ void SnowContact::march_where_needed(int k, const Situation& to) {
   for (const std::int64_t n : needed_) before.lines.push_back(lines.line(lines.slot(n)));
   Sections& s = sections_[std::size_t(k)];
   for (int part = 1; part < parts; part++) {
-    interpolate(from, end, double(part) / parts, on_way_);
+    interpolate(from, end, &to.motions[std::size_t(k)], to.dt, double(part) / parts, on_way_);
     kernels_->find_sections(runner(k), on_way_, lines, is_needed_.data(), s.base);
     for (const std::int64_t n : needed_) press_base(k, n, lines);
     kernels_->mark(*snow_, s.base, is_needed_.data(), nullptr, lines);

@@ -19,7 +19,7 @@ SKISNOW_INLINE V edge_skew(const Cut<V>& c, int k) {
   return dot(along, c.left) / dot(along, c.ahead);
 }
 
-// [turn] Where across an edge turned back since its mark. Over the way w from 0 to 1 its place is a parabola
+// [turning_place] Where across an edge turned back since its mark. Over the way w from 0 to 1 its place is a parabola
 // y₀ + (y₁ - y₀) w + b w (1 - w), b half the way along the ski times the change of the skew. Where the vertex at 1 - u
 // lies on the way, it is u² b beyond y₁. Elsewhere y₁.
 template <class V>
