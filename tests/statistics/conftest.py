@@ -1,4 +1,4 @@
-"""Certified data of the NIST Statistical Reference Datasets: the nonlinear sets, others where they lie beside us."""
+"""Certified data of the NIST Statistical Reference Datasets, where they are next to this repository."""
 
 import csv
 import re
@@ -11,7 +11,6 @@ import pytest
 
 FloatArray = npt.NDArray[np.float64]
 
-NONLINEAR = Path(__file__).resolve().parent / "nist"
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "regression"
 
 
@@ -27,21 +26,15 @@ class NistFile:
         return [float(word) for word in re.findall(r"[-+]?\d+\.?\d*(?:E[-+]\d+)?", line.split(label, 1)[1])]
 
     @property
-    def parameters(self) -> FloatArray:
-        """Rows start 1, start 2, certified value, certified standard deviation; shape (4, p)."""
-        lines = [line.split("=")[1] for line in self.lines if re.match(r" +b\d+ =", line)]
-        return np.array([[float(word) for word in line.split()] for line in lines]).T
-
-    @property
     def data(self) -> FloatArray:
         start = max(i for i, line in enumerate(self.lines) if line.startswith("Data:")) + 1
         return np.array([[float(word) for word in line.split()] for line in self.lines[start:] if line.strip()])
 
 
 def _present(name: str) -> Path:
-    path = NONLINEAR / name if (NONLINEAR / name).exists() else FOLDER / name
+    path = FOLDER / name
     if not path.exists():
-        pytest.skip(f"certified data {name} are not beside this repository")
+        pytest.skip(f"certified data {name} are not next to this repository")
     return path
 
 

@@ -1,7 +1,6 @@
 """Linear fits against certified data, rational arithmetic and hand calculation."""
 
 from collections.abc import Callable
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -10,11 +9,8 @@ import pytest
 from tests.coded import Coded, coded, raises
 
 from skisnow._support.errors import FitError, FitWarning, ParameterError
-from skisnow.statistics import linear_fit, polynomial_fit, regress, variance_shares
+from skisnow.statistics import linear_fit, regress, variance_shares
 from skisnow.statistics.clusters import cluster_intervals
-from skisnow.statistics.linear import chebyshev_columns, exact_power_basis
-
-from ..versions import EXACT_QUANTILES
 
 FloatArray = npt.NDArray[np.float64]
 NINE = 9.0  # digits asked for; the certified values have fifteen
@@ -45,65 +41,6 @@ def test_longley(table: Callable[[str], list[list[str]]], digits: Callable[..., 
     assert digits(fit.F, anova["f_statistic"]) >= NINE
 
 
-def exact_polynomial(x: FloatArray, y: FloatArray, degree: int) -> tuple[FloatArray, FloatArray, float]:
-    """Coefficients, standard errors and SSE by normal equations in rational arithmetic, rounded at the end alone."""
-    p, n = degree + 1, len(x)
-    powers = [[Fraction(value) ** j for j in range(2 * degree + 1)] for value in x.tolist()]
-    response = [Fraction(value) for value in y.tolist()]
-    sums = [sum((row[j] for row in powers), Fraction(0)) for j in range(2 * degree + 1)]
-    moments = [sum((row[i] * v for row, v in zip(powers, response, strict=True)), Fraction(0)) for i in range(p)]
-    system = [
-        [sums[i + j] for j in range(p)] + [moments[i]] + [Fraction(int(i == j)) for j in range(p)] for i in range(p)
-    ]
-    for i in range(p):  # Gauss-Jordan; the Gram matrix is positive definite, so no pivot is zero
-        system[i] = [entry / system[i][i] for entry in system[i]]
-        for k in range(p):
-            if k != i:
-                factor = system[k][i]
-                system[k] = [a - factor * b for a, b in zip(system[k], system[i], strict=True)]
-    b = [row[p] for row in system]
-    misses = [
-        v - sum((c * row[j] for j, c in enumerate(b)), Fraction(0)) for row, v in zip(powers, response, strict=True)
-    ]
-    sse = sum((miss**2 for miss in misses), Fraction(0))
-    errors = [float(sse * system[i][p + 1 + i] / (n - p)) ** 0.5 for i in range(p)]
-    return np.array([float(c) for c in b]), np.array(errors), float(sse)
-
-
-@pytest.mark.parametrize(("low", "high"), [(-9.0, -3.0), (0.0, 1.0), (40.0, 60.0), (1000.0, 1010.0)])
-def test_polynomial_of_degree_ten_keeps_nine_digits(low: float, high: float, digits: Callable[..., float]) -> None:
-    # 82 points on -9 … -3 are the layout of NIST's Filip; the powers there have a condition number near 10^15
-    rng = np.random.default_rng(20130)
-    x = np.round(rng.uniform(low, high, 82), 6)
-    t = (x - low) / (high - low)
-    y = np.round(0.8 + 0.1 * np.sin(9.0 * t) + 0.003 * rng.normal(size=82), 4)
-    b, errors, sse = exact_polynomial(x, y, 10)
-    fit = polynomial_fit(x, y, 10)
-    assert digits(fit.coefficients, b) >= NINE
-    assert digits(fit.standard_errors, errors) >= NINE
-    assert digits(fit.sse, sse) >= NINE
-    assert fit.F > 1
-    np.testing.assert_allclose(np.sqrt(np.diag(fit.covariance)), fit.standard_errors, rtol=1e-12)
-
-
-def test_a_polynomial_of_degree_one_is_the_line(digits: Callable[..., float]) -> None:
-    rng = np.random.default_rng(5)
-    x, y = rng.uniform(3, 4, 20), rng.normal(size=20)
-    line, polynomial = linear_fit(y, x), polynomial_fit(x, y, 1)
-    assert digits(polynomial.coefficients, line.coefficients) > 12
-    assert digits(polynomial.intervals, line.intervals) > 12
-    assert digits([polynomial.F, polynomial.p, polynomial.r2], [line.F, line.p, line.r2]) > 11
-
-
-def test_degree_zero_is_the_mean_and_one_x_cannot_carry_a_slope() -> None:
-    assert polynomial_fit([2.0, 2.0, 2.0], [1.0, 2.0, 6.0], 0).coefficients.tolist() == [3.0]
-    with raises(FitError, "rank_deficient", rank=1, count=2):
-        polynomial_fit([2.0, 2.0, 2.0], [1.0, 2.0, 6.0], 1)
-    with raises(ParameterError, "out_of_range"):
-        polynomial_fit([1.0, 2.0], [1.0, 2.0], -1)
-
-
-@EXACT_QUANTILES
 def test_line_by_hand() -> None:
     # x = 0 1 2 3, y = 1 2 4 4: b1 = 11/10, b0 = 11/10, SSE = 7/10, SST = 27/4
     fit = linear_fit([1.0, 2.0, 4.0, 4.0], [0.0, 1.0, 2.0, 3.0])
@@ -198,22 +135,6 @@ def test_bad_input_is_named() -> None:
         linear_fit([1.0, 2.0, 3.0], [1.0, 2.0, 4.0], confidence=95)
 
 
-def test_first_chebyshev_polynomials() -> None:
-    # T_2 = 2 t² - 1 and T_3 = 4 t³ - 3 t with t = (x - 1)/2: T_2 = x²/2 - x - 1/2
-    back = exact_power_basis(3, 1.0, 2.0)
-    assert [row[2] for row in back] == [Fraction(-1, 2), -1, Fraction(1, 2), 0]
-    assert [row[3] for row in exact_power_basis(3, 0.0, 1.0)] == [0, -3, 0, 4]
-
-
-def test_columns_are_cosines_and_stay_near_one() -> None:
-    x = np.linspace(1947.0, 1962.0, 16)
-    columns = chebyshev_columns(x[:, None], 8)
-    assert np.abs(columns.scaled[:, 1]).max() <= 1.0 + 1 / 16
-    inside = np.abs(columns.scaled[:, 1]) <= 1
-    angle = np.arccos(columns.scaled[inside, 1])
-    np.testing.assert_allclose(columns.scaled[inside, 8], np.cos(8 * angle), atol=1e-13)
-
-
 def filip_like() -> tuple[FloatArray, FloatArray]:
     """Powers 1 to 10 of 82 points on -9 … -3, the layout of NIST's Filip."""
     rng = np.random.default_rng(20130)
@@ -251,7 +172,6 @@ def test_wampler5_has_the_coefficients_of_its_design_to_the_digits_that_are_left
         fit = linear_fit(y, X)
     assert digits(fit.coefficients, np.ones(6)) > 6.0
     assert fit.rmse_dof == pytest.approx(236_014.502, rel=1e-6)
-    assert digits(polynomial_fit(np.arange(21.0), y, 5).coefficients, np.ones(6)) > 8.0
 
 
 # Shares of variance where they are known: sums of independent inputs, an input without effect, an interplay

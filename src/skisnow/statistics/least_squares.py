@@ -158,21 +158,21 @@ def factorise(columns: Columns) -> Factorisation:
     return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
 
 
-def warn_if_ill_conditioned(columns: FloatArray, *, limit: float = CONDITION_LIMIT) -> None:
-    """Warn where columns of unit length have a condition number κ above ``limit``.
+def warn_if_ill_conditioned(columns: FloatArray) -> None:
+    """Warn where columns of unit length have a condition number κ above `CONDITION_LIMIT`.
 
     Rounding of 2⁻⁵³ moves the coefficients by up to κ times as much, with large residuals by up to κ² times (Björck
     1996, Numerical Methods for Least Squares Problems, section 1.4).
     """
     length = np.linalg.norm(columns, axis=0)
     condition = float(np.linalg.cond(columns / np.where(length > 0, length, 1.0)))
-    if limit < condition < 1.0 / _EPS:
+    if CONDITION_LIMIT < condition < 1.0 / _EPS:
         message = Message(
             "The condition number of the predictors is {condition}, above {limit}: they nearly depend on each other. "
             "The coefficients have at most {digits} correct digits, fewer where the residuals are large. "
-            "Fit powers of one predictor with polynomial_fit, or omit a predictor.",
+            "Omit a predictor.",
             condition=f"{condition:.1e}",
-            limit=f"{limit:.0e}",
+            limit=f"{CONDITION_LIMIT:.0e}",
             digits=f"{-np.log10(_EPS * condition):.0f}",
         )
         warnings.warn(FitWarning(message).tag("ill_conditioned"), stacklevel=4)

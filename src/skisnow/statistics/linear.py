@@ -1,25 +1,20 @@
-"""Linear least squares with standard errors, intervals, R², F and p; and polynomials of high degree.
+"""Linear least squares with standard errors, intervals, R², F and p, and shares of variance.
 
 Holds the certified digits of the NIST sets Norris and Longley.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from fractions import Fraction
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from .._support.arrays import FloatArray
-from .._support.errors import ParameterError
 from .._support.units import ShownFields
 from .combined_uncertainty import require_confidence
 from .f_tests import f_ratio, f_tail
 from .least_squares import (
-    Columns,
     as_predictors,
     as_response,
     centre,
@@ -28,11 +23,6 @@ from .least_squares import (
     standardised,
     warn_if_ill_conditioned,
 )
-
-_CHEBYSHEV_LIMIT: Final = 1e5
-"""Limit of the condition number of Chebyshev polynomials: at 3·10⁴ the coefficients of the powers keep 9 digits."""
-Polynomial = list[Fraction]
-"""Coefficients in ascending powers."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,53 +114,13 @@ def linear_fit(
     X = as_predictors(predictors, len(y))
     columns = standardised(X, intercept=intercept)
     warn_if_ill_conditioned(columns.scaled)
-    return _fit(y, columns, intercept=intercept, confidence=confidence)
-
-
-def polynomial_fit(x: npt.ArrayLike, y: npt.ArrayLike, degree: int, *, confidence: float = 0.95) -> LinearFit:
-    """Fit y = b0 + b1 x + … + b_d x^d + error by least squares; coefficients in ascending powers.
-
-    Parameters
-    ----------
-    x, y
-        Shape (n,).
-    degree
-        d ≥ 0.
-
-    Returns
-    -------
-    LinearFit
-        As of `linear_fit`, for the powers of x as given.
-
-    Notes
-    -----
-    The powers of x are nearly dependent columns: raised from -9 … -3 to the tenth they lose all digits of a double.
-    The fit is done in Chebyshev polynomials of x shifted and scaled to [-1, 1], and carried back to powers in rational
-    arithmetic, which loses nothing.
-
-    Examples
-    --------
-    >>> fit = polynomial_fit([0.0, 1.0, 2.0, 3.0], [1.0, 2.0, 5.0, 10.0], 2)  # 1 + x²
-    >>> [abs(round(float(b), 12)) for b in fit.coefficients]
-    [1.0, 0.0, 1.0]
-    """
-    require_confidence(confidence)
-    response = as_response(y)
-    columns = chebyshev_columns(as_predictors(x, len(response)), degree)
-    warn_if_ill_conditioned(columns.scaled, limit=_CHEBYSHEV_LIMIT)
-    return _fit(response, columns, intercept=True, confidence=confidence)
-
-
-def _fit(response: FloatArray, columns: Columns, *, intercept: bool, confidence: float) -> LinearFit:
     design = factorise(columns)
-    shifted, middle = centre(response) if intercept else (response, np.zeros(()))
+    shifted, middle = centre(y) if intercept else (y, np.zeros(()))
     coefficients, residuals = design.solve(shifted)
     if intercept:
         coefficients[0] += middle
-    p = len(coefficients)
-    r2, F, tail = _explained(shifted, residuals, p) if intercept else (float("nan"),) * 3
-    statistics = spread(coefficients, residuals, design, confidence)
-    return LinearFit(**statistics, rank=p, r2=r2, F=F, p=tail)
+    r2, F, tail = _explained(shifted, residuals, len(coefficients)) if intercept else (float("nan"),) * 3
+    return LinearFit(**spread(coefficients, residuals, design, confidence), rank=len(coefficients), r2=r2, F=F, p=tail)
 
 
 def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[float, float, float]:
@@ -188,44 +138,6 @@ def _explained(shifted: FloatArray, residuals: FloatArray, p: int) -> tuple[floa
     explained = float(np.sum((fitted - fitted.mean()) ** 2))
     F = f_ratio(explained, p - 1, sse, n - p)
     return r2, F, f_tail(F, p - 1, n - p)
-
-
-def chebyshev_columns(x: FloatArray, degree: int) -> Columns:
-    """T_0(t) … T_d(t) of t = (x - middle)/scale in [-1, 1], for x of shape (n, 1).
-
-    The scale is a power of two and middle has few binary digits, so that t keeps every digit of x.
-    """
-    if x.shape[1] != 1 or degree < 0:
-        raise ParameterError("a polynomial needs one predictor (found {count}) and a degree ≥ 0 (found {degree})").tag(
-            "out_of_range", count=x.shape[1], degree=degree
-        )
-    low, high = float(x.min()), float(x.max())
-    scale = 2.0 ** math.ceil(math.log2(high - low) - 1.0) if high > low else 1.0
-    middle = round((0.5 * low + 0.5 * high) / scale * 16.0) / 16.0 * scale
-    t = (x[:, 0] - middle) / scale
-    scaled: FloatArray = np.polynomial.chebyshev.chebvander(t, degree).astype(float)
-    back = np.array([[float(c) for c in row] for row in exact_power_basis(degree, middle, scale)])
-    return Columns(scaled, back, tuple(f"power {j}" for j in range(degree + 1)))
-
-
-def exact_power_basis(degree: int, middle: float, scale: float) -> list[list[Fraction]]:
-    """Matrix B, B[j][k] = coefficient of x^j in T_k((x - middle)/scale), exactly."""
-    t: Polynomial = [Fraction(-middle) / Fraction(scale), 1 / Fraction(scale)]
-    basis: list[Polynomial] = [[Fraction(1)], t]
-    while len(basis) <= degree:  # T_{k+1} = 2 t T_k - T_{k-1}
-        doubled = [2 * c for c in _product(t, basis[-1])]
-        older = basis[-2] + [Fraction(0)] * (len(doubled) - len(basis[-2]))
-        basis.append([a - b for a, b in zip(doubled, older, strict=True)])
-    padded = [p + [Fraction(0)] * (degree + 1 - len(p)) for p in basis[: degree + 1]]
-    return [[padded[k][j] for k in range(degree + 1)] for j in range(degree + 1)]
-
-
-def _product(a: Polynomial, b: Polynomial) -> Polynomial:
-    result = [Fraction(0)] * (len(a) + len(b) - 1)
-    for i, left in enumerate(a):
-        for j, right in enumerate(b):
-            result[i + j] += left * right
-    return result
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
