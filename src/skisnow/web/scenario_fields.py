@@ -35,7 +35,7 @@ def field_label(key: Quantity) -> str:
     """Label of the field of an input: name, symbol and unit.
 
     >>> from skisnow.scenario.keys import SCENARIO_KEYS
-    >>> called(SCENARIO_KEYS["slope.angle_deg"]), field_label(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
+    >>> field_label(SCENARIO_KEYS["slope.angle_deg"]), field_label(SCENARIO_KEYS["snow.H_V_N_per_mm3"])
     ('Slope angle α (°)', 'Snow hardness H_V (N/mm³)')
     """
     label = str(key.label or key.name)
@@ -67,7 +67,7 @@ def _as_sentence(words: str) -> str:
 def typed_form(value: Any) -> str:
     """A value as it is typed on the command line, rounded for a field.
 
-    >>> written([6.0, 8.0]), written(True), typed_form(0.20669325758298024)
+    >>> typed_form([6.0, 8.0]), typed_form(True), typed_form(0.20669325758298024)
     ('[6, 8]', 'true', '0.206693')
     """
     if value is None:
