@@ -58,7 +58,7 @@ TASK: Final[dict[str, Any]] = {
     "starts": 8,
 }
 SEEDS: Final = range(58, 64)
-"""Of the starts besides the ski itself."""
+"""Seeds of the random starts; each set contains the ski itself, too."""
 
 
 class Differences(Evaluator):

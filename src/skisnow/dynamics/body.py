@@ -23,7 +23,7 @@ def shaped(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArra
         raise ParameterError("{name} has shape {shape}; it must be {needed}").tag(
             "wrong_shape", name=name, shape=str(array.shape), needed=str(shape)
         )
-    if not all(map(math.isfinite, array.ravel().tolist())):  # of a few numbers, several times faster than NumPy
+    if not all(map(math.isfinite, array.ravel().tolist())):  # for a few numbers faster than NumPy
         raise ParameterError("{name} contains a number that is not finite").tag("not_a_number", name=name)
     return array
 

@@ -46,7 +46,7 @@ class Watched:
         return self.does(f"return replay.{of_player}")
 
     def draw(self, on: bool = True) -> None:
-        """Draw from now on, the present moment first, or no longer."""
+        """Start drawing with the present moment, or stop drawing."""
         self.does(f"window.draws = {str(on).lower()}; if (window.draws) replay.draw()")
 
     def picture(self) -> Any:
