@@ -25,6 +25,7 @@ from skisnow.ski.ski_file import Sources, ski_of_keys
 from tests.coded import raises
 
 RACE: dict[str, Any] = {"H_V_N_per_mm3": 0.21, "S_f_N_per_mm2": 0.52, "unloading_ratio": 10, "load_N": 800}
+TURN: dict[str, Any] = {"unloading_ratio": 10, "edge_angle_deg": 45}
 TWELVE: dict[str, Any] = {
     "ski": "slalom",
     "variables": {"sidecut_mm": [-10, 10], "EI_factor": [0.6, 1.6]},
@@ -151,6 +152,19 @@ def test_what_is_out_of_reach_is_named() -> None:
     assert any(each.fields.get("bound") == -1.0 for each in found.remarks)
 
 
+def test_a_constraint_out_of_reach_is_named() -> None:
+    """The second one; of it the upper limit, which no waist within the bounds keeps."""
+    constraints = [
+        {"terms": {"waist_width_mm": 1}, "at_least": 60.0, "at_most": 70.0},
+        {"terms": {"waist_width_mm": 1, "tip_width_mm": 1}, "at_least": 100.0, "at_most": 175.0},
+    ]
+    task = TWELVE | {"variables": {"waist_width_mm": [62, 70]}, "constraints": constraints, "starts": 2}
+    goal = {"output": "turn_radius_boot_m", "at_most": 20.0}
+    found = skisnow.design_ski(task | {"goals": [goal]})
+    assert not found.reached
+    assert [row.fields for row in found.remarks if "number" in row.fields] == [{"number": 2, "limit": 175.0}]
+
+
 def test_a_kept_limit_counts_more_than_any_target() -> None:
     """A radius of 40 m is out of reach by more than a third."""
     goals = [{"output": "turn_radius_boot_m", "target": 40.0}, {"output": "turn_radius_boot_m", "at_least": 12.0}]
@@ -194,6 +208,8 @@ def test_growth_of_goals_is_that_of_differences() -> None:
         ({"goals": [{"output": "edge_depth_mm", "at_most": 1.0, "places_m": [0.1]}]}, "contradiction"),
         ({"conditions": [{"snow": 1}]}, "unknown_name"),
         ({"constraints": [{"terms": {}}]}, "out_of_range"),
+        ({"constraints": [{"terms": {"waist_mm": 1}, "at_most": 70.0}]}, "unknown_name"),
+        ({"conditions": [{"published": "race", "load_N": 800} | TURN]}, "unknown_name"),
         ({"monotone": ["width"]}, "unknown_name"),
         ({"starts": 0}, "out_of_range"),
         ({"targets": 1}, "unknown_name"),
@@ -309,7 +325,7 @@ def test_a_campaign_is_robust_over_its_intervals(tmp_path: Path) -> None:
     )
     sources = Sources()
     sources.take_snow(snow, results="results.json", site=None)
-    condition = {"results": "results.json", "unloading_ratio": 10, "load_N": 800, "edge_angle_deg": 45}
+    condition = {"results": "results.json", "load_N": 800} | TURN
     task = design_task(
         TWELVE
         | {

@@ -19,7 +19,7 @@ from ..carving.outputs import OUTPUTS
 from ..ski import Ski
 from ..ski.ski_file import keys_text, ski_of_keys
 from .evaluation import carve_at
-from .problem import Search, linear_constraints
+from .problem import REACHED, Search, linear_constraints
 
 _AT_BOUND: Final = 1e-6  # of the distance of the bounds
 _SAME_RESULT: Final = 0.02  # relative, of squares, of two starts that reached the same optimum
@@ -89,9 +89,10 @@ class Design(Shown):
     rows
         Outputs at each condition.
     reached
-        Whether all goals are reached.
+        Whether all goals are reached and all constraints hold.
     remarks
-        Goals that are not reached, with the reason; bounds and constraints that are active.
+        Goals that are not reached, with the reason; constraints that are broken; bounds and constraints that are
+        active.
     optima
         Local optima, the best first.
     equilibria
@@ -162,7 +163,7 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
     }
     keys = {key: _digits(value) for key, value in keys.items()}
     rounded = {key: _rounded(key, value) for key, value in keys.items()}
-    remarks = _missed_goals(search, z)
+    remarks = [*_missed_goals(search, z), *_constraints_at(search, z, broken=True)]
     return Design(
         before=task.ski,
         ski=ski_of_keys(keys),
@@ -242,10 +243,32 @@ def _active(search: Search, z: FloatArray) -> list[Message]:
         for at, bound in ((share, variable.lowest), (1.0 - share, variable.highest)):
             if at <= _AT_BOUND:
                 out.append(Message("{name} is at its bound {bound:g}.", name=variable.name, bound=bound))
+    return out + _constraints_at(search, z, broken=False)
+
+
+def _constraints_at(search: Search, z: FloatArray, *, broken: bool) -> list[Message]:
+    """The constraints that a design breaks, or those at whose limit it is."""
     matrix, lowest = linear_constraints(search.evaluator)
-    for number in np.flatnonzero(matrix @ z - lowest <= _AT_BOUND):
-        out.append(Message("Constraint {number} is active.", number=int(number) + 1))
-    return out
+    limits = [
+        (number, limit)
+        for number, constraint in enumerate(search.evaluator.task.constraints, start=1)
+        for limit in (constraint.at_least, constraint.at_most)
+        if np.isfinite(limit)
+    ]
+    rooms = list(zip(limits, (matrix @ z - lowest).tolist(), strict=True))
+    if broken:
+        return [
+            Message(
+                "Constraint {number} is broken: no start led to a ski that keeps {limit:g}.", number=number, limit=limit
+            )
+            for (number, limit), room in rooms
+            if room < -REACHED
+        ]
+    return [
+        Message("Constraint {number} is at its limit {limit:g}.", number=number, limit=limit)
+        for (number, limit), room in rooms
+        if abs(room) <= REACHED
+    ]
 
 
 def _optima(search: Search, starts: tuple[Start, ...]) -> tuple[Optimum, ...]:

@@ -159,11 +159,10 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
             ),
             "no_keys",
         )
-    conditions = tuple(
-        itertools.chain.from_iterable(_conditions(table, ski.name, sources) for table in values["conditions"])
-    )
+    tables = enumerate(values["conditions"], start=1)
+    conditions = tuple(itertools.chain.from_iterable(_conditions(n, table, ski.name, sources) for n, table in tables))
     goals = tuple(_goal(n, table, len(conditions)) for n, table in enumerate(values["goals"], start=1))
-    constraints = [_constraint(table) for table in values.get("constraints", ())]
+    constraints = [_constraint(n, table, ski) for n, table in enumerate(values.get("constraints", ()), start=1)]
     for key in values.get("monotone", ()):
         constraints += _monotone(ski, str(key))
     return DesignTask(
@@ -203,18 +202,17 @@ def _whole(name: str, value: object, lowest: int) -> int:
     return value
 
 
-def _variable(ski: Ski, name: str, bounds: object) -> Variable:
-    allowed = (
-        *(parameter.removeprefix("ski.") for parameter in shape_parameters(ski) if parameter.startswith("ski.")),
-        *COMBINED,
-    )
+def _require_variable(place: str, ski: Ski, name: str) -> None:
+    of_file = (parameter.removeprefix("ski.") for parameter in shape_parameters(ski) if parameter.startswith("ski."))
+    allowed = (*of_file, *COMBINED)
     if name not in allowed:
-        _refuse(
-            Message(
-                "variables: unknown variable {name}. {allowed}", name=name, allowed=suggest_and_list(name, allowed)
-            ),
-            "unknown_name",
+        raise ParameterError("{place}: unknown variable {name}. {allowed}").tag(
+            "unknown_name", place=place, name=name, allowed=suggest_and_list(name, allowed)
         )
+
+
+def _variable(ski: Ski, name: str, bounds: object) -> Variable:
+    _require_variable("variables", ski, name)
     if (
         not isinstance(bounds, list | tuple)
         or len(bounds) != 2
@@ -231,18 +229,26 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _conditions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+def _conditions(number: int, table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+    try:
+        questions = _questions(table, ski, sources)
+        for question in questions:
+            asked_snow(question, sources)
+    except ParameterError as error:
+        raise error.at(f"conditions, {number}") from error
+    return questions
+
+
+def _questions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
     table = dict(table)
     over_intervals = table.pop(INTERVALS, False)
     if not isinstance(over_intervals, bool):
-        _refuse(Message("conditions: {name} is true or false.", name=INTERVALS), "wrong_kind")
+        _refuse(Message("{name} is true or false.", name=INTERVALS), "wrong_kind")
     for name in table:
         if name not in CARVE_KEYS or name in _WITHOUT:
             allowed = [INTERVALS, *(key for key in CARVE_KEYS if key not in _WITHOUT)]
             _refuse(
-                Message(
-                    "conditions: unknown key {name}. {allowed}", name=name, allowed=suggest_and_list(name, allowed)
-                ),
+                Message("unknown key {name}. {allowed}", name=name, allowed=suggest_and_list(name, allowed)),
                 "unknown_name",
             )
     lists = {name: table[name] for name in _LISTED if isinstance(table.get(name), list)}
@@ -262,10 +268,7 @@ def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQues
     ends += [(snow.snow_hardness, end) for end in snow.failure_shear_stress_interval or ()]
     if not ends:
         _refuse(
-            Message(
-                "conditions: the snow has no intervals. Give results of a campaign, or leave {name} out.",
-                name=INTERVALS,
-            ),
+            Message("the snow has no intervals. Give results of a campaign, or leave {name} out.", name=INTERVALS),
             "no_intervals",
         )
     numbers = replace(question, published=None, results=None, site=None)
@@ -310,7 +313,8 @@ def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     return goal
 
 
-def _constraint(table: Mapping[str, Any]) -> Constraint:
+def _constraint(number: int, table: Mapping[str, Any], ski: Ski) -> Constraint:
+    place = f"constraints, {number}"
     terms = table.get("terms")
     limits = {name: table[name] for name in ("at_least", "at_most") if name in table}
     sound = (
@@ -322,9 +326,11 @@ def _constraint(table: Mapping[str, Any]) -> Constraint:
     )
     if not sound or set(table) - {"terms", "at_least", "at_most"} or not all(map(_is_number, limits.values())):
         raise ParameterError(
-            "constraints: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and "
-            "at_least or at_most."
-        ).tag("out_of_range", table=dict(table))
+            "{place}: {table} is not allowed. Write terms = {{tip_width_mm = 1, waist_width_mm = -1}} and at_least or "
+            "at_most."
+        ).tag("out_of_range", place=place, table=dict(table))
+    for name in terms or ():
+        _require_variable(place, ski, name)
     return Constraint(terms=dict(terms or {}), **limits)
 
 
