@@ -133,14 +133,14 @@ class _Profile:
             layers=tuple(self._layer(*pair) for pair in self._of("stratProfile", "Layer")),
             densities=self._densities(),
             temperatures=tuple(self._temperature(*pair) for pair in self._of("tempProfile", "Obs")),
-            forces=tuple(self._forces(pair) for pair in measured.every("hardnessProfile")),
+            forces=tuple(self._forces(pair) for pair in measured.named("hardnessProfile")),
             snow_hardness=self._plate_value("snowHardness", SNOW_HARDNESS),
             failure_shear_stress=self._plate_value("failureShearStress", SHEAR_STRESS),
         )
 
     def _of(self, profile: str, name: str) -> list[tuple[Element, Element]]:
         """Pairs of profile and layer or observation, for all profiles of a kind."""
-        return [(parent, child) for parent in self._measured.every(profile) for child in parent.every(name)]
+        return [(parent, child) for parent in self._measured.named(profile) for child in parent.named(name)]
 
     def _height(self) -> float | None:
         components = self._measured.child("snowPackCond", "hS", "Components")
@@ -228,7 +228,7 @@ class _Profile:
         method = self._text_or_empty(about.text_of("methodOfMeas"))
         rows = profile.text_of("Measurements", "tupleList").split()
         if not rows:
-            layers = list(profile.every("Layer"))
+            layers = list(profile.named("Layer"))
             depths = [self._top_and_thickness(profile, layer)[0] for layer in layers]
             forces = [self._required(FORCE, profile, layer, "hardness") for layer in layers]
             return ForceProfile(method, np.array(depths, dtype=float), np.array(forces, dtype=float))

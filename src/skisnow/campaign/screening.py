@@ -255,7 +255,7 @@ _Cause: TypeAlias = tuple[int, str | None, str | None, str]
 
 
 class _FlaggedReadings:
-    """Problems of penetration experiments; the method ``_CODE`` returns the cause of a flag in one experiment."""
+    """Problems of penetration experiments; the method ``_cause_of_CODE`` finds it for a flag and an experiment."""
 
     def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
         self._campaign = campaign
@@ -265,7 +265,7 @@ class _FlaggedReadings:
 
     def problem(self, index: int, code: str) -> Problem:
         """One flag as a problem."""
-        reading, column, value, allowed = getattr(self, f"_{code}")(index)
+        reading, column, value, allowed = getattr(self, f"_cause_of_{code}")(index)
         unloading = self._tests.unloading
         rows = self._tests.row if unloading is None or code not in _OF_UNLOADING else unloading.row
         row = int(rows[reading])
@@ -277,14 +277,14 @@ class _FlaggedReadings:
         """Depth in mm, without the unit."""
         return _number(self._tests.penetration_depth[reading] / MM)
 
-    def _cancelled(self, index: int) -> _Cause:
+    def _cause_of_cancelled(self, index: int) -> _Cause:
         return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNFLAGGED_STATUS
 
-    def _too_few_loads(self, index: int) -> _Cause:
+    def _cause_of_too_few_loads(self, index: int) -> _Cause:
         first, end = self._tests.first[index : index + 2].tolist()
         return first, "load_N", str(end - first), Message("at least {count} load steps", count=FEWEST_LOADS)
 
-    def _loads_not_rising(self, index: int) -> _Cause:
+    def _cause_of_loads_not_rising(self, index: int) -> _Cause:
         load = self._tests.series(index).load
         step = int(np.flatnonzero(np.diff(load) <= 0)[0])
         reading = int(self._tests.first[index]) + step + 1
@@ -295,17 +295,17 @@ class _FlaggedReadings:
             Message("more than the {load:.10g} N of the reading before", load=load[step]),
         )
 
-    def _depth_shrinks(self, index: int) -> _Cause:
+    def _cause_of_depth_shrinks(self, index: int) -> _Cause:
         step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
         before = int(self._tests.first[index]) + step
         allowed = Message("at least the {depth} mm of the reading before", depth=self._depth(before))
         return before + 1, "depth_mm", self._depth(before + 1), allowed
 
-    def _zero_depth(self, index: int) -> _Cause:
+    def _cause_of_zero_depth(self, index: int) -> _Cause:
         reading = int(self._largest[index])
         return reading, "depth_mm", self._depth(reading), _UNFLAGGED_ZERO
 
-    def _beyond_tool(self, index: int) -> _Cause:
+    def _cause_of_beyond_tool(self, index: int) -> _Cause:
         series = self._tests.series(index)
         reading = int(self._tests.first[index]) + int(np.argmax(series.penetration_depth))
         allowed = Message(
@@ -315,15 +315,15 @@ class _FlaggedReadings:
         )
         return reading, "depth_mm", self._depth(reading), allowed
 
-    def _below_resolution(self, index: int) -> _Cause:
+    def _cause_of_below_resolution(self, index: int) -> _Cause:
         reading = int(self._largest[index])
         return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
 
-    def _layered(self, index: int) -> _Cause:
+    def _cause_of_layered(self, index: int) -> _Cause:
         """Cause of the flag `layered`: the reading under the largest load, without a value."""
         return int(self._largest[index]), "depth_mm", None, _UNFLAGGED_LAYERED
 
-    def _creeps(self, index: int) -> _Cause:
+    def _cause_of_creeps(self, index: int) -> _Cause:
         first, end = self._tests.first[index : index + 2].tolist()
         reading = first + int(np.flatnonzero(find_creep(self._campaign, self._tests)[first:end])[0])
         assert self._tests.depth_after is not None
@@ -336,7 +336,7 @@ class _FlaggedReadings:
         )
         return reading, "depth_after_mm", value, allowed
 
-    def _unloading_not_falling(self, index: int) -> _Cause:
+    def _cause_of_unloading_not_falling(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_not_falling")
         return (
             reading,
@@ -345,13 +345,13 @@ class _FlaggedReadings:
             Message("less than the load of the reading before"),
         )
 
-    def _unloading_sinks(self, index: int) -> _Cause:
+    def _cause_of_unloading_sinks(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_sinks")
         depth = _number(self._unloading.penetration_depth[reading] / MM)
         allowed = Message("at most the depth of the reading before and one step of the gauge")
         return reading, "depth_mm", depth, allowed
 
-    def _rebound_unresolved(self, index: int) -> _Cause:
+    def _cause_of_rebound_unresolved(self, index: int) -> _Cause:
         return int(self._unloading.first[index + 1]) - 1, "depth_mm", None, _UNFLAGGED_REBOUND
 
     @property
@@ -363,5 +363,5 @@ class _FlaggedReadings:
         own = self._unloading.series_of_reading == index
         return int(np.flatnonzero(find_implausible_unloading(self._campaign, self._tests)[code] & own)[0])
 
-    def _hardness_outlier(self, index: int) -> _Cause:
+    def _cause_of_hardness_outlier(self, index: int) -> _Cause:
         return int(self._largest[index]), None, None, _UNFLAGGED_OUTLIER

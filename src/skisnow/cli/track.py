@@ -177,7 +177,7 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
 
 def compare(options: argparse.Namespace) -> int:
     """Compare two tracks, print the distances, and write the comparison if a folder is given."""
-    fitted = {"start", "heading"} <= set(_offsets(options))
+    fitted = {"start", "heading"} <= set(_estimated_offsets(options))
     if options.slope_angle_deg is not None and options.fall_line_azimuth_deg is None and not fitted:
         options.parser.error(
             "--slope-angle-deg needs --fall-line-azimuth-deg, the direction in which the slope falls, or --fit-offset "
@@ -212,7 +212,7 @@ def compare(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
     from ..comparison.alignment import require_offsets
 
-    fit = _offsets(options)
+    fit = _estimated_offsets(options)
     require_offsets(fit)
     with announced("reading the tracks and finding nearest places"):
         from ..comparison import compare_tracks
@@ -237,7 +237,8 @@ def _compare(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
         return compared, time_verdict(simulated, measured)
 
 
-def _offsets(options: argparse.Namespace) -> list[str]:
+def _estimated_offsets(options: argparse.Namespace) -> list[str]:
+    """Names of the offsets to estimate, from the option --fit-offset."""
     return [word.strip() for word in options.fit_offset.split(",")] if options.fit_offset is not None else []
 
 

@@ -154,7 +154,7 @@ def _require_options(
 
 
 def _view(laid: LaidTracks, *, from_above: bool, heights_agree: bool) -> tuple[int, str]:
-    """Number of coordinates to compare, and the reason in words."""
+    """Number of coordinates to compare (2: from above, 3: in space), and the reason in words."""
     if from_above:
         return 2, "from above, as asked"
     if not heights_agree:

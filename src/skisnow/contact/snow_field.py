@@ -47,9 +47,9 @@ class SnowField(Shown):
     shear
         A law for the strength over depth and edge angle, with the thrust that comes with it; ``None``: S_f.
     strength_share
-        Factor of the strength, by S_f or by a law: a number > 0 or a `Grid` over the place.
+        Factor that multiplies the strength (S_f or the law): a number > 0 or a `Grid` over the place.
     friction_share
-        Factor of μ: a number > 0 or a `Grid` over the place.
+        Factor that multiplies μ: a number > 0 or a `Grid` over the place.
     friction_acts_on
         Load that μ acts on: the pressure along the snow's normal, or the pressure on the base with the side force.
     friction_direction
@@ -67,14 +67,15 @@ class SnowField(Shown):
     damping
         c ≥ 0 of p = H_V ε + c ε̇ (N s/m³); only without ``penetration``.
     delayed_share, retardation_time
-        H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of a Kelvin element in series with H_V: the delayed depth under a load that stays
-        over that at once, and the time it takes; only without ``penetration``.
+        H_V/H₂ ≥ 0 and c₂/H₂ > 0 (s) of a Kelvin element in series with H_V: delayed over immediate depth under a
+        constant load, and the time constant of the delay; only without ``penetration``.
     surface
         ``Plane()`` or heights as a `Grid` (m).
     compaction_resistance
-        Whether the snow that is pressed down resists along the edge.
+        True if the snow that is pressed down resists the motion along the edge.
     shear_displacement
-        Of an edge across to its full strength (m), > 0: a penalty stiffness in front of Coulomb-like slip.
+        Displacement (m) > 0 of an edge, across, at which it reaches its full strength: a penalty stiffness before
+        Coulomb-like slip.
     stick_displacement, knot_area, part_along, part_across, delayed_spacing
         Constants of the method; the constants of this module describe the effect of each.
 

@@ -58,12 +58,12 @@ def design_front(task: str | Path | Mapping[str, Any] | DesignTask, *, points: i
     limits = [goal for goal in task.goals if goal.target is None]
     evaluator = Evaluator(task)
     begins = begins_of(evaluator)
-    ends = [_best(evaluator, [goal, *limits], begins) for goal in (first, second)]
+    ends = [_best_design(evaluator, [goal, *limits], begins) for goal in (first, second)]
     low, high = (_deviation(evaluator, second, end) for end in reversed(ends))
     found = [ends[1]]
     for allowed in np.linspace(low, high, points)[1:-1]:
         bounds = [_limit(second, allowed, 1.0), _limit(second, allowed, -1.0)]
-        found.append(_best(evaluator, [first, *limits, *bounds], [*begins, found[-1]]))
+        found.append(_best_design(evaluator, [first, *limits, *bounds], [*begins, found[-1]]))
     return _front(evaluator, first, second, [*found, ends[0]])
 
 
@@ -101,7 +101,8 @@ def _deviation(evaluator: Evaluator, goal: Goal, z: FloatArray) -> float:
     return float(np.max(np.abs(goal.deviations(evaluator.goal_values(goal, z)))))
 
 
-def _best(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArray]) -> FloatArray:
+def _best_design(evaluator: Evaluator, goals: Sequence[Goal], begins: Sequence[FloatArray]) -> FloatArray:
+    """Variables (n,) of the best design for these goals together, of searches from all starts."""
     best = searched_starts(Search(evaluator, goals), begins)[0]
     if best.end is None:
         raise SolverError("no start led to a ski with an equilibrium. Narrow the bounds.").tag("no_equilibrium")

@@ -202,7 +202,7 @@ class _Maker:
         return layout, width
 
     def _sidecut_of_radius(self, tip: float, waist: float, tail: float) -> float:
-        """Sidecut length of the parabola with this radius and these widths, or that of the similar ski."""
+        """Sidecut length (m) for the measured radius and these widths; without a radius scaled from the similar ski."""
         if self._measured.radius is not None:
             return math.sqrt(8.0 * self._measured.radius * ((tip + tail) / 4.0 - waist / 2.0))
         self._assume(Message("sidecut length over length of {ski}", ski=self._like.name))

@@ -60,7 +60,7 @@ class Comparison:
 
 
 def own_mean(values: FloatArray, sites: Sequence[str], *, geometric: bool) -> CampaignMean:
-    """Mean (geometric for hardness, which spans decades) of the used experiments with its interval.
+    """Mean of this campaign's used experiments with its 95 % interval; geometric for hardness, which spans decades.
 
     The interval is one of the logarithm of the mean, so that no bound of a positive quantity is negative: for a plain
     mean m with half-width h, m exp(± h/m) (delta method).

@@ -72,7 +72,10 @@ class FittedHardness(ShownFields):
 
 
 def fitted_hardness(readings: Readings, model: CampaignModel) -> FittedHardness:
-    """H_V of each series by the campaign's model, H_e and H_A from all readings at the depths less the offset."""
+    """Hardness of each series by the three definitions H_V, H_e (per depth) and H_A (per contact area).
+
+    H_V is that of the campaign's model; the others come from all readings of a series, at depths less the offset.
+    """
     offset = np.nan_to_num(model.offset)
     moved = readings.less_offset(offset)
     estimates = {
@@ -93,9 +96,9 @@ def pooled_scatter(scatter: FloatArray) -> float:
 def fit_models_with_depth_errors(
     fitted: FittedHardness, uncertainty: ReadingUncertainty, *, n_iterations: int = 12
 ) -> tuple[ModelFit, ...]:
-    """Fit the nine candidate models by effective variance.
+    """Fit the nine candidate models (`MODELS`) with weights for errors of load and depth (effective variance).
 
-    The rmse are in force and unweighted, for comparison with those of `models.fit_models`.
+    The rmse are those of the load (N) without weights, for comparison with `models.fit_models`.
     """
     readings, hardnesses, scatter = fitted.readings, fitted.value, pooled_scatter(fitted.scatter)
     fits: list[ModelFit] = []

@@ -87,19 +87,19 @@ class Readings(ShownFields):
     @cached_property
     def area_growth(self) -> FloatArray:
         """Growth dA/de of the contact area of each reading (m)."""
-        return self._by_tool(lambda tool, e, angle: tool.area_growth(e, angle), self.penetration_depth)
+        return self._compute_by_tool(lambda tool, e, angle: tool.area_growth(e, angle), self.penetration_depth)
 
     def area_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
         """Contact area A (m²) of each reading's tool at another depth (m)."""
-        return self._by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth)
+        return self._compute_by_tool(lambda tool, e, angle: tool.contact_area(e, angle), penetration_depth)
 
     def volume_at_depth(self, penetration_depth: FloatArray) -> FloatArray:
         """Displaced volume V (m³) of each reading's tool at another depth (m)."""
-        return self._by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth)
+        return self._compute_by_tool(lambda tool, e, angle: tool.displaced_volume(e, angle), penetration_depth)
 
     def depth_at_volume(self, displaced_volume: FloatArray) -> FloatArray:
         """Depth (m) at which each reading's tool displaces the given volume (m³)."""
-        return self._by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume)
+        return self._compute_by_tool(lambda tool, V, angle: tool.depth_at_volume(V, angle), displaced_volume)
 
     def volume_of_series(self, penetration_depth: FloatArray) -> FloatArray:
         """Displaced volume V (m³) of each series' tool at one depth (m) per series."""
@@ -127,10 +127,13 @@ class Readings(ShownFields):
                 groups.append((tool, self.angle_of_reading[readings], readings))
         return tuple(groups)
 
-    def _by_tool(self, form: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray) -> FloatArray:
+    def _compute_by_tool(
+        self, function: Callable[[Tool, FloatArray, FloatArray], FloatArray], values: FloatArray
+    ) -> FloatArray:
+        """Results (n,) of function(tool, values, edge angle), where `values` (n,) has one number for each reading."""
         result = np.empty(self.n)
         for tool, angle, mine in self._tool_groups:
-            result[mine] = form(tool, values[mine], angle)
+            result[mine] = function(tool, values[mine], angle)
         return result
 
     def less_offset(self, offset: FloatArray) -> Readings:

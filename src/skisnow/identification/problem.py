@@ -59,7 +59,7 @@ class Problem:
         return tuple(sum(observation.series) for observation in self.observations)
 
     def residuals(self, places: Sequence[FloatArray], *, final: bool = False) -> list[FloatArray | None]:
-        """Residuals of data and priors at each place of the search; None for a place without a simulation.
+        """Residuals of data and priors at each point of the search; None for a point whose simulation failed.
 
         final: True for the scenario's solver, at the accuracy of the result.
         """

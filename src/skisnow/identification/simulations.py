@@ -96,9 +96,9 @@ def task_number(task: RunTask) -> int:
 class RunTask:
     """Input of one simulated run.
 
-    values: by the scenario's keys.
-    run: number of the track.
-    final: True to use the scenario's solver, with the accuracy of the result.
+    values: parameters by key of the scenario.
+    run: index of the measured track.
+    final: True for the scenario's accurate solver, False for the fast one of the search.
     """
 
     values: Mapping[str, float]

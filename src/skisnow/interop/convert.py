@@ -274,12 +274,12 @@ def _weather_as_csv(source: Path, target: Path, options: ConvertOptions) -> tupl
     return (written,)
 
 
-def _motion(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
+def _to_opensim_table(source: Path, target: Path, _: ConvertOptions) -> tuple[Path, ...]:
     write_motion(read_motion(source), target)
     return (target,)
 
 
-def _markers(read: Callable[[Path], Markers]) -> Conversion:
+def _to_trc(read: Callable[[Path], Markers]) -> Conversion:
     def convert_markers(source: Path, target: Path, options: ConvertOptions) -> tuple[Path, ...]:
         markers = read(source)
         if markers.omitted and options.report is not None:
@@ -308,9 +308,9 @@ CONVERSIONS: Final[dict[tuple[str, str], Conversion]] = {
     ("SnowMicroPen", CSV): _recording_as_csv,
     ("SMET", "SMET"): lambda source, target, _: (write_smet(read_smet(source), target),),
     ("SMET", CSV): _weather_as_csv,
-    ("OpenSim table", "OpenSim table"): _motion,
-    ("TRC markers", "TRC markers"): _markers(read_trc),
+    ("OpenSim table", "OpenSim table"): _to_opensim_table,
+    ("TRC markers", "TRC markers"): _to_trc(read_trc),
     ("TRC markers", "C3D markers"): _to_c3d,
-    ("C3D markers", "TRC markers"): _markers(read_c3d),
+    ("C3D markers", "TRC markers"): _to_trc(read_c3d),
 }
 """By the kinds of source and target."""

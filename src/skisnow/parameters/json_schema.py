@@ -24,12 +24,12 @@ def schema_of(quantity: Quantity) -> Schema:
     words = quantity.described
     default = {} if quantity.default is None else {"default": quantity.default}
     if quantity.kind == "three numbers":
-        items = {"type": "number", **_range(quantity)}
+        items = {"type": "number", **_range_schema(quantity)}
         return {"type": "array", "description": words, "minItems": 3, "maxItems": 3, "items": items}
     if quantity.kind == "numbers":
         least = {"minItems": 1} if quantity.default is None else {}
-        return {"type": "array", "description": words, **least, "items": {"type": "number", **_range(quantity)}}
-    limits = _range(quantity) if quantity.kind != "text" else _words(quantity)
+        return {"type": "array", "description": words, **least, "items": {"type": "number", **_range_schema(quantity)}}
+    limits = _range_schema(quantity) if quantity.kind != "text" else _words_schema(quantity)
     return {"type": _TYPES[quantity.kind], "description": words, **limits, **default}
 
 
@@ -66,30 +66,30 @@ def schema_text(schema: Schema) -> str:
     return json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
 
 
-def _range(quantity: Quantity) -> Schema:
+def _range_schema(quantity: Quantity) -> Schema:
     least = "exclusiveMinimum" if quantity.above else "minimum"
     most = "exclusiveMaximum" if quantity.below else "maximum"
     ends = {least: quantity.lowest, most: quantity.highest}
     return {name: end for name, end in ends.items() if math.isfinite(end)}
 
 
-def _words(quantity: Quantity) -> Schema:
+def _words_schema(quantity: Quantity) -> Schema:
     if quantity.choices:
         return {"enum": list(quantity.choices)}
     return {} if quantity.blank else {"pattern": "\\S"}
 
 
-def _allowed(quantity: Quantity) -> str:
+def _allowed_cell(quantity: Quantity) -> str:
     if quantity.kind == "text" and not quantity.choices:
         return "a text"
     return quantity.allowed + (", `inf`" if quantity.infinite else "")
 
 
-def _usual(quantity: Quantity) -> str:
+def _usual_range_cell(quantity: Quantity) -> str:
     return "" if quantity.usual is None else "{:g} to {:g}".format(*quantity.usual)
 
 
-def _default(quantity: Quantity) -> str:
+def _default_cell(quantity: Quantity) -> str:
     default = quantity.default
     if default is None:
         return "none"
@@ -98,14 +98,14 @@ def _default(quantity: Quantity) -> str:
     return f"`{default}`" if isinstance(default, str) else f"{default:g}"
 
 
-def _size(quantity: Quantity) -> str:
+def _search_size_cell(quantity: Quantity) -> str:
     search = quantity.search
     if search is None:
         return ""
     return f"factor e^{search.size:g}" if search.logarithmic else f"{search.size:g} {quantity.unit}".rstrip()
 
 
-def _bounds(quantity: Quantity) -> str:
+def _search_bounds_cell(quantity: Quantity) -> str:
     search = quantity.search
     if search is None:
         return ""
@@ -118,11 +118,11 @@ _CELLS: Final[dict[str, Callable[[Quantity], str]]] = {
     "key": lambda quantity: f"`{quantity.name}`",
     "column": lambda quantity: f"`{quantity.name}`",
     "unit": lambda quantity: quantity.unit,
-    "range": _allowed,
-    "usual": _usual,
-    "default": _default,
-    "usual size": _size,
-    "bounds": _bounds,
+    "range": _allowed_cell,
+    "usual": _usual_range_cell,
+    "default": _default_cell,
+    "usual size": _search_size_cell,
+    "bounds": _search_bounds_cell,
     "where default or range comes from": lambda quantity: quantity.origin,
     "excluded": lambda quantity: quantity.origin,
     "instead of": lambda quantity: quantity.origin,

@@ -120,11 +120,11 @@ def minimise(
 ) -> Evaluated:
     """Minimise over the unit cube with about `count` evaluations, the first of them at the start.
 
-    start: (n,) where it begins.
+    start: first point, (n,).
     count: evaluations after which no new batch begins.
     population: size of a batch; None: 4 + 3 ln n.
     spread: standard deviation of the first batch, in shares of each range.
-    settled: ends the search before, where all values of a batch lie within so much.
+    settled: ends the search earlier, when the values of a batch differ by less than this.
 
     * Hansen and Ostermeier (2001), "Completely derandomized self-adaptation in evolution strategies", Evolutionary
       Computation 9(2), 159-195, doi 10.1162/106365601750190398.

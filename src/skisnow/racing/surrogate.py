@@ -186,7 +186,7 @@ def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
 
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
-    """Times (n,) (s) at the last gate, of failures too; slow ones and those that never came there get one limit."""
+    """Times (n,) (s) at the last gate, with an upper limit, which also stands for runs that never come there."""
     times = np.array([_time_at_last_gate(evaluation) for evaluation in evaluations])
     finite = np.isfinite(times)
     if not finite.any():

@@ -53,6 +53,8 @@ class MapLayout:
 def map_layout(table: StudyTable, *, second_is_number: bool) -> MapLayout:
     """Choose the edge angle for the axis and the load as second input if they vary, otherwise the next number.
 
+    second_is_number: False lets a name or switch be the second input if no other number varies.
+
     Raises ParameterError: no number varies, or there would be too many panels.
     """
     varied = [name for name in table.varied if len(_distinct(table, name)) > 1]

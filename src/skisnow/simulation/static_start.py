@@ -85,7 +85,9 @@ def no_start(setup: Setup) -> SolverError:
 
 
 def largest_standing(setup: Setup, value: float, sledge_with: Callable[[float], RigidSledge]) -> float | None:
-    """Largest fraction of a value with which the sledge does not fall, by bisection, to two digits; None without one.
+    """Largest number below `value` with which the sledge does not fall over, by bisection, to two digits; None: none.
+
+    sledge_with: sledge with a number in place of the scenario's value, such as its height of the centre of mass.
 
     Sledges with boots that move are not tried: their control decides where the weight is.
     """

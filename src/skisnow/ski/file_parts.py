@@ -43,7 +43,10 @@ class FileParts:
     table: dict[str, StationTable]
 
     def ski(self, *, like: Ski | None = None) -> Ski:
-        """Put the ski together; `like`: see `SkiParts.assembled`."""
+        """Put the ski together.
+
+        like: a ski of nearly the same lengths, whose stations are stretched to this ski; None: own stations.
+        """
         values = self.values
         if self.table.keys() >= set(STIFFNESSES):
             values.refuse_together(

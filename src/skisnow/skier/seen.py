@@ -189,6 +189,7 @@ def seen_at(
 
 
 def _edge(boot: list[Vector], up: Vector) -> float:
+    """Edge angle (rad) of one boot, given by position, axes ahead, left and up, and two rates."""
     return math.atan2(-dot(boot[2], up), dot(boot[3], up))
 
 

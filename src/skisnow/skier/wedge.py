@@ -132,7 +132,7 @@ class WedgeControl:
         self.grip += dt / GRIP_TIME * (max(0.4, min(2.0, found)) - self.grip)
 
     def _regulate(self, seen: Seen, posture: Posture, toe: float, force: float, dt: float) -> tuple[float, float]:
-        """Difference of the edges' forces, left less right (N), and torque of the hips (N m); moves the load."""
+        """Side force of the left edge less the right one (N), and hip torque (N m); also shifts the load sideways."""
         if self._calls % SOLVED_EVERY == 0:
             brake = max(20.0, 2.0 * force * math.sin(toe))
             self._gain = regulator(self.body, brake, float(posture.numbers[STANCE]), max(toe, 0.05))

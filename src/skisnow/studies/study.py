@@ -43,7 +43,7 @@ class StudyModel(Protocol):
         ...
 
     def require_sound(self, points: Points, fixed: Point) -> None:
-        """Raise an error for an invalid study: an input is missing, stated twice, or cannot be read."""
+        """Raise an error if the study cannot run: an input is missing, given twice, or names an unreadable file."""
         ...
 
     def files(self, points: Points) -> list[Path]:

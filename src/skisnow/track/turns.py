@@ -26,9 +26,9 @@ LONGEST_STRAIGHT: Final = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """A stretch of one sense of curvature.
+    """A stretch with one sign of curvature.
 
-    start, end: times (s); of the switch points where another turn comes before or after.
+    start, end: times (s), at the switch point where another turn adjoins.
     direction: "left" or "right" as seen along the track.
     turned_angle, turned_angle_sd: change of heading (rad), positive left, and its standard error.
     least_radius: m, 1 / the largest curvature of the smoothed track; above 0.

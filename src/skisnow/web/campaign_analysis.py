@@ -181,7 +181,11 @@ MOST_CHOICES: Final = 4
 
 @dataclass(eq=False)
 class CachedAnalysis:
-    """Numbers of one choice with a unique key, and its figures by language as far as drawn; None for missing data."""
+    """Analysis of one choice of the user, identified by `key`.
+
+    figures: images by language, as many as are drawn so far; None for a figure without data.
+    drawing: held while a figure is drawn.
+    """
 
     key: str
     numbers: Numbers

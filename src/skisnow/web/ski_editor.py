@@ -64,7 +64,7 @@ class SkiEditor:
         )
         self._table = ui.element("div").classes("table")
         self._text, self._csv = self._file(text, table)
-        self._base = self._typed_texts()
+        self._base = self._file_and_table_text()
         self._show_origin(name)
 
     def _factor(self, words: str) -> ui.input:
@@ -93,7 +93,7 @@ class SkiEditor:
             button(Message("Draw the file"), self._take_file, "main")
         return written, rows
 
-    def _typed_texts(self) -> tuple[str, str]:
+    def _file_and_table_text(self) -> tuple[str, str]:
         return str(self._text.value or ""), str(self._csv.value or "")
 
     def edit(self) -> SkiEditInput:
@@ -103,7 +103,7 @@ class SkiEditor:
 
     def require_drawn(self) -> None:
         """Reject an edit while the text of the file differs from the drawn one."""
-        if self._typed_texts() != self._base:
+        if self._file_and_table_text() != self._base:
             raise ParameterError("the file below was changed since it was drawn; press Draw the file first").tag(
                 "file_changed"
             )
@@ -117,7 +117,7 @@ class SkiEditor:
         await self._take_file()
 
     async def _take_file(self) -> None:
-        self._base = self._typed_texts()
+        self._base = self._file_and_table_text()
         self._typed.clear()
         for factor in self._factors.values():
             factor.set_value(ONE)

@@ -176,7 +176,7 @@ class FileImports:
         return place.read_text(encoding="utf-8")
 
     def content(self, id_: str) -> tuple[str, bytes]:
-        """Name and bytes of an uploaded file; ParameterError as `name`."""
+        """Name and bytes of an uploaded file. Raises ParameterError: no such upload waits."""
         return self.name(id_), (self._folder / required_id(id_) / "content").read_bytes()
 
     def store(self, id_: str, files: Mapping[str, bytes]) -> str:

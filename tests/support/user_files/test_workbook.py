@@ -10,7 +10,7 @@ import pytest
 from openpyxl import Workbook
 
 from skisnow._support.user_files import ContentError, workbook, workbook_sheets, xml_tree
-from skisnow._support.user_files.json_text import DEEPEST
+from skisnow._support.user_files.xml_elements import DEEPEST
 from tests.coded import Coded, coded, raises
 
 
@@ -135,7 +135,7 @@ def test_a_tree_has_local_names_texts_and_children() -> None:
     assert [(each.namespace, each.name) for each in pit.children] == [
         ("urn:pit", "layer"), ("urn:other", "note"), ("urn:pit", "layer"),
     ]  # fmt: skip
-    assert [each.attributes["top"] for each in pit.every("layer")] == ["0", "12"]
+    assert [each.attributes["top"] for each in pit.named("layer")] == ["0", "12"]
     first = pit.child("layer")
     assert first is pit.children[0]
     assert first.text == "  soft\n snow "
@@ -145,7 +145,7 @@ def test_a_tree_has_local_names_texts_and_children() -> None:
     assert pit.child("grain") is None
     assert pit.child("note", "grain", "size") is None
     assert pit.text_of("note", "grain") == ""
-    assert list(pit.every("grain")) == []
+    assert list(pit.named("grain")) == []
 
 
 def nested(depth: int) -> bytes:
@@ -157,7 +157,7 @@ def test_what_is_beyond_a_limit_is_rejected(monkeypatch: pytest.MonkeyPatch) -> 
     with raises(ContentError, "too_large", depth=60):
         xml_tree(nested(DEEPEST + 1))
     monkeypatch.setattr(
-        sys.modules["skisnow._support.user_files.json_text"], "MOST_ELEMENTS", 3
+        sys.modules["skisnow._support.user_files.xml_elements"], "MOST_ELEMENTS", 3
     )  # the function hides it
     assert len(xml_tree(b"<a><b/><b/></a>").children) == 2
     with raises(ContentError, "too_large", count=3):

@@ -105,7 +105,7 @@ class KeptRows:
         return rows
 
     def _lock_and_begin(self, about: Mapping[str, str] | None = None) -> None:
-        """Lock the file for this process, and begin it where it is new."""
+        """Lock the file for this process, write tables and `about` if it is new, and check the form of an older one."""
         run = self._database.execute
         run("pragma locking_mode = exclusive")  # before the log: it then needs no memory shared with other processes
         run("pragma journal_mode = wal")

@@ -3,7 +3,7 @@
 All TOML and JSON of users is read here and nowhere else: campaigns, scenarios, skis, studies, results, design files.
 """
 
-from .json_text import MOST_JSON_BYTES, Element, json_value, own_json, read_json, read_record, xml_tree
+from .json_text import MOST_JSON_BYTES, json_value, own_json, read_json, read_record
 from .text_files import (
     MOST_TOML_BYTES,
     ContentError,
@@ -17,6 +17,7 @@ from .text_files import (
     toml_values,
 )
 from .workbook import workbook_sheets
+from .xml_elements import Element, xml_tree
 
 __all__ = [
     "MOST_JSON_BYTES",

@@ -1,15 +1,14 @@
-"""JSON and XML of users, and the program's own JSON, which may be damaged."""
+"""JSON of users, and the program's own JSON, which may be damaged."""
 
 from __future__ import annotations
 
 import json
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import MISSING, fields
 from types import NoneType, UnionType
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, get_args, get_origin, get_type_hints
-from xml.parsers import expat
 
 from .text_files import LARGEST_WHOLE, ContentError, plain_text, require_sound, shown, too_deep
 
@@ -126,96 +125,3 @@ def json_number(value: float | None) -> float | None:
     (2.0, None, None, None)
     """
     return None if value is None or not math.isfinite(value) else float(value)
-
-
-DEEPEST: Final = 60
-MOST_ELEMENTS: Final = 500_000
-_LONGEST_REASON: Final = 100
-
-
-@dataclass(slots=True)
-class Element:
-    """An element: namespace, local name, attributes by local name, text before its first child, children."""
-
-    namespace: str
-    name: str
-    attributes: Mapping[str, str]
-    text: str = ""
-    children: list[Element] = field(default_factory=list)
-
-    def child(self, *path: str) -> Element | None:
-        """The first element that local names lead to, or None."""
-        element: Element | None = self
-        for name in path:
-            if element is None:
-                return None
-            element = next((inner for inner in element.children if inner.name == name), None)
-        return element
-
-    def every(self, name: str) -> Iterator[Element]:
-        """Every child of this local name."""
-        return (child for child in self.children if child.name == name)
-
-    def text_of(self, *path: str) -> str:
-        """The text where local names lead to, stripped; ``""`` if there is not one."""
-        element = self.child(*path)
-        return "" if element is None else element.text.strip()
-
-
-class _Builder:
-    """Takes the elements in as expat meets them."""
-
-    def __init__(self) -> None:
-        self.root: Element | None = None
-        self._open: list[Element] = []
-        self._count = 0
-
-    def start(self, name: str, attributes: Mapping[str, str]) -> None:
-        self._count += 1
-        if self._count > MOST_ELEMENTS or len(self._open) >= DEEPEST:
-            raise ContentError("More than {count} elements, or {depth} within each other, are not read.").tag(
-                "too_large", count=MOST_ELEMENTS, depth=DEEPEST
-            )
-        namespace, _, local = name.rpartition("}")
-        element = Element(namespace, local, {key.rpartition("}")[2]: value for key, value in attributes.items()})
-        if self._open:
-            self._open[-1].children.append(element)
-        else:
-            self.root = element
-        self._open.append(element)
-
-    def text(self, text: str) -> None:
-        if self._open and not self._open[-1].children:
-            self._open[-1].text += text
-
-    def end(self, _name: str) -> None:
-        self._open.pop()
-
-    def document_type(self, *_what: object) -> None:
-        raise ContentError("A document type is declared, which is rejected: it may have endless entities.").tag(
-            "document_type"
-        )
-
-
-def xml_tree(data: bytes) -> Element:
-    """Parse XML."""
-    builder, parser = _Builder(), expat.ParserCreate(namespace_separator="}")
-    parser.buffer_text = True
-    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
-    parser.CharacterDataHandler, parser.StartDoctypeDeclHandler = builder.text, builder.document_type
-    try:
-        parser.Parse(data, True)
-    except expat.ExpatError as error:
-        raise ContentError("This is not XML, or it is damaged ({reason}).", line=error.lineno).tag(
-            "not_xml", reason=expat.ErrorString(error.code)
-        ) from error
-    except ContentError:
-        raise
-    except (LookupError, ValueError) as error:  # Python's codec of the encoding that the first line declares
-        what = str(error)[:_LONGEST_REASON]
-        raise ContentError("The text has an encoding that cannot be read ({reason}). Save it as UTF-8.", line=1).tag(
-            "not_text", reason=what
-        ) from error
-    if builder.root is None:
-        raise ContentError("The file has no element.").tag("not_xml")
-    return builder.root

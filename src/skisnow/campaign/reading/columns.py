@@ -72,7 +72,7 @@ class NameColumn:
 
 
 class _NameCodes(dict[str, int]):
-    """Number of the name in each distinct cell; cells are stripped when they are first met."""
+    """Code of the name by the text of its cell: names, without outer blanks, are numbered as they first appear."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -115,7 +115,7 @@ class Corrector:
             return
         for line, cells in zip(lines, rows, strict=True):
             for correction in self._left.pop(line, ()):
-                self._correct(cells, correction)
+                self._correct_record(cells, correction)
 
     def finish(self) -> None:
         """Report corrections whose row is not in the file; call this after the last record."""
@@ -127,7 +127,7 @@ class Corrector:
             )
             self._problems.extend(correction.mismatch("row", str(row), allowed) for correction in of_one_row)
 
-    def _correct(self, cells: list[str], correction: Correction) -> None:
+    def _correct_record(self, cells: list[str], correction: Correction) -> None:
         position = self._position.get(correction.column)
         if position is None:
             allowed = Message("a column of {file}: {columns}", file=correction.file, columns=list(self._position))

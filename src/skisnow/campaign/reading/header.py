@@ -81,7 +81,7 @@ def split_header(lines: list[int], rows: list[list[str]]) -> Header:
 
 
 def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
-    """Units in a row with at least two units and nothing else; empty for any other row.
+    """Units of a row that has two units or more, and else only cells such as "Nr." or "-"; () for any other row.
 
     >>> _units_of(["Nr.", "°", "kg", "[mm]", ""]), _units_of(["1", "30", "kg", "mm", ""])
     (('', '°', 'kg', 'mm', ''), ())

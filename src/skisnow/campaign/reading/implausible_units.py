@@ -173,7 +173,7 @@ def _loads_in_kg(table: Table, described: CampaignFile | None) -> Iterator[Probl
 
 
 def _depths_in_cm(table: Table, described: CampaignFile | None) -> Iterator[Problem]:
-    """One error for each tool that finds snow harder than any measured one."""
+    """One error for each tool whose median H_V, with depths in mm, exceeds any measured one: they may be in cm."""
     tool, depth = table.names["tool"], table.numbers["depth_mm"]
     for code, name in enumerate(tool.names):
         rows = np.flatnonzero((tool.code == code) & np.isfinite(depth)).tolist()

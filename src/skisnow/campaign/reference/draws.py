@@ -110,11 +110,15 @@ def add_unloading(generator: np.random.Generator, drawn: DrawnPenetration, noise
     return drawn._replace(tests=tests, unloading_ratio=np.where(there, ratio, np.nan))
 
 
-def _unloading_readings(there: BoolArray, depth: FloatArray) -> UnloadingReadings:
-    """Readings of the unloading, in the rows after those of their series."""
+def _unloading_readings(unloaded: BoolArray, depth: FloatArray) -> UnloadingReadings:
+    """Readings of the unloading, in the file's rows after the loading of their series.
+
+    unloaded: (n,) True for the series with an unloading.
+    depth: (k, steps) in m, of these k series.
+    """
     up, down = len(design.LOADS), depth.shape[1]
-    first = np.concatenate(([0], np.cumsum(np.where(there, down, 0)))).astype(np.int64)
-    before = 2 + (np.flatnonzero(there) + 1) * up
+    first = np.concatenate(([0], np.cumsum(np.where(unloaded, down, 0)))).astype(np.int64)
+    before = 2 + (np.flatnonzero(unloaded) + 1) * up
     row = np.repeat(before, down) + np.arange(depth.size)
     return UnloadingReadings(first, np.tile(design.LOADS[-2::-1], len(depth)), depth.ravel(), row.astype(np.int64))
 

@@ -105,14 +105,14 @@ class Journals:
 
         Raises StoreError: the journal is unknown.
         """
-        return self._read(id, after, _require_in_entry)
+        return self._read(id, after, _require_campaign_in_entry)
 
     def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
         """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
 
         Raises StoreError: the campaign is unknown.
         """
-        return self._read(id, after, _require_stored)
+        return self._read(id, after, _require_stored_campaign)
 
     def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
         with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
@@ -141,7 +141,7 @@ class Journals:
             The journal is unknown, or the entry to correct or undo is.
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
-            _require_in_entry(connection, id)
+            _require_campaign_in_entry(connection, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
             _require_current(connection, id, entry, seen)
@@ -170,7 +170,7 @@ class Journals:
             The campaign is unknown, or the entry to undo is.
         """
         with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
-            _require_stored(connection, id)
+            _require_stored_campaign(connection, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
             _require_current(connection, id, entry, seen)
@@ -190,14 +190,14 @@ def _journal_head(name: str, id_: object, begun_at: object, n_entries: object, l
         raise damage_error(Message("The campaign in entry {id}", id=id_)) from error
 
 
-def _require_in_entry(connection: Connection, id_: str) -> None:
+def _require_campaign_in_entry(connection: Connection, id_: str) -> None:
     if connection.execute(select(journal.c.id).where(journal.c.id == id_, _IN_ENTRY)).first() is None:
         raise StoreError("The store has no campaign in entry with the id {id!r}; the list of campaigns names all.").tag(
             "unknown_id", id=id_
         )
 
 
-def _require_stored(connection: Connection, id_: str) -> None:
+def _require_stored_campaign(connection: Connection, id_: str) -> None:
     if connection.execute(select(campaign.c.id).where(campaign.c.id == id_)).first() is None:
         raise StoreError("The store keeps no campaign with the id {id!r}; the list of campaigns names all.").tag(
             "unknown_id", id=id_

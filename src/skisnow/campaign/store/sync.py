@@ -156,6 +156,7 @@ class _Sync:
         return n_taken
 
     def _copy_journals(self, source: Store, to: Store, progress: Progress) -> int:
+        """Copy the missing entries of all shared journals; return their number."""
         n_taken = 0
         with reading(source.engine) as from_:
             with reading(to.engine) as connection:
@@ -243,7 +244,7 @@ def names_of(connection: Connection) -> Names:
 
 
 def same_names(here: Names, there: Names) -> Iterator[str]:
-    """Sentences on campaigns of the same kind and name that are new to each other."""
+    """One sentence for each campaign from there that is new here and has the name of another campaign here."""
     for what, of_here, of_there in (
         ("stored campaigns", here.stored, there.stored),
         ("campaigns in entry", here.entered, there.entered),

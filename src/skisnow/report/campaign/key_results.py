@@ -20,7 +20,15 @@ LISTED: Final = 12
 
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each available result."""
-    builders = (_hardness, _stress, _unloading, _displacement, _by_relation, _law, _relations)
+    builders = (
+        _hardness_sentence,
+        _stress_sentence,
+        _unloading_sentence,
+        _displacement_sentence,
+        _sentence_by_relation,
+        _law_sentence,
+        _relations_sentence,
+    )
     sentences = (build(data) for build in builders)
     return [sentence for sentence in sentences if sentence is not None]
 
@@ -59,7 +67,7 @@ def own_value(data: ReportData, quantity: str) -> Json | None:
     return None
 
 
-def _hardness(data: ReportData) -> Markup | None:
+def _hardness_sentence(data: ReportData) -> Markup | None:
     n = counted(len(data.penetration), "{count} penetration experiment", "{count} penetration experiments")
     used = Message("{used} of {n} used", used=whole(len(data.hardness)), n=n)
     mean_name = Message("Snow hardness H_V: geometric mean")
@@ -67,7 +75,7 @@ def _hardness(data: ReportData) -> Markup | None:
     return _mean(data, quantity) if data.penetration else None
 
 
-def _unloading(data: ReportData) -> Markup | None:
+def _unloading_sentence(data: ReportData) -> Markup | None:
     """Unloading ratio over all sites."""
     rows = data.results["penetration"]["unloading"]
     if not rows:
@@ -89,7 +97,7 @@ def _unloading(data: ReportData) -> Markup | None:
     )
 
 
-def _stress(data: ReportData) -> Markup | None:
+def _stress_sentence(data: ReportData) -> Markup | None:
     n = counted(len(data.shear), "{count} shear experiment", "{count} shear experiments")
     used = Message("{used} of {n} used", used=whole(len(data.stress)), n=n)
     mean_name = Message("Failure shear stress S_f: mean")
@@ -101,7 +109,7 @@ def _site_count(sites: TextArray) -> int:
     return len(set(sites.tolist()))
 
 
-def _displacement(data: ReportData) -> Markup | None:
+def _displacement_sentence(data: ReportData) -> Markup | None:
     rows = data.results["shear"]["displacement"]
     if not rows:
         return None
@@ -115,7 +123,7 @@ def _displacement(data: ReportData) -> Markup | None:
     )
 
 
-def _by_relation(data: ReportData) -> Markup | None:
+def _sentence_by_relation(data: ReportData) -> Markup | None:
     """Density, hardness and S_f of each site by published relations, in a campaign without plate tests."""
     rows = data.results.get("published_relations")
     if not rows:
@@ -255,7 +263,7 @@ def _ends(pair: list[float] | None, unit: str, sites: int) -> Markup:
     return prose(" (95 % interval {pair} {unit}, from the scatter between experiments)", pair=interval(pair), unit=unit)
 
 
-def _law(data: ReportData) -> Markup | None:
+def _law_sentence(data: ReportData) -> Markup | None:
     selected = data.results["penetration"]["selected"]
     if selected is None:
         return None
@@ -274,7 +282,7 @@ def _reason(data: ReportData) -> Markup:
     return html(Message(reason.template, **{key: names.get(value, value) for key, value in reason.fields.items()}))
 
 
-def _relations(data: ReportData) -> Markup | None:
+def _relations_sentence(data: ReportData) -> Markup | None:
     judged = [row for row in data.results["regressions"] if row["p"] is not None]
     withheld = [row for row in data.results["regressions"] if row["withheld"]]
     if not judged and not withheld:

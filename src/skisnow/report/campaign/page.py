@@ -143,7 +143,7 @@ def _write(data: ReportData, stage: Path, language: str, report: Callable[[str],
 
 
 def _stale_stems(tables: Iterable[Table]) -> Iterator[str]:
-    """Stems of table files that only an earlier report can have written."""
+    """Names, without ending, of table files of an earlier report: empty tables, and names with the other data mark."""
     for table in tables:
         stems = {replace(table, synthetic=synthetic).file_stem for synthetic in (False, True)}
         yield from sorted(stems - {table.file_stem} if table.rows else stems)

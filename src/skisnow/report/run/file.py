@@ -199,7 +199,7 @@ def _three(
     ]
 
 
-def _energies() -> list[RunVariable]:
+def _energy_variables() -> list[RunVariable]:
     def of(name: str) -> Values:
         """Function that takes this energy from a run."""
         return lambda run: run.energies[name]
@@ -346,7 +346,7 @@ def _groove_variables() -> list[RunVariable]:
 
 
 RUN_VARIABLES: Final = (
-    *_coordinates(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energies(),
+    *_coordinates(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energy_variables(),
     *_groove_variables(),
 )  # fmt: skip
 """Variables of run.nc except the names of the skis, in the order of the file."""

@@ -143,7 +143,7 @@ def _header(run: Run, *, has_replay: bool) -> Header:
     facts = [
         (
             Message("Snow"),
-            html(f"H_V {_hardness(run)}, S_f {_strength(run)}, k_u / H_V {significant(ratio)}"),
+            html(f"H_V {_hardness_text(run)}, S_f {_strength_text(run)}, k_u / H_V {significant(ratio)}"),
         ),
         (Message("Source of the snow"), scenario.contact.snow.source),
         *_replaced_laws(run),
@@ -219,13 +219,13 @@ def _title(run: Run) -> str:
     )
 
 
-def _hardness(run: Run) -> str:
+def _hardness_text(run: Run) -> str:
     contact = run.scenario.contact
     over_place = None if contact.snow_map is None else contact.snow_map.hardness
     return _value(contact.snow.snow_hardness, over_place, N_PER_MM3, "N/mm³")
 
 
-def _strength(run: Run) -> str:
+def _strength_text(run: Run) -> str:
     contact = run.scenario.contact
     over_place = None if contact.snow_map is None else contact.snow_map.failure_shear_stress
     return _value(contact.snow.failure_shear_stress, over_place, N_PER_MM2, "N/mm²")

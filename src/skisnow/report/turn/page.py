@@ -241,7 +241,7 @@ def _scaled_interval(interval: tuple[float, float] | None, unit: float) -> tuple
 
 
 def contacts_table(runs: Mapping[str, Run]) -> Table:
-    """Table with one row for each contact."""
+    """Table with one row for each contact model, the keys of `runs`."""
     return Table(
         "contacts",
         Message("The turn with each contact."),

@@ -26,7 +26,9 @@ WINDOW: Final = 2.5 * MM
 
 
 def snow_density(median_force: FloatArray, element_size: FloatArray) -> FloatArray:
-    """ρ = 420.47 + 102.47 ln F - 121.15 L ln F - 169.96 L in kg/m³; F median force (N), L element size.
+    """ρ = 420.47 + 102.47 ln F - 121.15 L ln F - 169.96 L in kg/m³; F median force (N), L element size in mm.
+
+    The argument `element_size` is in m.
 
     >>> round(float(snow_density(np.array(1.0), np.array(0.5e-3))), 2)
     335.49

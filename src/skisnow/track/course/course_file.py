@@ -237,7 +237,7 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
         raise ParameterError("{path} is not a readable GPX file ({error}); export it again").tag(
             "not_gpx", path=path, error=error
         ) from error
-    points = root.every("wpt") if root.name == "gpx" else ()
+    points = root.named("wpt") if root.name == "gpx" else ()
     return [_waypoint(path, row, point) for row, point in enumerate(points, start=1)]
 
 

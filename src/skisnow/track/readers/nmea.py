@@ -77,7 +77,7 @@ class _Epoch:
         return all(self.fixes.values()) and math.isfinite(sum(self.place)) and self.place != (0.0, 0.0)
 
     def take(self, message: Any) -> bool:
-        """Add one sentence; False if it has a place that is not used."""
+        """Add one sentence; False if it is a second one of its kind with a place, which is not used."""
         kind = message.msgID
         self.seen.add((message.talker, kind))
         used = self._take_place(message) if kind in PLACES else True

@@ -62,7 +62,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
             action=Message("Switch NAV-PVT on in the receiver, or copy the file again."),
         )
     counts["NMEA sentences next to messages NAV-PVT"] = len(SENTENCE.findall(data))
-    table = np.array([_row(epoch) for epoch in epochs])
+    table = np.array([_epoch_row(epoch) for epoch in epochs])
     start = epochs[0].moment
     return Recording(
         name=name,
@@ -163,8 +163,8 @@ def _solution(message: Any) -> Solution:
     return CARRIER_SOLUTIONS.get(int(getattr(message, "carrSoln", 0)), "")
 
 
-def _row(epoch: _Epoch) -> tuple[float, ...]:
-    """Place, speed, velocity, their standard deviations, and 1 for a fix."""
+def _epoch_row(epoch: _Epoch) -> tuple[float, ...]:
+    """Place (°, °, m), speed, velocity, their standard deviations, and 1 with a fix, otherwise 0."""
     message, place = epoch.message, epoch.precise or epoch.message
     velocity = (message.velE * MM, message.velN * MM, -message.velD * MM)
     has_fix = bool(message.gnssFixOk) and message.fixType not in _NO_FIX and not getattr(message, "invalidLlh", 0)

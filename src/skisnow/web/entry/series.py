@@ -42,7 +42,7 @@ class SeriesForm:
     # The head of a series
 
     def begin(self) -> None:
-        """Show the form of a new series: name, site, tool, angle, spot."""
+        """Show the form of a new series: name, site, measurement point, tool, edge angle."""
         ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file))
         self._shown = ""
         self._list.show("")

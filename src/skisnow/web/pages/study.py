@@ -250,6 +250,7 @@ class _Form:
         return list(dict.fromkeys([str(self._ski.value), *further]))
 
     def _chosen_skis(self) -> tuple[dict[str, Any], dict[str, bytes], list[str]]:
+        """Fixed inputs by name, files of edited skis by path, and the choice in words."""
         names = self._chosen_names()
         if names == [GIVEN]:
             return {}, {}, []
@@ -268,6 +269,7 @@ class _Form:
         return {key: words[0] if len(words) == 1 else words}, texts, [ski_words]
 
     def _chosen_snow(self) -> tuple[dict[str, InputValue], dict[str, bytes], list[str]]:
+        """Fixed inputs by name, the file of an analysis by path, and the choice in words."""
         snow, lead = self._snow.chosen(), "" if self._is_carve else "snow."
         if snow is None:
             return {}, {}, []
