@@ -19,7 +19,7 @@ from skisnow.carving.sensitivity import AT_KINK, CONDITIONS, CarveDerivatives, C
 from skisnow.carving.solve import Solution, refined
 from skisnow.ski import Ski, read_ski
 from skisnow.ski.beam import GAUSS_POINTS, GAUSS_WEIGHTS, HALF_BANDWIDTH, ClampedSki, clamped
-from skisnow.ski.editing import shape_parameters, table_growth, varied_ski
+from skisnow.ski.editing import VALUES, shape_parameters, table_growth, varied_ski
 from skisnow.ski.layout import SkiSections
 from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
@@ -43,6 +43,10 @@ def drawn(random: np.random.Generator) -> tuple[Ski, SnowProperties, dict[str, A
     keys["camber_mm"] = random.uniform(0.5, 12.0)
     keys["boot_position_mm"] = random.uniform(-30.0, 30.0)
     keys["base_bevel_deg"] = float(random.choice([0.0, random.uniform(0.3, 1.5)]))
+    keys |= {
+        "side_edge_deg": random.uniform(85.0, 90.0),
+        "edge_radius_mm": random.choice([0.0, random.uniform(0.05, 0.5)]),
+    }
     for key in ("EI_N_m2", "GJ_N_m2"):
         keys[key] = [each * random.uniform(0.7, 1.4) for each in keys[key]]
     hardness, ratio = np.exp(random.uniform(np.log([0.02, 1.05]), np.log([5.0, 50.0])))
@@ -137,13 +141,14 @@ def moved(request: CarveRequest, near: Solution, name: str, change: float) -> Fl
         ski = varied_ski(model.ski, name, change)
         held = HeldSki(ski, rows_of_places(model.ski, model.clamp_length, request.elements))
         model = clamped.__wrapped__(held, model.clamp_length, request.elements)
-        given = given._replace(bevel=ski.base_bevel, bevel_width=ski.edge_width)
+        edge = ski.edge_shape
+        given = given._replace(bevel=edge[0], bevel_width=edge[1], side=edge[2], radius=edge[3])
     point = refined(model, given, near)
     correction, u, border, depth, force = point.state()
     if not correction < 1e-13:
         return np.full(len(OUTPUTS), np.nan)
     if model is not request.model:
-        none = np.zeros((5, len(depth))), np.zeros(12)
+        none = np.zeros((5, len(depth))), np.zeros(14)
         by_u, by_border, by_depth, by_force, _ = point.growth(*none, rounding_of_stiffness(model, u))
         u, depth, force = u + by_u, depth + by_depth, force + by_force
         border = tuple(np.add(border, by_border))
@@ -175,16 +180,21 @@ def comparisons(points: int, parameters: int, seed: int) -> dict[str, list[tuple
             continue
         exact = derivatives(found)
         for name in map(str, names):
-            value = exact.value(name)
-            reference, error = differences(exact.request, exact.at.solution, name, value)
-            for output, by_differences, own_error in zip(OUTPUTS, reference, error, strict=True):
-                if exact.output(output) is None:
-                    continue
-                (by_adjoint,) = exact.sensitivity(output, [name])
-                size = max(abs(by_adjoint.derivative), abs(by_adjoint.output_value / (value or 10.0)))
-                pair = (abs(by_adjoint.derivative - by_differences) / size, own_error / size)
-                out.setdefault(name, []).append(pair)
+            out.setdefault(name, []).extend(compared(exact, name))
     return out
+
+
+def compared(exact: CarveDerivatives, name: str) -> list[tuple[float, float]]:
+    """The same for each output of a carve."""
+    value, pairs = exact.value(name), []
+    reference, error = differences(exact.request, exact.at.solution, name, value)
+    for output, by_differences, own_error in zip(OUTPUTS, reference, error, strict=True):
+        if exact.output(output) is None:
+            continue
+        (by_adjoint,) = exact.sensitivity(output, [name])
+        size = max(abs(by_adjoint.derivative), abs(by_adjoint.output_value / (value or 10.0)))
+        pairs.append((abs(by_adjoint.derivative - by_differences) / size, own_error / size))
+    return pairs
 
 
 def require_agreement(found: dict[str, list[tuple[float, float]]], *, share: float) -> None:
@@ -205,6 +215,13 @@ def test_derivatives_at_200_points() -> None:
     require_agreement(found, share=0.9)
     for name, pairs in found.items():
         assert np.mean(np.array(pairs)[:, 1] < 1e-7) >= 0.7, name
+
+
+def test_values_of_an_edit_have_the_derivatives_of_differences() -> None:
+    """At both ends of the ski and between them, of each curve."""
+    case: dict[str, Any] = {"edge_angle": 0.8, "load": 800.0, "unloading_ratio": 10.0}
+    exact = derivatives(carve(read_ski("carver"), snow(0.21, 0.52), **case))
+    require_agreement({name: compared(exact, name) for name in VALUES[::4]}, share=0.8)
 
 
 def test_a_row_that_is_almost_its_neighbour() -> None:

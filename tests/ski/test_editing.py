@@ -195,6 +195,7 @@ def test_growth_with_each_key_is_that_of_differences() -> None:
         "tip_end_width_mm": 30.0, "tail_overhang_mm": 22.0, "boot_position_mm": 11.0, "camber_rounding_mm": 90.0,
         "shovel_height_mm": 55.0, "tail_height_mm": 12.0, "tip_rocker_length_mm": 60.0, "tip_rocker_height_mm": 1.0,
         "tail_rocker_length_mm": 40.0, "tail_rocker_height_mm": 0.7, "base_bevel_deg": 0.5, "edge_width_mm": 1.8,
+        "side_edge_deg": 88.0, "edge_radius_mm": 0.3,
         "stiffness_station_mm": [700, 320, 20, -310, -690], "EI_N_m2": [110, 240, 430, 260, 120],
     }  # fmt: skip
     plain = {key: value for key, value in keys.items() if key not in ("tip_end_width_mm", "stiffness_station_mm")}
@@ -210,6 +211,6 @@ def test_growth_with_each_key_is_that_of_differences() -> None:
                 assert growth.tables[row] == pytest.approx(differences, abs=1e-6 * size), (name, table)
             numbers = [
                 (getattr(ends[0], key) - getattr(ends[1], key)) / (2.0 * h)
-                for key in ("running_length", "base_bevel", "edge_width")
+                for key in ("running_length", "base_bevel", "edge_width", "side_edge", "edge_radius")
             ]
             assert growth.numbers == pytest.approx(numbers, abs=1e-12)

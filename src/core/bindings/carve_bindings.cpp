@@ -145,11 +145,12 @@ nb::tuple point_gradient(CarvePoint& at, const Array& u, const Array& depth, con
   for (const auto* each :
        {&found.place, &found.weight, &found.width, &found.base_height, &found.deflection, &found.normal})
     columns.insert(columns.end(), each->begin(), each->end());
-  return nb::make_tuple(array(std::move(columns), {6, n}),
-                        array({found.edge_angle, found.hardness, found.excess, found.load, found.moment,
-                               found.side_force, found.bevel, found.bevel_width, found.pitch_of_force,
-                               found.pitch_of_shear, found.running_length, found.greatest_width}),
-                        array(at.ski().gathered(found.adjoint.u)));
+  return nb::make_tuple(
+      array(std::move(columns), {6, n}),
+      array({found.edge_angle, found.hardness, found.excess, found.load, found.moment, found.side_force, found.bevel,
+             found.bevel_width, found.pitch_of_force, found.pitch_of_shear, found.running_length, found.greatest_width,
+             found.side, found.radius}),
+      array(at.ski().gathered(found.adjoint.u)));
 }
 
 // Growth of unknowns, border, depth and force along a direction, and the distance to the next kink in its unit.
@@ -163,9 +164,9 @@ nb::tuple point_growth(CarvePoint& at, const Array& columns, const Array& number
     from += n;
   }
   from = numbers.data();
-  for (auto* each :
-       {&along.edge_angle, &along.hardness, &along.excess, &along.load, &along.moment, &along.side_force, &along.bevel,
-        &along.bevel_width, &along.pitch_of_force, &along.pitch_of_shear, &along.running_length, &along.greatest_width})
+  for (auto* each : {&along.edge_angle, &along.hardness, &along.excess, &along.load, &along.moment, &along.side_force,
+                     &along.bevel, &along.bevel_width, &along.pitch_of_force, &along.pitch_of_shear,
+                     &along.running_length, &along.greatest_width, &along.side, &along.radius})
     *each = *from++;
   along.bent = at.ski().spread(bent.data());
   CarveGrowth found = at.growth(along);

@@ -9,12 +9,11 @@ namespace {
 
 // Forces of the snow on a section, per length of ski, and their growth with the depth of the section, its twist and τ.
 struct Load {
-  double normal, moment;  // force normal to the base; growth of the edge angle
+  SectionLoad<double> at;
   double normal_by_depth, normal_by_twist, normal_by_stress;
   double moment_by_depth, moment_by_twist, moment_by_stress;
-  double force, force_by_depth, force_by_twist;  // along the snow normal
-  // the side force is τ times this: depth of the edge where it is below the surface, or the snow's force
-  double bite, bite_by_depth, bite_by_twist;
+  double force_by_depth, force_by_twist;  // along the snow normal
+  double bite_by_depth, bite_by_twist;
   // parts of a force that a deeper groove adds: to the force normal to the base, the moment besides that of its place,
   // and the balance of moments
   double pulled_normal, pulled_moment, pulled_pitch;
@@ -37,6 +36,7 @@ class Pass {
         out_(out),
         sine_(std::sin(conditions.edge_angle)),
         cosine_(std::cos(conditions.edge_angle)),
+        boot_(CarveBoot<double>::at(conditions.edge_angle, at.border, conditions.twists)),
         edges_(conditions.edges()) {}
 
   template <class Groove>
@@ -50,11 +50,11 @@ class Pass {
   const CarveState& at_;
   CarveEquations& out_;
   double sine_, cosine_;  // edge angle of the boot
+  const CarveBoot<double> boot_;
   const EdgeShape edges_;
   std::vector<Strength> strength_;  // one for each station, if a law gives it
 
   void begin();
-  double twist(const CarveStation& station) const;
   CarveSection section(const CarveStation& station) const;
   template <class Groove>
   void ask_pressure(Groove& groove);
@@ -70,13 +70,7 @@ class Pass {
 // The beam alone: its matrix and its elastic forces.
 void Pass::begin() {
   out_.matrix = ski_.stiffness;
-  for (int i = 0; i < ski_.size; i++) {
-    const double* row = ski_.stiffness.data() + CARVE_BAND * i;
-    double total = 0.0;
-    for (int k = std::max(0, BAND_HALF - i); k < CARVE_BAND; k++)
-      total += row[k] * at_.u[std::size_t(i + k - BAND_HALF)];
-    out_.residual[std::size_t(i)] = total;
-  }
+  find_elastic_forces(ski_, at_.u, out_.residual.data());
   out_.rows.assign(BAND_TILE * out_.residual.size(), 0.0);
   out_.columns.assign(out_.tile(tiles_for(CARVE_BORDER)), 0.0);
   for (auto& row : out_.corner) std::fill(std::begin(row), std::end(row), 0.0);
@@ -86,21 +80,8 @@ void Pass::begin() {
   links_.clear();
 }
 
-double Pass::twist(const CarveStation& s) const {
-  if (!conditions_.twists) return 0.0;
-  const double* u = at_.u.data() + s.first;
-  return s.twist[0] * u[2] + s.twist[1] * u[5];
-}
-
-// [section] Where the section lies, its own edge angle.
 CarveSection Pass::section(const CarveStation& s) const {
-  const double* u = at_.u.data() + s.first;
-  double deflection = 0.0;
-  for (int a = 0; a < 4; a++) deflection += s.deflection[a] * u[BENDS[a]];
-  const double angle = conditions_.edge_angle + twist(s), sine = std::sin(angle), cosine = std::cos(angle);
-  const double height = cosine_ * (s.base_height + deflection);
-  const double corner = at_.border[0] + at_.border[1] * s.place - height + s.half_width * sine;
-  CarveSection out{{s.half_width, sine, cosine, sine / cosine, corner, corner, 2.0 * s.half_width * cosine}};
+  CarveSection out{boot_.section(s, at_.u.data() + s.first)};
   if (edges_.acts()) out.grind(edges_);
   return out;
 }
@@ -128,21 +109,17 @@ Load Pass::load(const CarveSection& section, const StripSums& sums, const Streng
   const double turned_by_depth = bite_by_depth - 2.0 * other_by_depth;
   const double turned_by_twist = bite_by_twist - 2.0 * other_by_twist;
   const double up = shears * sine_, turn = -shears * section.half * section.sine, turn_by_twist = -shears * lever;
-  const auto [bite, turned, normal, moment] =
-      section_load(sums.force, sums.moment, reacts, strength.share * held, strength.share * other, shears * stress,
-                   {sine_, cosine_}, {section.half * section.sine, lever});
-  return {.normal = normal,
-          .moment = moment,
+  const auto at = section_load(sums.force, sums.moment, reacts, strength.share * held, strength.share * other,
+                               shears * stress, {sine_, cosine_}, {section.half * section.sine, lever});
+  return {.at = at,
           .normal_by_depth = cosine_ * by_depth + up * stress * bite_by_depth,
           .normal_by_twist = cosine_ * by_twist + up * stress * bite_by_twist,
-          .normal_by_stress = up * bite,
+          .normal_by_stress = up * at.bite,
           .moment_by_depth = moment_by_depth + turn * stress * turned_by_depth,
-          .moment_by_twist = moment_by_twist + (turn * turned_by_twist + turn_by_twist * turned) * stress,
-          .moment_by_stress = turn * turned,
-          .force = sums.force,
+          .moment_by_twist = moment_by_twist + (turn * turned_by_twist + turn_by_twist * at.turned) * stress,
+          .moment_by_stress = turn * at.turned,
           .force_by_depth = by_depth,
           .force_by_twist = by_twist,
-          .bite = bite,
           .bite_by_depth = bite_by_depth,
           .bite_by_twist = bite_by_twist,
           .pulled_normal = reacts ? cosine_ + up * stress : cosine_,
@@ -150,34 +127,29 @@ Load Pass::load(const CarveSection& section, const StripSums& sums, const Streng
           .pulled_pitch = conditions_.pitch_of_force + (reacts ? conditions_.pitch_of_shear * stress : 0.0)};
 }
 
-// [balance] Force, moment about the boot's cross axis, side force.
+// How force, moment and side force grow with the border.
 void Pass::add_to_border(const CarveStation& s, const Load& load) {
   const double stress = at_.border[2], held = stress * load.bite_by_depth;
   const double force = conditions_.pitch_of_force, shear = conditions_.pitch_of_shear;
   const double slope = force * load.force_by_depth + shear * held;
   auto& corner = out_.corner;
-  out_.border_residual[0] += s.weight * load.force;
-  out_.border_residual[1] += s.weight * (force * load.force + shear * stress * load.bite) * s.place;
   corner[0][0] += s.weight * load.force_by_depth;
   corner[0][1] += s.weight * load.force_by_depth * s.place;
   corner[1][0] += s.weight * slope * s.place;
   corner[1][1] += s.weight * slope * s.place * s.place;
-  corner[1][2] += s.weight * shear * load.bite * s.place;
+  corner[1][2] += s.weight * shear * load.at.bite * s.place;
   if (conditions_.by_reaction) return;  // the load bears it all: see the end of the pass
-  out_.border_residual[2] += s.weight * stress * load.bite;
   corner[2][0] += s.weight * held;
   corner[2][1] += s.weight * held * s.place;
-  corner[2][2] += s.weight * load.bite;
+  corner[2][2] += s.weight * load.at.bite;
 }
 
-// The load on the beam's equations, and what beam and border do to it.
+// What beam and border do to the load on the beam's equations.
 void Pass::add_to_beam(const CarveStation& s, const Load& load) {
   const double stress = at_.border[2];
   const double force = conditions_.pitch_of_force, shear = conditions_.pitch_of_shear;
-  const auto add = [&](int unknown, double weighted, double by_unknown, double loaded, double by_depth,
-                       double by_stress) {
+  const auto add = [&](int unknown, double weighted, double by_unknown, double by_depth, double by_stress) {
     const auto j = std::size_t(s.first + unknown);
-    out_.residual[j] -= weighted * loaded;
     double *column = out_.columns.data() + BAND_TILE * j, *row = out_.rows.data() + BAND_TILE * j;
     column[0] -= weighted * by_depth;
     column[1] -= weighted * by_depth * s.place;
@@ -191,11 +163,10 @@ void Pass::add_to_beam(const CarveStation& s, const Load& load) {
     if (!conditions_.by_reaction) row[2] += deeper;
   };
   for (int a = 0; a < 4; a++)
-    add(BENDS[a], s.weight * s.deflection[a], -cosine_ * s.deflection[a], load.normal, load.normal_by_depth,
-        load.normal_by_stress);
+    add(BENDS[a], s.weight * s.deflection[a], -cosine_ * s.deflection[a], load.normal_by_depth, load.normal_by_stress);
   if (!conditions_.twists) return;
   for (int a = 0; a < 2; a++)
-    add(TURNS[a], s.weight * s.twist[a], s.twist[a], load.moment, load.moment_by_depth, load.moment_by_stress);
+    add(TURNS[a], s.weight * s.twist[a], s.twist[a], load.moment_by_depth, load.moment_by_stress);
 }
 
 // How the load on the beam's equations grows with the beam's unknowns.
@@ -243,7 +214,7 @@ void Pass::bind_links() {
   out_.links.clear();
   for (int number : links_.station) {
     const CarveStation& s = ski_.stations[std::size_t(number)];
-    const double lever = s.half_width * std::cos(conditions_.edge_angle + twist(s));
+    const double lever = s.half_width * section(s).cosine;
     CarveLinkRow row{.first = s.first, .place = s.place, .deflection = {}, .by_twist = {}, .twist = {}};
     for (int a = 0; a < 4; a++) row.deflection[a] = cosine_ * s.deflection[a];
     for (int a = 0; a < 2 && conditions_.twists; a++) {
@@ -305,18 +276,15 @@ void Pass::from_tip_to_tail(Groove& groove) {
     if (sums.by_depth[0] == 0.0 && !(found.depth > 0.0)) continue;
     const Load felt = load(found, sums, strength_.empty() ? Strength{} : strength_[i]);
     const double lever = found.half * found.cosine;
+    add_load(conditions_, station, felt.at, sums.force, at_.border[2], out_.border_residual,
+             out_.residual.data() + station.first);
     add_to_border(station, felt);
     add_to_beam(station, felt);
     add_to_matrix(station, felt);
     add_pulls(station, felt, lever);
   }
-  out_.border_residual[0] -= conditions_.load;
-  out_.border_residual[1] -= conditions_.moment;
-  if (conditions_.by_reaction) {
-    out_.border_residual[2] += at_.border[2] * conditions_.load;
-    out_.corner[2][2] += conditions_.load;
-  }
-  out_.border_residual[2] -= conditions_.side_force;
+  subtract_loads(conditions_, at_.border[2], out_.border_residual);
+  if (conditions_.by_reaction) out_.corner[2][2] += conditions_.load;
   bind_links();
 }
 

@@ -18,12 +18,16 @@ namespace skisnow {
 constexpr int CARVE_BORDER = 3;
 constexpr int CARVE_BAND = 11;  // columns of a row: five to each side
 
-// One place along the ski at which the snow is felt.
-struct CarveStation {
-  double place, weight, half_width, base_height;  // from the boot; length of ski of the station (m)
-  double deflection[4], twist[2];                 // shapes of its element's unknowns 0, 1, 3, 4 and 2, 5
-  int first;                                      // unknown of its element
+constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};  // an element's unknowns of deflection and of twist
+
+// One place along the ski at which the snow is felt, on any kind of number.
+template <class T>
+struct StationOf {
+  T place, weight, half_width, base_height;  // from the boot; length of ski of the station (m)
+  T deflection[4], twist[2];                 // shapes of its element's unknowns
+  int first;                                 // unknown of its element
 };
+using CarveStation = StationOf<double>;
 
 // A ski clamped at the boot, its unknowns from tip to tail. Between those before and behind the clamp lie six that do
 // not move, so that every element has six in a row.

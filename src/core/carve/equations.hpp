@@ -11,7 +11,42 @@
 
 namespace skisnow {
 
-constexpr int BENDS[4] = {0, 1, 3, 4}, TURNS[2] = {2, 5};  // an element's unknowns of deflection and of twist
+// The residual on any kind of number: solver, adjoint, derivatives along a direction and refinement share this text.
+
+// The beam's elastic forces at its unknowns.
+template <class T>
+void find_elastic_forces(const CarvedSki& ski, const auto& u, T* out) {
+  for (int i = 0; i < ski.size; i++) {
+    const double* row = ski.stiffness.data() + CARVE_BAND * i;
+    T total(0.0);
+    for (int k = std::max(0, BAND_HALF - i); k < CARVE_BAND; k++)
+      total += T(row[k]) * u[std::size_t(i + k - BAND_HALF)];
+    out[i] = total;
+  }
+}
+
+// The boot: its edge angle with sine and cosine, b₀, b₁, and whether the ski twists.
+template <class T>
+struct CarveBoot {
+  T angle, sine, cosine, depth, slope;
+  bool twists;
+
+  static CarveBoot at(const T& angle, const auto& border, bool twists) {
+    using std::cos;
+    using std::sin;
+    return {angle, sin(angle), cos(angle), border[0], border[1], twists};
+  }
+  // [section] Where the section of a station lies; `u`: unknowns of its element.
+  SnowSection<T> section(const StationOf<T>& s, const T* u) const {
+    using std::cos;
+    using std::sin;
+    T height = s.base_height, turned = angle;
+    for (int a = 0; a < 4; a++) height += s.deflection[a] * u[BENDS[a]];
+    for (int a = 0; a < 2 && twists; a++) turned += s.twist[a] * u[TURNS[a]];
+    const T s1 = sin(turned), c1 = cos(turned), corner = depth + slope * s.place - cosine * height + s.half_width * s1;
+    return {s.half_width, s1, c1, s1 / c1, corner, corner, T(2.0) * s.half_width * c1, height, turned};
+  }
+};
 
 // Load on a section, per length of ski, on any kind of number. The side force is τ times `bite`: depth of the edge
 // where it is below the surface, or the snow's force.
@@ -30,6 +65,25 @@ SectionLoad<T> section_load(const T& force, const T& about_edge, bool reacts, co
   const T bite = reacts ? force : held, turned = reacts ? bite : bite - T(2.0) * other;
   return {bite, turned, boot[1] * force + boot[0] * stress * bite,
           about_edge - lever[1] * force - lever[0] * stress * turned};
+}
+
+// [balance] Add a section's load to force, moment about the boot's cross axis, side force, and to its element's
+// equations `beam`; `given`: conditions.
+template <class T>
+void add_load(const auto& given, const StationOf<T>& s, const SectionLoad<T>& load, const T& force, const T& stress,
+              T* border, T* beam) {
+  border[0] += s.weight * force;
+  border[1] += s.weight * (given.pitch_of_force * force + given.pitch_of_shear * stress * load.bite) * s.place;
+  if (!given.by_reaction) border[2] += s.weight * stress * load.bite;
+  for (int a = 0; a < 4; a++) beam[BENDS[a]] -= s.weight * s.deflection[a] * load.normal;
+  for (int a = 0; a < 2 && given.twists; a++) beam[TURNS[a]] -= s.weight * s.twist[a] * load.moment;
+}
+
+// What these sums must come to. By reaction the load alone draws the side force.
+template <class T>
+void subtract_loads(const auto& given, const T& stress, T* border) {
+  border[0] -= given.load, border[1] -= given.moment, border[2] -= given.side_force;
+  if (given.by_reaction) border[2] += stress * given.load;
 }
 
 // Row that links depth and twist of one station to beam and boot.

@@ -45,45 +45,35 @@ void GrooveAlongEdge::clear() {
   source_.assign(place.size(), 0);
 }
 
-// [across]
 void GrooveAlongEdge::across(const CarveSection& section, int, CarvePressure& pressure, StripSums& sums,
-                             CarveLinks& links) const {
-  for (std::size_t k = 0; k + 1 < place.size(); k++) {
-    const double start = place[k], spacing = place[k + 1] - start;
-    const double length = std::min(place[k + 1], section.reach) - start;
-    if (length <= 0.0) return;
-    const double depth0 = section.base_depth(start), depth1 = section.base_depth(start + length);
-    if (depth0 <= 0.0 && depth1 <= 0.0) continue;
-    const double groove0 = depth_[k], groove1 = groove0 + length / spacing * (depth_[k + 1] - groove0);
+                             CarveLinks& links) {
+  find_depths(section, place, base_);
+  each_stretch(section, place, base_, depth_, [&](const SnowStretch<double>& at) {
     std::fill_n(sums.by_groove, 3, 0.0);
     double growth[3];
     std::copy_n(sums.by_depth, 3, growth);
-    pressure.add({start, length, depth0, depth1, groove0, groove1, section.sine}, sums);
+    pressure.add({at.start, at.length, at.depth[0], at.depth[1], at.groove[0], at.groove[1], section.sine}, sums);
     for (int n = 0; n < 3; n++) growth[n] = sums.by_depth[n] - growth[n];
-    if (section.edge != nullptr) add_ground_growth(section, start, length, growth, sums);
-    if (length < spacing && depth1 > 0.0) {  // the base ends in the snow, at W cos α
-      const double end = 2.0 * section.half * section.sine * pressure.at(depth1, groove1);
+    if (section.edge != nullptr) add_ground_growth(section, at.start, at.length, growth, sums);
+    if (at.cut && at.depth[1] > 0.0) {  // the base ends in the snow, at W cos α
+      const double end = 2.0 * section.half * section.sine * pressure.at(at.depth[1], at.groove[1]);
       sums.by_angle[0] -= end;
       sums.by_angle[1] -= end * section.reach;
     }
     const double* by = sums.by_groove;
-    if (by[0] == 0.0) continue;
+    if (by[0] == 0.0) return;
     // the groove is a straight line between two places: each has its share
-    const double far = (by[1] - start * by[0]) / spacing, far_moment = (by[2] - start * by[1]) / spacing;
-    links.pull(source_[k], by_angle_[k], by[0] - far, by[1] - far_moment);
-    links.pull(source_[k + 1], by_angle_[k + 1], far, far_moment);
-  }
+    const double far = (by[1] - at.start * by[0]) / at.spacing, far_moment = (by[2] - at.start * by[1]) / at.spacing;
+    links.pull(source_[at.place], by_angle_[at.place], by[0] - far, by[1] - far_moment);
+    links.pull(source_[at.place + 1], by_angle_[at.place + 1], far, far_moment);
+  });
 }
 
-// Deepen the groove where this station lies deeper.
 void GrooveAlongEdge::pass(const CarveSection& section, int station) {
-  for (std::size_t k = 0; k < place.size(); k++) {
-    const double depth = section.base_depth(place[k]);
-    if (depth < depth_[k]) continue;
-    depth_[k] = depth;
+  deepen(base_, depth_, [&](std::size_t k) {
     by_angle_[k] = section.base_by_angle(place[k]);
     source_[k] = station;
-  }
+  });
 }
 
 void GrooveAlongPath::across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,

@@ -19,6 +19,7 @@ struct SnowSection {
   T corner;                 // depth that an edge would have that is not ground
   T depth;                  // depth of the edge (m)
   T reach;                  // reach of the base across (m)
+  T height, angle;          // of its base above the boot's, the ski's bend included (m); its edge angle
   const GroundEdge<T>* edge = nullptr;
   T rise[EdgeShape::HINGES] = {};  // see `GroundEdge`
 
@@ -64,6 +65,45 @@ struct CarveSection : SnowSection<double> {
   }
 };
 
+// A stretch between two places across on which the base is in the snow.
+template <class T>
+struct SnowStretch {
+  std::size_t place;         // number of the first one
+  bool cut;                  // whether it ends with the base
+  T start, length, spacing;  // `spacing`: to the next place (m)
+  T depth[2], groove[2];     // of base and groove at both ends (m)
+};
+
+// Depths of the base at places across.
+template <class T>
+void find_depths(const SnowSection<T>& section, const std::vector<T>& place, std::vector<T>& out) {
+  out.resize(place.size());
+  for (std::size_t k = 0; k < place.size(); k++) out[k] = section.base_depth(place[k]);
+}
+
+// [across] Take each stretch; `depth`, `groove`: of base and groove at each place, between which they are straight.
+template <class T>
+void each_stretch(const SnowSection<T>& section, const std::vector<T>& place, const std::vector<T>& depth,
+                  const std::vector<T>& groove, const auto& take) {
+  const T zero(0.0);
+  for (std::size_t k = 0; k + 1 < place.size(); k++) {
+    const bool cut = section.reach < place[k + 1];
+    const T spacing = place[k + 1] - place[k], length = cut ? section.reach - place[k] : spacing;
+    if (!(length > zero)) return;
+    const T far = cut ? section.base_depth(section.reach) : depth[k + 1];
+    if (!(depth[k] > zero) && !(far > zero)) continue;
+    const T end = cut ? groove[k] + length / spacing * (groove[k + 1] - groove[k]) : groove[k + 1];
+    take(SnowStretch<T>{k, cut, place[k], length, spacing, {depth[k], far}, {groove[k], end}});
+  }
+}
+
+// Deepen the groove where the base is deeper; `take`: the number of each such place.
+template <class T>
+void deepen(const std::vector<T>& depth, std::vector<T>& groove, const auto& take) {
+  for (std::size_t k = 0; k < depth.size(); k++)
+    if (!(depth[k] < groove[k])) groove[k] = depth[k], take(k);
+}
+
 // How the force on a section and ∫p ξ grow with depth and twist of a station ahead, by the groove that it cut.
 struct CarvePull {
   double force_by_depth = 0.0, moment_by_depth = 0.0, force_by_twist = 0.0, moment_by_twist = 0.0;
@@ -91,12 +131,12 @@ struct GrooveAlongEdge {
   std::vector<double> place;  // rising from 0
 
   void clear();
-  void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums,
-              CarveLinks& links) const;
-  void pass(const CarveSection& section, int station);
+  void across(const CarveSection& section, int station, CarvePressure& pressure, StripSums& sums, CarveLinks& links);
+  void pass(const CarveSection& section, int station);  // the one that `across` had
 
  private:
   std::vector<double> depth_, by_angle_;  // and its growth with the twist of the station that left it
+  std::vector<double> base_;              // depth of the section at the places
   std::vector<int> source_;
 };
 

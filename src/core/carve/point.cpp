@@ -19,7 +19,7 @@ constexpr double ALMOST = 1e-10, ROUNDING = 1e-15;  // (m) last corrections
 constexpr double LEAST_EXCESS = 1e-12;              // k_u - H_V over H_V that elastic snow is differentiated at
 
 // Numbers of a section that the sum is differentiated by.
-enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, NUMBERS };
+enum Along { CORNER, ANGLE, HALF, HARDNESS, EXCESS, BEVEL, BEVEL_WIDTH, SIDE, RADIUS, NUMBERS };
 // And those that the places across depend on.
 enum OfPlaces { LINE, REACH, BEVEL_END, ROUND_END, OF_PLACES };
 using Place = Slopes<OF_PLACES>;
@@ -43,8 +43,8 @@ struct Piece {
 struct Felt {  // a section in the snow, or that deepens the groove
   bool touches = false;
   bool deepens[MOST_PLACES] = {};
-  double deflection, angle, other;
-  double by_bevel[EdgeShape::HINGES] = {};  // growth of the rises with the bevel
+  double other;
+  double by_bevel[EdgeShape::HINGES] = {}, by_side = 0.0;  // growth of the rises with the bevel, of the second with γ
   CarveSection section;
   double force = 0.0, moment = 0.0;
   std::size_t begin = 0, end = 0;  // its pieces
@@ -66,7 +66,9 @@ struct CarvePoint::Passed {
   const EdgeShape edges;
   const bool ground;
   double bevel_width, round_width, sine, cosine;
-  std::vector<Place> place;
+  const CarveBoot<double> boot;
+  std::vector<Place> origin;                // of each place
+  std::vector<double> place, groove, base;  // each with the depths of groove and base there
   std::vector<Felt> felt;
   std::vector<Piece> pieces;
 
@@ -79,83 +81,57 @@ struct CarvePoint::Passed {
         bevel_width(conditions.bevel > 0.0 ? conditions.bevel_width : 0.0),
         round_width(edges.width(1)),
         sine(std::sin(conditions.edge_angle)),
-        cosine(std::cos(conditions.edge_angle)) {
+        cosine(std::cos(conditions.edge_angle)),
+        boot(CarveBoot<double>::at(conditions.edge_angle, at.border, conditions.twists)) {
     if (own_place.empty())
-      place = places_across(Place::along(straight_waterline(ski, given), LINE),
-                            Place::along(ski.greatest_width * cosine, REACH),
-                            {bevel_width > 0.0 ? Place::along(bevel_width * cosine, BEVEL_END) : Place(0.0),
-                             round_width > 0.0 ? Place::along(round_width * cosine, ROUND_END) : Place(0.0)});
+      origin = places_across(Place::along(straight_waterline(ski, given), LINE),
+                             Place::along(ski.greatest_width * cosine, REACH),
+                             {bevel_width > 0.0 ? Place::along(bevel_width * cosine, BEVEL_END) : Place(0.0),
+                              round_width > 0.0 ? Place::along(round_width * cosine, ROUND_END) : Place(0.0)});
     else
-      place.assign(own_place.begin(), own_place.end());
-    if (place.size() > MOST_PLACES) throw std::invalid_argument("too many places for derivatives");
-    std::vector<double> groove(place.size(), FAR_ABOVE);
+      origin.assign(own_place.begin(), own_place.end());
+    if (origin.size() > MOST_PLACES) throw std::invalid_argument("too many places for derivatives");
+    for (const Place& each : origin) place.push_back(each.value);
+    groove.assign(place.size(), FAR_ABOVE);
     felt.resize(ski.stations.size());
     pieces.reserve(4 * felt.size());
-    for (std::size_t i = 0; i < felt.size(); i++) feel(ski.stations[i], at, groove, felt[i]);
+    for (std::size_t i = 0; i < felt.size(); i++) feel(ski.stations[i], at, felt[i]);
   }
 
-  void feel(const CarveStation& s, const CarveState& at, std::vector<double>& groove, Felt& f) {
-    const double* u = at.u.data() + s.first;
-    f.deflection = 0.0, f.angle = given.edge_angle;
-    for (int a = 0; a < 4; a++) f.deflection += s.deflection[a] * u[BENDS[a]];
-    for (int a = 0; a < 2 && given.twists; a++) f.angle += s.twist[a] * u[TURNS[a]];
+  void feel(const CarveStation& s, const CarveState& at, Felt& f) {
     CarveSection& section = f.section;
-    section.half = s.half_width;
-    section.sine = std::sin(f.angle), section.cosine = std::cos(f.angle);
-    section.tangent = section.sine / section.cosine;
-    section.corner = section.depth =
-        at.border[0] + at.border[1] * s.place - cosine * (s.base_height + f.deflection) + s.half_width * section.sine;
-    section.reach = 2.0 * section.half * section.cosine;
-    if (ground) section.grind(edges), grow_with_bevel(f);
+    section = {boot.section(s, at.u.data() + s.first)};
+    if (ground) section.grind(edges), grow_with_edge(f);
     f.other = section.other_depth();
-    f.touches = section.depth > 0.0 || f.other > 0.0;
+    find_depths(section, place, base);
+    f.touches =
+        section.depth > 0.0 || f.other > 0.0 || std::any_of(base.begin(), base.end(), [](double d) { return d > 0.0; });
     f.begin = pieces.size();
-    double depth[MOST_PLACES];
-    for (std::size_t k = 0; k < place.size(); k++) {
-      depth[k] = section.base_depth(place[k].value);
-      f.touches = f.touches || depth[k] > 0.0;
-    }
-    if (f.touches) add_pieces(depth, groove, f);
+    if (f.touches)
+      each_stretch(section, place, base, groove, [&](const SnowStretch<double>& stretch) { add_piece(stretch, f); });
     f.end = pieces.size();
-    for (std::size_t k = 0; k < place.size(); k++) {
-      f.deepens[k] = depth[k] >= groove[k];
-      if (f.deepens[k]) groove[k] = depth[k];
-    }
+    deepen(base, groove, [&](std::size_t k) { f.deepens[k] = true; });
   }
 
-  // Growth of the rises with the bevel: the angle of strip and snow falls by it, that of the corner rises by half.
-  void grow_with_bevel(Felt& f) const {
-    if (!(bevel_width > 0.0)) return;
+  // Growth of the rises with the bevel: the angle of strip and snow falls by it, that of the corner, γ, rises by half.
+  void grow_with_edge(Felt& f) const {
     const double tangent = given.radius > 0.0 ? given.radius / round_width : 0.0;
-    const double on_strip = f.angle - given.bevel, strip_sine = std::sin(on_strip), strip_cosine = std::cos(on_strip);
-    f.by_bevel[0] = strip_cosine;
-    if (f.section.rise[1] > 0.0)
-      f.by_bevel[1] = strip_sine * tangent - strip_cosine - 0.5 * (1.0 - strip_cosine) * (1.0 + tangent * tangent);
-  }
-
-  void add_pieces(const double (&depth)[MOST_PLACES], const std::vector<double>& groove, Felt& f) {
-    const double reach = f.section.reach;
-    for (std::size_t k = 0; k + 1 < place.size() && place[k].value < reach; k++) {
-      Piece piece;
-      piece.place = k, piece.cut = !(place[k + 1].value < reach);
-      piece.start = place[k].value, piece.end = piece.cut ? reach : place[k + 1].value;
-      const double far = piece.cut ? f.section.base_depth(reach) : depth[k + 1];
-      if (!(depth[k] > 0.0) && !(far > 0.0)) continue;
-      const double length = piece.end - piece.start, spacing = place[k + 1].value - piece.start;
-      piece.drop = groove[k + 1] - groove[k];
-      const double lift[2] = {groove[k] - depth[k],
-                              (piece.cut ? groove[k] + length / spacing * piece.drop : groove[k + 1]) - far};
-      add_piece(piece, length, {depth[k], far}, lift, f);
-      pieces.push_back(piece);
-    }
+    const double on_strip = f.section.angle - edges.bevel(), sine = std::sin(on_strip), cosine = std::cos(on_strip);
+    if (f.section.rise[1] > 0.0) f.by_side = -0.5 * (1.0 - cosine) * (1.0 + tangent * tangent);
+    if (!(bevel_width > 0.0)) return;
+    f.by_bevel[0] = cosine;
+    if (f.section.rise[1] > 0.0) f.by_bevel[1] = sine * tangent - cosine + f.by_side;
   }
 
   // [piece] Force and moment are linear in H and E, and the force in the length.
-  void add_piece(Piece& piece, double length, const double (&depth)[2], const double (&lift)[2], Felt& f) const {
+  void add_piece(const SnowStretch<double>& at, Felt& f) {
+    Piece piece{
+        .place = at.place, .cut = at.cut, .start = at.start, .end = at.cut ? f.section.reach : place[at.place + 1]};
+    piece.drop = groove[at.place + 1] - groove[at.place];
+    const double length = at.length, lift[2] = {at.groove[0] - at.depth[0], at.groove[1] - at.depth[1]};
     const double excess = std::max(given.excess, LEAST_EXCESS * given.hardness);
     StripSums sums;
-    sums.add_interval(piece.start, length, depth[0], depth[1], depth[0] + lift[0], depth[1] + lift[1], given.hardness,
-                      excess);
+    sums.add_interval(at.start, length, at.depth[0], at.depth[1], at.groove[0], at.groove[1], given.hardness, excess);
     f.force += sums.force, f.moment += sums.moment;
     add_ends(sums.by_depth, piece.start, length, piece.depth);
     add_ends(sums.by_groove, piece.start, length, piece.groove);
@@ -166,6 +142,7 @@ struct CarvePoint::Passed {
     piece.excess = {lifted(0), lifted(1)};
     piece.hardness = {(sums.force - excess * piece.excess.force) / given.hardness,
                       (sums.moment - excess * piece.excess.moment) / given.hardness};
+    pieces.push_back(piece);
   }
 
   // Add the growth of `weight` times the depth of the base at ξ; returns that with ξ.
@@ -181,9 +158,13 @@ struct CarvePoint::Passed {
       by_place += section.rise[h] / section.cosine;
       by[BEVEL] -= weight * left * f.by_bevel[h];
       if (h == 0) by[BEVEL_WIDTH] -= weight * section.rise[0];
-      // the rounding's width, r cot(γ/2), falls with half the bevel
-      if (h == 1 && bevel_width > 0.0)
-        by[BEVEL] += 0.5 * weight * section.rise[1] * (given.radius + round_width * round_width / given.radius);
+      if (h == 0) continue;
+      // the rounding's width, r cot(γ/2), falls with half of γ
+      const double narrower =
+          0.5 * weight * section.rise[1] * (given.radius + round_width * round_width / given.radius);
+      if (bevel_width > 0.0) by[BEVEL] += narrower;
+      by[SIDE] += narrower - weight * left * f.by_side;
+      by[RADIUS] -= weight * section.rise[1] * round_width / given.radius;
     }
     return weight * by_place;
   }
@@ -195,7 +176,7 @@ struct CarvePoint::Passed {
     const double groove = piece.groove[1].sum(share);
     double by_length = piece.length.sum(share), share_of_next = 1.0;
     if (piece.cut) {
-      const double spacing = place[k + 1].value - piece.start;
+      const double spacing = place[k + 1] - piece.start;
       share_of_next = (piece.end - piece.start) / spacing;
       by_length += groove * piece.drop / spacing;
       by_place[k + 1] -= groove * piece.drop * share_of_next / spacing;
@@ -240,7 +221,7 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
     double by[NUMBERS] = {};  // growth of the sum with the section's own numbers
     for (std::size_t k = 0; k < places; k++) {
       if (!f.deepens[k]) continue;
-      if (back[k] != 0.0) by_place[k] += add_depth(f, back[k], place[k].value, by);
+      if (back[k] != 0.0) by_place[k] += add_depth(f, back[k], place[k], by);
       back[k] = 0.0;
     }
     if (f.touches) {
@@ -285,9 +266,9 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
     out.base_height[i] = -cosine * corner;
     out.deflection[i] = -cosine * corner;
     out.place[i] += corner * at.border[1];
-    out.edge_angle += angle + corner * sine * (s.base_height + f.deflection);
+    out.edge_angle += angle + corner * sine * section.height;
     out.hardness += by[HARDNESS], out.excess += by[EXCESS];
-    out.bevel += by[BEVEL], out.bevel_width += by[BEVEL_WIDTH];
+    out.bevel += by[BEVEL], out.bevel_width += by[BEVEL_WIDTH], out.side += by[SIDE], out.radius += by[RADIUS];
     by_state.border[0] += corner, by_state.border[1] += corner * s.place;
     for (int a = 0; a < 4; a++) by_state.u[std::size_t(s.first + BENDS[a])] -= cosine * s.deflection[a] * corner;
     for (int a = 0; a < 2 && given.twists; a++) by_state.u[std::size_t(s.first + TURNS[a])] += s.twist[a] * angle;
@@ -296,7 +277,7 @@ CarveGradient CarvePoint::Passed::backward(const CarveState& at, CarveState adjo
   if (reacts) out.load += mu[2] * stress, by_state.border[2] += mu[2] * given.load;
   double by_origins[OF_PLACES] = {};
   for (std::size_t k = 0; k < places; k++)
-    for (int m = 0; m < OF_PLACES; m++) by_origins[m] += by_place[k] * place[k].by[m];
+    for (int m = 0; m < OF_PLACES; m++) by_origins[m] += by_place[k] * origin[k].by[m];
   through_places(out, by_origins);
   out.adjoint = std::move(adjoint);
   return out;
@@ -311,9 +292,12 @@ void CarvePoint::Passed::through_places(CarveGradient& out, const double (&by)[O
   if (given.edge_angle > SHALLOWEST_WEDGE) out.edge_angle -= 0.5 * by_line * line * (1.0 + tangent * tangent) / tangent;
   out.greatest_width += by[REACH] * cosine;
   out.bevel_width += by[BEVEL_END] * cosine;
-  if (round_width > 0.0) {  // r cot(γ/2) falls with half the bevel
-    const double cotangent = round_width / given.radius;
-    out.bevel -= by[ROUND_END] * cosine * 0.5 * given.radius * (1.0 + cotangent * cotangent);
+  if (round_width > 0.0) {  // r cot(γ/2) falls with half of γ
+    const double cotangent = round_width / given.radius, end = by[ROUND_END] * cosine;
+    const double narrower = 0.5 * end * given.radius * (1.0 + cotangent * cotangent);
+    if (bevel_width > 0.0) out.bevel -= narrower;
+    out.side -= narrower;
+    out.radius += end * cotangent;
   }
   out.edge_angle -= (by[REACH] * ski.greatest_width + by[BEVEL_END] * bevel_width + by[ROUND_END] * round_width) * sine;
 }

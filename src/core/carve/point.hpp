@@ -15,7 +15,8 @@ struct CarveGradient {
   // one for each station: its place, length, width, base height, deflection; and its load normal to the base (N)
   std::vector<double> place, weight, width, base_height, deflection, normal;
   double edge_angle = 0.0, hardness = 0.0, excess = 0.0, load = 0.0, moment = 0.0, side_force = 0.0, bevel = 0.0,
-         bevel_width = 0.0, pitch_of_force = 0.0, pitch_of_shear = 0.0, running_length = 0.0, greatest_width = 0.0;
+         bevel_width = 0.0, pitch_of_force = 0.0, pitch_of_shear = 0.0, running_length = 0.0, greatest_width = 0.0,
+         side = 0.0, radius = 0.0;
   CarveState adjoint;
 };
 

@@ -40,14 +40,7 @@ struct Conditions {
         shears(c.side_force_bending),
         twists(c.twists),
         by_reaction(c.by_reaction),
-        edges(bevel, bevel_width, T(c.side), T(c.radius)) {}
-};
-
-template <class T>
-struct Station {
-  T place, weight, half, base_height, deflection[4];
-  const double* twist;
-  std::size_t first;
+        edges(bevel, bevel_width, number(c.side, &CarveDirection::side), number(c.radius, &CarveDirection::radius)) {}
 };
 
 // A pass from tip to tail. `residual` begins with the beam's elastic forces.
@@ -58,68 +51,50 @@ class Residual {
            std::vector<T> elastic)
       : residual(std::move(elastic)),
         given_(given),
+        boot_(CarveBoot<T>::at(given.edge_angle, border, given.twists)),
+        stress_(border[2]),
         place_(std::move(place)),
         groove_(place_.size(), T(FAR_ABOVE)),
         u_(std::move(u)) {
-    std::copy_n(border, CARVE_BORDER, at_);
-    this->border[0] -= given.load, this->border[1] -= given.moment, this->border[2] -= given.side_force;
-    if (given.by_reaction) this->border[2] += at_[2] * given.load;
+    subtract_loads(given, stress_, this->border);
   }
 
   std::vector<T> residual, depth, force;
   T border[CARVE_BORDER] = {};
 
   // `event`: takes how far a station is from touching the snow, or from deepening the groove
-  void add(const Station<T>& s, const auto& event) {
-    using std::cos;
-    using std::sin;
-    const T zero(0.0), sine = sin(given_.edge_angle), cosine = cos(given_.edge_angle);
-    T deflection(0.0), angle = given_.edge_angle;
-    for (std::size_t a = 0; a < 4; a++) deflection += s.deflection[a] * u_[s.first + std::size_t(BENDS[a])];
-    for (std::size_t a = 0; a < 2 && given_.twists; a++) angle += T(s.twist[a]) * u_[s.first + std::size_t(TURNS[a])];
-    const T turned_sine = sin(angle), turned_cosine = cos(angle);
-    const T corner = at_[0] + at_[1] * s.place - cosine * (s.base_height + deflection) + s.half * turned_sine;
-    SnowSection<T> section{.half = s.half,
-                           .sine = turned_sine,
-                           .cosine = turned_cosine,
-                           .tangent = turned_sine / turned_cosine,
-                           .corner = corner,
-                           .depth = corner,
-                           .reach = T(2.0) * s.half * turned_cosine};
+  void add(const StationOf<T>& s, const auto& event) {
+    const T zero(0.0);
+    SnowSection<T> section = boot_.section(s, u_.data() + s.first);
     if (given_.edges.acts()) section.grind(given_.edges);
-    const auto sums = strip_across<T>(section, place_, groove_, given_.hardness, given_.excess);
-    for (std::size_t k = 0; k < place_.size(); k++) {
-      const T base = section.base_depth(place_[k]);
-      event(base - groove_[k]);
-      if (!(base < groove_[k])) groove_[k] = base;
-    }
+    find_depths(section, place_, base_);
+    Strip<T, WithoutGrowth> sums;
+    each_stretch(section, place_, base_, groove_, [&](const SnowStretch<T>& at) {
+      sums.add_interval(at.start, at.length, at.depth[0], at.depth[1], at.groove[0], at.groove[1], given_.hardness,
+                        given_.excess);
+    });
+    for (std::size_t k = 0; k < place_.size(); k++) event(base_[k] - groove_[k]);
+    deepen(base_, groove_, [](std::size_t) {});
     const T edge = section.depth, other = section.other_depth(), held = edge > zero ? edge : zero;
     event(edge);
-    const auto [bite, turned, normal, moment] = section_load<T>(
-        sums.force, sums.moment, given_.by_reaction, held, other > zero ? other : zero, given_.shears ? at_[2] : zero,
-        {sine, cosine}, {s.half * section.sine, s.half * section.cosine});
-    border[0] += s.weight * sums.force;
-    border[1] += s.weight * (given_.pitch_of_force * sums.force + given_.pitch_of_shear * at_[2] * bite) * s.place;
-    if (!given_.by_reaction) border[2] += s.weight * at_[2] * bite;
-    for (std::size_t a = 0; a < 4; a++)
-      residual[s.first + std::size_t(BENDS[a])] -= s.weight * s.deflection[a] * normal;
-    for (std::size_t a = 0; a < 2 && given_.twists; a++)
-      residual[s.first + std::size_t(TURNS[a])] -= s.weight * T(s.twist[a]) * moment;
+    const auto load = section_load<T>(sums.force, sums.moment, given_.by_reaction, held, other > zero ? other : zero,
+                                      given_.shears ? stress_ : zero, {boot_.sine, boot_.cosine},
+                                      {s.half_width * section.sine, s.half_width * section.cosine});
+    add_load(given_, s, load, sums.force, stress_, border, residual.data() + s.first);
     depth.push_back(edge), force.push_back(sums.force);
   }
 
  private:
   const Conditions<T>& given_;
-  std::vector<T> place_, groove_, u_;
-  T at_[CARVE_BORDER];
+  const CarveBoot<T> boot_;
+  const T stress_;
+  std::vector<T> place_, groove_, u_, base_;
 };
 
 template <class T>
 std::vector<T> elastic_forces(const CarvedSki& ski, const std::vector<T>& u) {
   std::vector<T> out(std::size_t(ski.size), T(0.0));
-  for (int i = 0; i < ski.size; i++)
-    for (int k = std::max(0, BAND_HALF - i); k < CARVE_BAND; k++)
-      out[std::size_t(i)] += T(ski.stiffness[std::size_t(CARVE_BAND * i + k)]) * u[std::size_t(i + k - BAND_HALF)];
+  find_elastic_forces(ski, u, out.data());
   return out;
 }
 
@@ -133,9 +108,10 @@ std::vector<Growing> growing_places(const CarvedSki& ski, const CarveConditions&
       (along.load / at.load - along.hardness / at.hardness - along.running_length / ski.running_length - steeper);
   const double cosine = std::cos(at.edge_angle), turn = -std::sin(at.edge_angle) * along.edge_angle;
   const double width = at.bevel > 0.0 ? at.bevel_width : 0.0, round = at.edges().width(1);
-  // r cot(γ/2) falls with half the bevel
+  // r cot(γ/2) falls with half of γ, the angle between base and side
+  const double sharper = along.side + (width > 0.0 ? along.bevel : 0.0);
   const double round_growth =
-      round > 0.0 && width > 0.0 ? -0.5 * along.bevel * (at.radius + round * round / at.radius) : 0.0;
+      round > 0.0 ? (along.radius * round - 0.5 * sharper * (at.radius * at.radius + round * round)) / at.radius : 0.0;
   const Growing hinges[] = {
       growing(width * cosine, width > 0.0 ? along.bevel_width * cosine + width * turn : 0.0),
       growing(round * cosine, round_growth * cosine + round * turn),
@@ -154,7 +130,7 @@ void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, co
   const Long border[] = {at.border[0], at.border[1], at.border[2]};
   Residual<Long> sum(given, {place.begin(), place.end()}, u, border, elastic_forces(ski, u));
   for (const CarveStation& s : ski.stations) {
-    Station<Long> station{s.place, s.weight, s.half_width, s.base_height, {}, s.twist, std::size_t(s.first)};
+    StationOf<Long> station{s.place, s.weight, s.half_width, s.base_height, {}, {s.twist[0], s.twist[1]}, s.first};
     std::copy_n(s.deflection, 4, station.deflection);
     sum.add(station, [](Long) {});
   }
@@ -185,13 +161,13 @@ CarveGrowth growth_along(const CarvedSki& ski, const CarveConditions& conditions
   };
   for (std::size_t i = 0; i < ski.stations.size(); i++) {
     const CarveStation& s = ski.stations[i];
-    Station<Growing> station{growing(s.place, of(along.place, i)),
-                             growing(s.weight, of(along.weight, i)),
-                             growing(s.half_width, 0.5 * of(along.width, i)),
-                             growing(s.base_height, of(along.base_height, i)),
-                             {},
-                             s.twist,
-                             std::size_t(s.first)};
+    StationOf<Growing> station{growing(s.place, of(along.place, i)),
+                               growing(s.weight, of(along.weight, i)),
+                               growing(s.half_width, 0.5 * of(along.width, i)),
+                               growing(s.base_height, of(along.base_height, i)),
+                               {},
+                               {s.twist[0], s.twist[1]},
+                               s.first};
     for (int a = 0; a < 4; a++)  // the shapes of slopes are as long as the element
       station.deflection[a] = growing(s.deflection[a], a % 2 == 1 ? s.deflection[a] * of(along.stretch, i) : 0.0);
     sum.add(station, event);

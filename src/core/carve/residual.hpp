@@ -76,23 +76,6 @@ inline constexpr int WIDTH<Slopes<N>> = 1;
 template <>
 inline constexpr int WIDTH<long double> = 1;
 
-// [across] Over all places; `groove`: depth at each.
-template <class T>
-Strip<T, WithoutGrowth> strip_across(const SnowSection<T>& section, const std::vector<T>& place,
-                                     const std::vector<T>& groove, const T& hardness, const T& excess) {
-  Strip<T, WithoutGrowth> out;
-  const T zero(0.0), reach = section.reach;
-  for (std::size_t k = 0; k + 1 < place.size(); k++) {
-    const T start = place[k], length = (place[k + 1] < reach ? place[k + 1] : reach) - start;
-    if (!(length > zero)) break;
-    const T depth[2] = {section.base_depth(start), section.base_depth(start + length)};
-    if (!(depth[0] > zero) && !(depth[1] > zero)) continue;
-    const T end = groove[k] + length / (place[k + 1] - start) * (groove[k + 1] - groove[k]);
-    out.add_interval(start, length, depth[0], depth[1], groove[k], end, hardness, excess);
-  }
-  return out;
-}
-
 // Residual of all equations, depth and force in more digits than they are solved in, rounded at the end into `system`.
 void refine_residual(const CarvedSki& ski, const CarveConditions& conditions, const std::vector<double>& place,
                      const CarveState& at, CarveEquations& system);
@@ -103,7 +86,8 @@ struct CarveDirection {
   std::vector<double> place, weight, width, base_height, stretch;
   Column bent;  // growth of the beam's elastic forces at the same unknowns
   double edge_angle = 0.0, hardness = 0.0, excess = 0.0, load = 0.0, moment = 0.0, side_force = 0.0, bevel = 0.0,
-         bevel_width = 0.0, pitch_of_force = 0.0, pitch_of_shear = 0.0, running_length = 0.0, greatest_width = 0.0;
+         bevel_width = 0.0, pitch_of_force = 0.0, pitch_of_shear = 0.0, running_length = 0.0, greatest_width = 0.0,
+         side = 0.0, radius = 0.0;
   CarveState state;  // empty for none
 };
 

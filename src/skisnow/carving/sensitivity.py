@@ -43,12 +43,13 @@ AT_KINK: Final = 1e-6
 _BESIDE: Final = 1e-9  # relative change of the parameter, behind twice the distance, at which they are taken
 _IN_CONDITIONS: Final = (
     "edge_angle", "hardness", "excess", "load", "moment", "side_force", "bevel", "bevel_width", "pitch_of_force",
-    "pitch_of_shear",
+    "pitch_of_shear", "side", "radius",
 )  # fmt: skip
-"""Numbers of the core that are conditions, in their order."""
+"""Numbers of the core that are conditions, in its order but for the two that follow the pitch."""
 _ANGLE, _HARDNESS, _EXCESS, _LOAD, _MOMENT, _SIDE_FORCE, _BEVEL, _BEVEL_WIDTH, _PITCH, _PITCH_OF_SHEAR = range(10)
-_WIDEST: Final = 11
-_OF_SHAPE: Final = [10, _BEVEL, _BEVEL_WIDTH]  # numbers of the core that are of the ski: those of `TableGrowth`
+_RUNNING, _WIDEST, _SIDE, _RADIUS, _COUNT = range(10, 15)
+_OF_CONDITIONS: Final = [*range(_RUNNING), _SIDE, _RADIUS]
+_OF_SHAPE: Final = [_RUNNING, _BEVEL, _BEVEL_WIDTH, _SIDE, _RADIUS]  # of the ski: those of `TableGrowth`
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +226,7 @@ class CarveDerivatives:
         """The derivatives with a parameter changed a little."""
         request, direction = self.request, self._direction(name)
         given, model = request.conditions, request.model
-        numbers = zip(_IN_CONDITIONS, direction.numbers[: len(_IN_CONDITIONS)], strict=True)
+        numbers = zip(_IN_CONDITIONS, direction.numbers[_OF_CONDITIONS], strict=True)
         given = given._replace(**{key: getattr(given, key) + change * float(growth) for key, growth in numbers})
         if given.excess < 0.0 or given.edge_angle < 0.0:
             return None
@@ -380,13 +381,13 @@ class CarveDerivatives:
             else:
                 request = self.request
                 shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
-                numbers = np.zeros(12)
-                numbers[[10, _WIDEST, _BEVEL, _BEVEL_WIDTH]] = shape.numbers
+                numbers = np.zeros(_COUNT)
+                numbers[[_RUNNING, _WIDEST, *_OF_SHAPE[1:]]] = shape.numbers
                 self._directions[name] = _Direction(numbers, 0.0, shape)
         return self._directions[name]
 
     def _of_conditions(self, name: str) -> _Direction:
-        conditions, numbers, strength = self.request.conditions, np.zeros(12), 0.0
+        conditions, numbers, strength = self.request.conditions, np.zeros(_COUNT), 0.0
         turns = conditions.side_force > 0.0
         if name == "edge_angle_deg":
             numbers[_ANGLE] = DEGREE

@@ -44,7 +44,7 @@ class Shape:
     stiffness
         EI and GJ at the Gauss points of each element, shape (2, n, 4).
     numbers
-        Running length, greatest width at the stations, base bevel, edge width.
+        Running length, greatest width at the stations, base bevel, edge width, angle of the side, radius of the edge.
     moves, widens, stiffens
         Whether nodes, sections and stiffnesses grow at all.
     """
@@ -156,8 +156,7 @@ def _fixed_shape(growth: TableGrowth, station: bytes, clamp_length: float, eleme
     sections = mesh.stations.along(tables[1:3]) if widens else np.zeros((2, stations))
     gauss = mesh.gauss.along(tables[3:]) if stiffens else np.zeros((2, len(mesh.gauss.row)))
     stiffness = gauss.reshape(2, -1, len(GAUSS_POINTS))
-    running_length, bevel, edge_width = growth.numbers
-    numbers = np.array([running_length, sections[0, widest], bevel, edge_width])
+    numbers = np.insert(growth.numbers, 1, sections[0, widest])
     none = np.zeros(len(mesh.node))
     return Shape(
         none, none[1:], np.zeros(stations), sections, stiffness, numbers, moves=False, widens=widens, stiffens=stiffens

@@ -27,7 +27,7 @@ _LEAST_GAIN: Final = 1e-4  # relative, of the result, for another run
 _MOST_TRIALS: Final = 4  # trials of a line search: further ones would only creep up to a kink
 _MOST_RUNS: Final = 4  # of SLSQP, each from the end of the one before
 _NEAREST_FTOL: Final = 1e-8  # of changes, and of relative deviations where all targets are reached
-_PERCENT: Final = 1e4  # squares of deviations count in %
+PERCENT: Final = 1e4  # squares of deviations count in %
 _BROKEN: Final = 1e9  # value of a design that breaks a limit: above that of each that keeps them
 _MOST_ITERATIONS: Final = 60
 
@@ -77,7 +77,7 @@ class Search:
             squares = [float(np.mean(self.deviations(goal, z) ** 2)) for goal in self.targets if goal.over == "mean"]
         except SolverError:
             return _NO_SKI
-        return _PERCENT * (sum(squares) + float(slack @ slack))
+        return PERCENT * (sum(squares) + float(slack @ slack))
 
     def gradient(self, x: FloatArray) -> FloatArray:
         """Gradient of the objective."""
@@ -86,7 +86,7 @@ class Search:
             if goal.over == "mean":
                 deviations = self.deviations(goal, z)
                 out[: self.count] += 2.0 * deviations @ self.deviation_growth(goal, z) / len(deviations)
-        return _PERCENT * out
+        return PERCENT * out
 
     def constraints(self, *, exact: bool = False) -> list[dict[str, Any]]:
         """Limits, linear constraints, slacks; `exact`: all targets as equalities."""

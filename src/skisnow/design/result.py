@@ -19,7 +19,7 @@ from ..carving.outputs import OUTPUTS
 from ..ski import Ski
 from ..ski.ski_file import keys_text, ski_of_keys
 from .evaluation import carve_at
-from .problem import REACHED, Search, linear_constraints
+from .problem import PERCENT, REACHED, Search, linear_constraints
 
 _AT_BOUND: Final = 1e-6  # of the distance of the bounds
 _SAME_RESULT: Final = 0.02  # relative, of squares, of two starts that reached the same optimum
@@ -275,7 +275,7 @@ def _optima(search: Search, starts: tuple[Start, ...]) -> tuple[Optimum, ...]:
     optima: list[tuple[Start, int]] = []
     for start in sorted((start for start in starts if start.end is not None), key=lambda each: each.result):
         for n, (first, count) in enumerate(optima):
-            near = abs(start.result - first.result) <= _SAME_RESULT * abs(first.result) + 1e-12
+            near = abs(start.result - first.result) <= _SAME_RESULT * abs(first.result) + PERCENT * REACHED**2
             if near and np.max(np.abs(np.subtract(start.end, first.end))) <= _SAME_DESIGN:  # type: ignore[arg-type]
                 optima[n] = (first, count + 1)
                 break

@@ -161,10 +161,13 @@ FACTORS: Final = tuple(f"edit.{column}" for column in (SIDECUT, *EDITED_COLUMNS)
 """Factors of whole curves, as in `SkiEdit`; the rest of the ski is held."""
 LINEAR: Final = ("tip_width_mm", "waist_width_mm", "tail_width_mm", "camber_mm", "base_bevel_deg", "edge_width_mm")
 """Keys in which the ski's tables are linear."""
-_WITHOUT: Final = ("mass_kg", "side_edge_deg", "edge_radius_mm")  # no part in a carve, or no derivative
+VALUES: Final = tuple(f"edit.{column}[{row}]" for column in EDITED_COLUMNS for row in range(1, 10))
+"""Values of curves at the `edit_stations`, in the units of their names; other values and curves are held."""
+_WITHOUT: Final = ("mass_kg",)  # no part in a carve
+_NO_FALL: Final = ("base_bevel_deg", "edge_radius_mm")  # no derivative at 0
 _TABLES: Final = ("station", "width", "base_height", "bending_stiffness", "torsional_stiffness")
-_NUMBERS: Final = ("running_length", "base_bevel", "edge_width")
-_ROW: Final = re.compile(r"(\w+)\[(\d+)\]")
+_NUMBERS: Final = ("running_length", "base_bevel", "edge_width", "side_edge", "edge_radius")
+_ROW: Final = re.compile(r"(?:edit\.)?(\w+)\[(\d+)\]")
 
 
 @functools.lru_cache(maxsize=64)
@@ -175,13 +178,16 @@ def shape_parameters(ski: Ski) -> tuple[str, ...]:
         if key in LISTS and isinstance(value, list | tuple):
             numbers += [f"ski.{key}[{row}]" for row in range(1, len(value) + 1)]
         elif isinstance(value, int | float) and not isinstance(value, bool) and key not in _WITHOUT:
-            numbers += [] if key == "base_bevel_deg" and value == 0 else [f"ski.{key}"]  # it cannot fall
+            numbers += [] if key in _NO_FALL and value == 0 else [f"ski.{key}"]
     default = ["ski.boot_position_mm"] if ski.keys and "boot_position_mm" not in ski.keys else []
     return (*numbers, *default, *FACTORS)
 
 
 def shape_value(ski: Ski, name: str) -> float:
     """Value of a parameter, in the unit of the file; 1 of a factor."""
+    if name in VALUES:
+        column, row = _column_and_row(name)
+        return float(values_at(ski, edit_stations(ski))[column][row]) / COLUMNS[column].factor
     allowed = shape_parameters(ski)
     if name not in allowed:
         if ski.keys is None and name.startswith("ski."):
@@ -193,6 +199,13 @@ def shape_value(ski: Ski, name: str) -> float:
             "unknown_name", name=name, allowed=suggest_and_list(name, allowed)
         )
     return 1.0 if name in FACTORS else _key_value(ski.keys or {}, name.removeprefix("ski."))
+
+
+def _column_and_row(name: str) -> tuple[str, int]:
+    """Column and row, from 0, of a name of `VALUES`."""
+    row = _ROW.fullmatch(name)
+    assert row is not None
+    return row[1], int(row[2]) - 1
 
 
 def _key_value(keys: Mapping[str, Any], place: str) -> float:
@@ -221,7 +234,7 @@ class TableGrowth:
     """Growth of a ski with a parameter, SI per its unit, on rows that move with it.
 
     tables: of station, width, base height, EI and GJ, shape (5, rows).
-    numbers: of running length, base bevel, edge width.
+    numbers: of running length, base bevel, edge width, angle of the side, radius of the edge.
     """
 
     tables: FloatArray
@@ -230,7 +243,7 @@ class TableGrowth:
 
 _PARTS: Final = ("width", "base_height", *STIFFNESSES)
 _LENGTHS: Final = ("length_mm", "running_length_mm", "sidecut_length_mm", "tail_overhang_mm", "boot_position_mm")
-_OF_NUMBERS: Final = ("running_length_mm", "base_bevel_deg", "edge_width_mm")
+_OF_NUMBERS: Final = ("running_length_mm", "base_bevel_deg", "edge_width_mm", "side_edge_deg", "edge_radius_mm")
 """Keys of `_NUMBERS`."""
 _LENGTH_STEP: Final = 1e-3  # mm; of other keys a ten thousandth
 
@@ -238,11 +251,8 @@ _LENGTH_STEP: Final = 1e-3  # mm; of other keys a ten thousandth
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
     """Growth of a ski with a parameter of `shape_parameters`, of lengths and heights by central differences."""
-    if name in FACTORS:
-        column = name.removeprefix("edit.")
-        if column == SIDECUT:
-            return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
-        return _of_table(EDITED_COLUMNS[column], np.asarray(getattr(ski, EDITED_COLUMNS[column])))
+    if name in (*FACTORS, *VALUES):
+        return _of_edit(ski, name.removeprefix("edit."))
     memos, table = _growth_caches(ski), _table_of(name)
     memo = memos.get(table, {})
     if name in memo:
@@ -268,9 +278,23 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
 
 @functools.lru_cache(maxsize=64)
 def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
-    """Tables (n, 5, rows) and numbers (n, 3) of the growths with parameters."""
+    """Tables (n, 5, rows) and numbers (n, 5) of the growths with parameters."""
     growths = [table_growth(ski, name) for name in names]
     return np.array([growth.tables for growth in growths]), np.array([growth.numbers for growth in growths])
+
+
+def _of_edit(ski: Ski, name: str) -> TableGrowth:
+    """Growth with a factor, or with the value of a curve at one of the `edit_stations`."""
+    if name == SIDECUT:
+        return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
+    if name in EDITED_COLUMNS:
+        return _of_table(EDITED_COLUMNS[name], np.asarray(getattr(ski, EDITED_COLUMNS[name])))
+    column, row = _column_and_row(name)
+    stations, unit = edit_stations(ski), COLUMNS[column].factor
+    share, table = StationTable(stations, np.eye(len(stations))[row]).at(ski.station), EDITED_COLUMNS[column]
+    if column == "base_height_mm":
+        return _of_table(table, unit * (share - np.interp(0.0, ski.station[::-1], share[::-1])))
+    return _of_table(table, unit * share * np.asarray(getattr(ski, table)) / values_at(ski, stations)[column][row])
 
 
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
@@ -397,6 +421,11 @@ def varied_ski(ski: Ski, name: str, change: float) -> Ski:
         column = name.removeprefix("edit.")
         edit = SkiEdit(edit_stations(ski), {column: value})
         return edited_ski(ski, edit, name=ski.name, source=ski.source)
+    if name in VALUES:
+        (column, row), stations = _column_and_row(name), edit_stations(ski)
+        values = np.full(len(stations), np.nan)
+        values[row] = value * COLUMNS[column].factor
+        return edited_ski(ski, SkiEdit(stations, values={column: values}), name=ski.name, source=ski.source)
     parsed_keys(ski)
     return ski_of_keys(changed_keys(ski.keys or {}, {name.removeprefix("ski."): value}), like=ski)
 
