@@ -249,7 +249,4 @@ def test_modules_are_imported_by_name_in_few_places() -> None:
         for path in PACKAGE.rglob("*.py")
         if re.search(r"\b(import_module|__import__)\(", path.read_text(encoding="utf-8"))
     }
-    assert {place for place in places if not place.startswith("web/")} == {
-        "__init__.py",
-        "_support/environment.py",
-    }
+    assert {place for place in places if not place.startswith("web/")} == {"__init__.py", "_support/environment.py"}

@@ -271,9 +271,7 @@ def test_a_flag_that_was_added_is_reported_at_the_largest_load() -> None:
         (3.0, 2.0, []),
     ],
 )
-def test_creep_is_flagged_beyond_the_gauge_and_a_share_of_the_depth(
-    depth: float, after: float, codes: list[str]
-) -> None:
+def test_creep_beyond_the_gauge_and_a_share_of_the_depth(depth: float, after: float, codes: list[str]) -> None:
     campaign = campaign_of(GOOD, [(70.5, 0.5), (140.5, depth), (210.5, 4.0)])
     tests = present(campaign.penetration)
     add_creep = np.full(6, np.nan)

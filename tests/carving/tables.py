@@ -144,11 +144,7 @@ def mesh() -> dict[tuple[float, float], FloatArray]:
             off = 100.0 * (values[:-1] / values[-1] - 1.0)
             all_off[hardness, ratio] = off
             rows.append([f"{hardness:g}", f"{ratio:g}", *(f"{value:+.3f}" for value in off[MESHES.index(160)])])
-    table(
-        "mesh",
-        ["H_V (N/mm³)", "k_u/H_V", "R boot (%)", "R chord (%)", "greatest depth (%)", "contact (%)"],
-        rows,
-    )
+    table("mesh", ["H_V (N/mm³)", "k_u/H_V", "R boot (%)", "R chord (%)", "greatest depth (%)", "contact (%)"], rows)
     return all_off
 
 

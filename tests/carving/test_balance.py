@@ -73,12 +73,7 @@ def test_load_and_moment(angle_deg: float, ratio: float, moment: float, groove: 
 def test_a_moment_presses_the_tip_down() -> None:
     ahead, behind = (
         carve(
-            read_ski("slalom"),
-            snow(0.2),
-            edge_angle=math.radians(45.0),
-            load=800.0,
-            moment=moment,
-            unloading_ratio=1.0,
+            read_ski("slalom"), snow(0.2), edge_angle=math.radians(45.0), load=800.0, moment=moment, unloading_ratio=1.0
         )
         for moment in (40.0, -40.0)
     )

@@ -125,11 +125,7 @@ def residual(model: ClampedSki, given: Conditions, places: npt.NDArray[np.float6
         normal = cosine * force + sine * border[2] * bite
         turning = moment - half * np.cos(angle) * force - half * np.sin(angle) * border[2] * turned
         balance += weight * np.array(
-            [
-                force,
-                (given.pitch_of_force * force + given.pitch_of_shear * border[2] * bite) * place,
-                border[2] * bite,
-            ]
+            [force, (given.pitch_of_force * force + given.pitch_of_shear * border[2] * bite) * place, border[2] * bite]
         )
         np.subtract.at(out, dof[free], weight * (bends * normal + turns * turning))
     return np.concatenate([out, balance])

@@ -23,12 +23,7 @@ RATIOS = (1.0, 2.0, 5.0, 10.0, 50.0)
 
 def carved(ski: Ski, ratio: float, *, clamp: float = 0.0, angle_deg: float = 45.0) -> Equilibrium:
     return carve(
-        ski,
-        snow(0.2),
-        edge_angle=math.radians(angle_deg),
-        load=800.0,
-        unloading_ratio=ratio,
-        clamp_length=clamp,
+        ski, snow(0.2), edge_angle=math.radians(angle_deg), load=800.0, unloading_ratio=ratio, clamp_length=clamp
     )
 
 

@@ -43,10 +43,7 @@ NEITHER_WAY = "Give H_V_N_per_mm3 and S_f_N_per_mm2, or results, or published"
         (ASKED | {"H_V_N_per_mm3": 0.2}, coded("missing")),
         (ASKED | SNOW | {"site": "A"}, coded("contradiction")),
         (ASKED | {"published": "race-piste", "site": "A"}, coded("contradiction")),
-        (
-            SNOW | {"ski": "slalom", "load_N": 800.0, "unloading_ratio": 1.0},
-            coded("missing", name="edge_angle_deg"),
-        ),
+        (SNOW | {"ski": "slalom", "load_N": 800.0, "unloading_ratio": 1.0}, coded("missing", name="edge_angle_deg")),
         (
             {name: ASKED[name] for name in ("ski", "edge_angle_deg", "load_N")} | SNOW,
             coded("missing", name="unloading_ratio"),

@@ -166,9 +166,7 @@ def test_each_choice_is_in_force_and_named(capsys: Printed) -> None:
         assert (set(switched["twist_deg"]) == {0.0}) is (key == "twist")
 
 
-def test_snow_of_a_campaign_with_its_intervals(
-    tmp_path: Path, capsys: Printed, noted_errors: list[SkisnowError]
-) -> None:
+def test_snow_and_intervals_of_a_campaign(tmp_path: Path, capsys: Printed, noted_errors: list[SkisnowError]) -> None:
     from skisnow import read_snow
 
     rows = [{"used": True, "site": "A", "H_V_N_per_mm3": value} for value in (0.1, 0.4)]
@@ -186,9 +184,7 @@ def test_snow_of_a_campaign_with_its_intervals(
     assert (noted_errors[-1].code, "'A'" in str(noted_errors[-1])) == ("no_data", True)
 
 
-def test_stress_is_given_beside_a_campaign_exactly_where_it_has_none(
-    tmp_path: Path, capsys: Printed, noted_errors: list[SkisnowError]
-) -> None:
+def test_a_campaign_without_stress_needs_one(tmp_path: Path, capsys: Printed, noted_errors: list[SkisnowError]) -> None:
     rows = [{"used": True, "site": site, "H_V_N_per_mm3": 0.2} for site in ("site A", "B")]
     shear = [{"used": True, "site": "B", "S_f_N_per_mm2": 0.4}]
     path = tmp_path / "results.json"

@@ -138,9 +138,7 @@ def test_two_runs_through_one_course_are_compared_gate_by_gate(straight: Path, t
     assert "0.25 s behind" not in (out / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_gpx_beside_a_run_names_what_is_missing_and_has_no_digits_that_nobody_measured(
-    tmp_path: Path, capsys: Printed
-) -> None:
+def test_a_gpx_beside_a_run_names_missing_columns_and_has_no_unmeasured_digits(tmp_path: Path, capsys: Printed) -> None:
     """A watch's places are known to metres: 12.3 m to the side is 12 m, 0.02 m is below a metre."""
     north = np.linspace(47.0, 47.0004, 21)  # 44.5 m
     rows = "".join(
@@ -189,11 +187,7 @@ def written_map_track(path: Path, azimuth: float, slope: float, along: Any, asid
 
 @pytest.mark.parametrize(
     ("azimuth", "slope", "side", "known"),
-    [
-        (130.0, 30.0, -1.0, "option"),
-        (250.0, 18.0, 1.0, "run"),
-        (80.0, 30.0, 1.0, "heights"),
-    ],
+    [(130.0, 30.0, -1.0, "option"), (250.0, 18.0, 1.0, "run"), (80.0, 30.0, 1.0, "heights")],
 )
 def test_a_run_on_a_slope_is_laid_on_the_map_before_it_is_fitted(
     azimuth: float, slope: float, side: float, known: str, tmp_path: Path, capsys: Printed
@@ -222,9 +216,7 @@ def test_a_run_on_a_slope_is_laid_on_the_map_before_it_is_fitted(
     assert f"{azimuth_found:.1f}°" in told
 
 
-def test_an_unknown_slope_and_a_slope_that_the_heights_contradict_are_warned_of(
-    tmp_path: Path, capsys: Printed
-) -> None:
+def test_warning_of_an_unknown_slope_and_of_one_that_heights_contradict(tmp_path: Path, capsys: Printed) -> None:
     along = np.linspace(0.0, 60.0, 151)
     aside = 5.0 * np.sin(along / 6.0) + 3.0 * np.cos(along / 11.0)
     run = write(tmp_path / "run.csv", np.column_stack([along, aside, 0.0 * along]))

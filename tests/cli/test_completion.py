@@ -226,7 +226,7 @@ def terminal(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
     return make
 
 
-def test_on_a_terminal_one_line_is_written_over(
+def test_a_terminal_has_one_line(
     clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]
 ) -> None:
     terminal(80)
@@ -236,9 +236,7 @@ def test_on_a_terminal_one_line_is_written_over(
     assert capsys.readouterr().err == ""
 
 
-def test_a_line_is_cut_to_the_terminal(
-    clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]
-) -> None:
+def test_a_line_is_cut(clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]) -> None:
     """A line of its whole width would wrap, and the next would leave it standing."""
     terminal(20)
     with Progress() as progress:
@@ -247,9 +245,7 @@ def test_a_line_is_cut_to_the_terminal(
     assert capsys.readouterr().err == f"\r{'y' * 18}…\r{' ' * 19}\r"
 
 
-def test_what_is_counted_says_how_long_it_takes(
-    clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]
-) -> None:
+def test_time_to_end(clock: list[float], capsys: pytest.CaptureFixture[str], terminal: Callable[[int], None]) -> None:
     """Two runs in four seconds: the eight that are left take sixteen."""
     terminal(80)
     with Progress() as progress:
@@ -263,9 +259,7 @@ def test_what_is_counted_says_how_long_it_takes(
     assert numbers == [[0, 10], [1, 10, 18], [2, 10, 16], [11, 10], []]
 
 
-def test_what_tells_nothing_of_itself_is_announced(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_silent_work_is_announced(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     with announced("quick"):
         pass
     with announced("slow", patience_s=0.0, usual_s=10.0):
@@ -278,9 +272,7 @@ def test_what_tells_nothing_of_itself_is_announced(
     assert capsys.readouterr().err == f"\r{text}\r{' ' * len(text)}\r"
 
 
-def test_a_program_that_reads_the_lines_has_them_at_once(
-    clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_lines_at_once(clock: list[float], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SKISNOW_PROGRESS_LINES", "1")
     said(clock, 1.0, 1.25, 1.5)
     assert len(capsys.readouterr().err.splitlines()) == 2

@@ -92,9 +92,7 @@ def test_a_missing_extra_is_named_with_its_installation(missing: Any, capsys: py
 
 
 @pytest.mark.parametrize("name", ["skisnow.web.server", "skisnow", None])
-def test_a_part_of_our_own_is_not_to_be_installed(
-    name: str | None, missing: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_module_of_skisnow_itself(name: str | None, missing: Any, capsys: pytest.CaptureFixture[str]) -> None:
     missing(name)
     assert main(["serve"]) != 0
     assert "pip install" not in capsys.readouterr().err
@@ -235,9 +233,7 @@ def test_a_fault_is_reported(
     assert str(noted_errors[-1]) in capsys.readouterr().err
 
 
-def test_an_interrupted_search_is_kept_and_gone_on_with(
-    tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_search_continues(tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch) -> None:
     straight_tracks.put(monkeypatch)
     track = straight_tracks.track(seed=1)
     path = tmp_path / "track.csv"

@@ -71,9 +71,7 @@ def test_check_of_a_ski_file_says_what_checks_it(tmp_path: Path, capsys: pytest.
     assert "carve --ski" not in capsys.readouterr().out
 
 
-def test_analyse_rejects_a_campaign_with_errors_and_writes_nothing(
-    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_campaign_with_errors_is_rejected(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (campaign / "shear.csv").write_bytes(b"")
     assert main(["analyse", str(campaign), "--out", str(tmp_path / "out"), "--json"]) == 1
     printed = capsys.readouterr()
@@ -82,9 +80,7 @@ def test_analyse_rejects_a_campaign_with_errors_and_writes_nothing(
     assert not (tmp_path / "out").exists()
 
 
-def test_analyse_prints_json_alone_and_writes_nothing_without_out(
-    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_analyse_without_out_prints_json(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = files_below(tmp_path)
     assert main(["analyse", str(campaign), "--json", "--resamples", "100", "--seed", "7"]) == 0
     results = json.loads(capsys.readouterr().out)
@@ -175,9 +171,7 @@ def test_help_imports_nothing_heavy() -> None:
     assert done.returncode == 0, done.stderr
 
 
-def test_a_place_that_cannot_be_written_is_a_sentence(
-    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_place_that_cannot_be_written(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A file stands where the folder should be."""
     (tmp_path / "out").write_text("a file", encoding="utf-8")
     assert main(["analyse", str(campaign), "--out", str(tmp_path / "out"), "--resamples", "100"]) == 1
@@ -205,9 +199,7 @@ def test_a_place_that_cannot_be_written_is_a_sentence(
         (["compare", "x", "y", "--fall-line-azimuth-deg=-1e9"], "from -360 to 360"),
     ],
 )
-def test_numbers_outside_their_range_are_rejected_at_once(
-    words: list[str], allowed: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_numbers_out_of_range_are_rejected(words: list[str], allowed: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stop:
         main(words)
     assert stop.value.code == 2
@@ -258,9 +250,7 @@ class TestLastResort:
         assert "Traceback" in capsys.readouterr().err
 
 
-def test_memory_that_does_not_suffice_is_a_sentence(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_too_little_memory_is_a_sentence(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     def run(_: object) -> int:
         raise MemoryError
 
@@ -294,9 +284,7 @@ def test_a_full_disk_behind_stdout_is_a_sentence() -> None:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_an_interrupted_rewrite_leaves_the_earlier_report_whole(
-    campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_rewrite_keeps_reports(campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out"
     assert main(["analyse", str(campaign), "--out", str(out), "--resamples", "100"]) == 0
     before = {name: (out / name).read_bytes() for name in files_below(out)}

@@ -182,9 +182,7 @@ def test_a_search_is_reported_and_written(tmp_path: Path, capsys: Printed) -> No
     assert json.loads(capsys.readouterr().out)["time_s"] == pytest.approx(found["time_s"], abs=1e-9)
 
 
-def test_variants_on_the_same_snows_without_the_search(
-    tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_variants_on_the_same_snows(tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cmaes", None)
     more = ("--evaluations", "1", "--against", "giant-slalom", "--worth", "--snows", "2", "--snow-spread", "0.2")
     assert race(tmp_path, *more) == 0
@@ -280,9 +278,7 @@ def test_window_and_noise_are_obeyed(turn: Path, capsys: Printed) -> None:
     assert (smoothing["window_s"], smoothing["place_noise_m"]) == (2.0, 0.05)
 
 
-def test_tracks_without_enough_points_are_rejected(
-    turn: Path, tmp_path: Path, noted_errors: list[SkisnowError]
-) -> None:
+def test_tracks_with_too_few_points_are_rejected(turn: Path, tmp_path: Path, noted_errors: list[SkisnowError]) -> None:
     short = tmp_path / "short.csv"
     short.write_text("\n".join(turn.read_text(encoding="utf-8").splitlines()[:5]) + "\n", encoding="utf-8")
     absent = tmp_path / "absent.csv"

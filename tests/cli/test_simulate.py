@@ -273,9 +273,7 @@ def test_an_open_balance_is_reported(tmp_path: Path, capsys: Printed, replaced: 
     assert warned in page
 
 
-def test_progress_tells_the_real_time_factor(
-    capsys: Printed, replaced: Replaced, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_progress_has_a_real_time_factor(capsys: Printed, replaced: Replaced, monkeypatch: pytest.MonkeyPatch) -> None:
     now = 100.0
     monkeypatch.setitem(Progress.__init__.__kwdefaults__ or {}, "patience_s", 1.0)
     for module in ("simulate", "output"):
@@ -340,9 +338,7 @@ def test_bad_input_is_rejected(words: list[str], code: str, capsys: Printed, not
     assert noted_errors[-1].code == code
 
 
-def test_out_that_cannot_be_written_is_reported_before_the_work(
-    tmp_path: Path, capsys: Printed, replaced: Replaced
-) -> None:
+def test_out_that_cannot_be_written_is_rejected_first(tmp_path: Path, capsys: Printed, replaced: Replaced) -> None:
     def never(*_: object, **__: object) -> Run:
         raise AssertionError("simulated all the same")
 

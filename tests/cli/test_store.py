@@ -166,9 +166,7 @@ def test_a_check_that_breaks_is_reported(shell: Shell, folder: Path, monkeypatch
     assert "not checked" in shell.text("list")[0]
 
 
-def test_store_and_json_stand_before_the_action_or_behind_it(
-    folder: Path, place: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_store_and_json_before_or_after_actions(folder: Path, place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["store", "--store", str(place), "--json", "add", str(folder)]) == 0
     added = json.loads(capsys.readouterr().out)
     for words in (["--store", str(place), "list", "--json"], ["--json", "list", "--store", str(place)]):
@@ -210,9 +208,7 @@ def assert_read(folder: Path, *depths: float) -> None:
     assert [depth * 1000 for depth in tests.penetration_depth] == pytest.approx(depths)
 
 
-def test_a_campaign_of_lab_entries_is_listed_with_their_number_and_exported(
-    shell: Shell, place: Path, tmp_path: Path, folder: Path
-) -> None:
+def test_a_campaign_of_the_lab_is_listed_and_exported(shell: Shell, place: Path, tmp_path: Path, folder: Path) -> None:
     stored, lab = shell.json("add", folder), entered(place, "1.5", "2.25", "3")
     listed = shell.json("list")
     assert [each["id"] for each in listed["campaigns"]] == [stored["id"]]
@@ -228,9 +224,7 @@ def test_a_campaign_of_lab_entries_is_listed_with_their_number_and_exported(
     ]
 
 
-def test_export_of_lab_entries_never_overwrites_and_has_nothing_as_added(
-    shell: Shell, place: Path, tmp_path: Path
-) -> None:
+def test_export_of_lab_entries_never_overwrites_and_adds_nothing(shell: Shell, place: Path, tmp_path: Path) -> None:
     lab = entered(place, "1.5")
     out = tmp_path / "out"
     shell.text("export", lab, "--out", out, "--as-added", code=1)

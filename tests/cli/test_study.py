@@ -72,9 +72,7 @@ def test_a_map_in_german(which: str, tmp_path: Path) -> None:
 ANGLES = "{ from = 10, to = 60, n = 3 }"
 
 
-def test_study_of_errors_alone_exits_1_says_the_first_and_leaves_a_finished_table(
-    tmp_path: Path, capsys: Printed
-) -> None:
+def test_study_of_errors_alone_exits_1_names_the_first_and_has_its_table(tmp_path: Path, capsys: Printed) -> None:
     path = study_in(tmp_path / "a", SMALL)
     assert main(["study", str(path), "--workers", "1"]) == 0
     finished = (tmp_path / "a/tables/table.csv").read_bytes()

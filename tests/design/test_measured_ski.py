@@ -177,11 +177,7 @@ def test_the_command_writes_a_ski_that_is_read_again(tmp_path: Path, capsys: pyt
         ([["station_mm", "width_mm"], [0, ""]], {}, ("missing", {})),
         ([["station_mm", "width_mm"], *WIDTHS], {"stations_from": None}, ("missing", {})),
         ([["station_mm", "EI_N_m2"], [0, 100], [1, 90]], {}, ("missing", {})),
-        (
-            [["station_mm", "width_mm"], *((x, 0) for x, _ in WIDTHS)],
-            {"running_length": None},
-            ("invalid_ski", {}),
-        ),
+        ([["station_mm", "width_mm"], *((x, 0) for x, _ in WIDTHS)], {"running_length": None}, ("invalid_ski", {})),
     ],
 )
 def test_what_is_missing_or_wrong_is_named(

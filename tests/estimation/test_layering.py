@@ -169,9 +169,7 @@ def test_the_interval_of_all_readings_holds_the_truth_in_layered_snow(kappa: flo
     assert abs(model.log_hardness.mean() - math.log(0.1e9)) < 0.005
 
 
-def test_a_layered_series_is_flagged_and_takes_part_and_b_has_no_interval_with_errors_in_depth(
-    make_campaign: MakeCampaign,
-) -> None:
+def test_a_layered_series_is_flagged_and_used_and_b_then_has_no_interval(make_campaign: MakeCampaign) -> None:
     layers = layered_series(np.full(3, 0.05e9), 0.35, 0.0, 0.0).penetration_depth.reshape(3, 7) * 1e3
     even = layered_series(np.full(3, 0.05e9), 0.0, 0.002, 0.0).penetration_depth.reshape(3, 7) * 1e3
     rows = [

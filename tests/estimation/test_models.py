@@ -294,9 +294,7 @@ def test_rows_that_repeat_each_other_are_equal_and_not_a_rounding_apart(make_cam
 @pytest.mark.parametrize(
     ("angles_deg", "m", "chooses"), [((0.0, 45.0), 4, True), ((0.0, 45.0), 3, False), ((45.0,), 12, False)]
 )
-def test_a_law_is_chosen_from_four_series_at_two_angles_on(
-    angles_deg: tuple[float, ...], m: int, chooses: bool
-) -> None:
+def test_a_law_is_chosen_from_four_series_at_two_angles(angles_deg: tuple[float, ...], m: int, chooses: bool) -> None:
     readings = replace(simulated(5, angles_deg, m=m), edge_angle=np.radians(np.resize(angles_deg, m)))
     assert (reason_without_choice(readings) == "") == chooses
 
@@ -317,9 +315,7 @@ def _fit(rmse: float) -> ModelFit:
         ((10.0, 1e4), None, 0),
     ],
 )
-def test_only_the_selected_model_or_all_models_are_warned_of(
-    rmses: tuple[float, ...], selected: float | None, count: int
-) -> None:
+def test_warnings_of_the_selected_or_all_models(rmses: tuple[float, ...], selected: float | None, count: int) -> None:
     """Loads of 100 N: half of their root mean square is 50 N."""
     fits = tuple(map(_fit, rmses))
     warned = fit_warnings(fits, None if selected is None else _fit(selected), np.array([100.0, -100.0]))

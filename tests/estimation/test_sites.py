@@ -205,9 +205,7 @@ def test_regression_on_density_equals_a_line_by_numpy(make_campaign: MakeCampaig
 @pytest.mark.parametrize(
     ("density", "judged"), [([400, 450], False), ([400, 450, 520], False), ([400, 450, 520, 600], True)]
 )
-def test_a_predictor_of_fewer_than_four_values_is_not_judged(
-    make_campaign: MakeCampaign, density: list[int], judged: bool
-) -> None:
+def test_a_predictor_needs_four_values(make_campaign: MakeCampaign, density: list[int], judged: bool) -> None:
     """The slope stands; F and p are withheld with the reason, however clear the relation looks."""
     values = [density[i % len(density)] for i in range(12)]
     shear = [(f"s{i}", "AB"[i % 2], "blade", 90, 6, 250, d / 20 + 0.1 * i, d) for i, d in enumerate(values)]

@@ -400,9 +400,7 @@ def test_two_readings_have_no_interval_and_one_has_nothing(make_campaign: MakeCa
         assert row[SHEAR_DISPLACEMENT_INTERVAL] is None
 
 
-def test_a_snow_takes_the_shear_displacement_and_the_file_says_the_same(
-    make_campaign: MakeCampaign, tmp_path: Path
-) -> None:
+def test_a_snow_and_its_file_have_the_shear_displacement(make_campaign: MakeCampaign, tmp_path: Path) -> None:
     """Geometric mean of 1, 2 and 4 mm at site A: 2 mm."""
     rows = [row for name, way in (("S1", 1.0), ("S2", 2.0), ("S3", 4.0)) for row in turned(name, way)]
     pressed = [("P1", site, "ski", 30, load, load / 100) for site in ("A",) for load in (100, 200, 300)]

@@ -56,9 +56,7 @@ def test_at_five_degrees_the_base_goes_under_at_5_4_mm() -> None:
     length=st.floats(0.05, 2.0),
     width=st.floats(0.03, 0.1),
 )
-def test_volume_is_the_integral_of_depth_over_the_pressed_surface(
-    depth: float, angle: float, length: float, width: float
-) -> None:
+def test_volume_is_the_integral_of_depth_over_area(depth: float, angle: float, length: float, width: float) -> None:
     """Numerical integration of the base's depth below the surface, point by point across the ski."""
     across = (np.arange(20000) + 0.5) / 20000 * width
     below = np.maximum(depth - across * math.sin(angle), 0.0)
@@ -179,9 +177,7 @@ def test_one_place_is_enough() -> None:
         ([0.0, 1.0], [0.0], [[1.0, 2.0]], coded("wrong_shape", shape="(1, 2)", n_x=2, n_y=1)),
     ],
 )  # fmt: skip
-def test_an_invalid_grid_is_rejected(
-    x: list[float], y: list[float], values: list[list[float]], said: str | Coded
-) -> None:
+def test_invalid_grid_is_rejected(x: list[float], y: list[float], values: list[list[float]], said: str | Coded) -> None:
     with raises(ParameterError, said):
         Grid(np.asarray(x), np.asarray(y), np.asarray(values))
 

@@ -102,9 +102,7 @@ def test_shear_of_a_site_goes_along(campaign: Path, tmp_path: Path) -> None:
     assert stress.value == pytest.approx((here[0] + here[1]) / 2.0, rel=1e-3)
 
 
-def test_the_only_site_of_a_campaign_needs_no_name(
-    campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_only_site_needs_no_name(campaign: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "b.caaml"
     assert main(["convert", str(campaign), str(out)]) == 1
     assert "--site: A, B" in told(capsys)[1]

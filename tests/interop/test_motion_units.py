@@ -100,9 +100,7 @@ def test_quantities_among_the_points_are_omitted(tmp_path: Path, name: str) -> N
 
 
 @pytest.mark.parametrize("group", ["ANGLES", "FORCES", "MOMENTS", "POWERS", "REACTIONS", "SCALARS"])
-def test_quantities_of_the_lists_of_the_file_are_omitted(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], group: str
-) -> None:
+def test_quantities_of_its_lists_are_omitted(tmp_path: Path, capsys: pytest.CaptureFixture[str], group: str) -> None:
     capture(tmp_path / "a.c3d", {"LABELS": ["LHEE", "x1"], "UNITS": ["mm"], group: ["x1 "]})
     assert main(["convert", str(tmp_path / "a.c3d"), str(tmp_path / "a.trc")]) == 0
     assert "x1" in capsys.readouterr().err

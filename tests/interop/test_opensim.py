@@ -286,9 +286,7 @@ def test_markers_of_c3d(tmp_path: Path) -> None:
         read_c3d(tmp_path / "b.c3d")
 
 
-def test_c3d_is_written_and_read_back_with_the_bits_of_single_precision(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_c3d_is_read_back_with_the_bits_of_single_precision(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """By the command: markers that begin later, one not seen, and forces at twice their rate."""
     ezc3d = pytest.importorskip("ezc3d", reason="ezc3d is not installed: pip install 'skisnow[c3d]'")
     generator = np.random.default_rng(3)

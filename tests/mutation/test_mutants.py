@@ -9,15 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.mutation.__main__ import (
-    EQUIVALENTS,
-    changed_lines,
-    drawn,
-    files_of,
-    package_tests,
-    place_of,
-    verdicts,
-)
+from tests.mutation.__main__ import EQUIVALENTS, changed_lines, drawn, files_of, package_tests, place_of, verdicts
 from tests.mutation.mutants import Mutant, mutants
 from tests.mutation.reach import function_at, nearest, whole_time
 from tests.mutation.trial import CAUGHT, OUT_OF_TIME, SURVIVED, Trials, copied_tree

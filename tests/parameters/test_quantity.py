@@ -36,9 +36,7 @@ class Range:
         (Quantity("m", "mass", lowest=0.0, highest=5.0, above=True), (5.0, 1e-3), (0.0, 5.1), "above 0 to 5"),
     ],
 )
-def test_range_in_words_and_in_numbers(
-    quantity: Quantity, inside: tuple[float, ...], outside: tuple[float, ...], words: str
-) -> None:
+def test_range_in_words(quantity: Quantity, inside: tuple[float, ...], outside: tuple[float, ...], words: str) -> None:
     assert quantity.allowed == words
     assert [quantity.in_range(value) for value in inside] == list(inside)
     for value in outside:

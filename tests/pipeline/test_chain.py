@@ -57,9 +57,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[Scenario]:
     return scenarios
 
 
-def test_the_chain_asks_for_the_turn_with_each_contact_and_for_each_that_was_drawn(
-    analysis: Analysis, asked: list[Scenario]
-) -> None:
+def test_the_chain_simulates_each_contact_and_each_drawn_snow(analysis: Analysis, asked: list[Scenario]) -> None:
     said: list[str] = []
     turn = skisnow.load_scenario("carved-46m", changes=TURN)
     found = skisnow.turn(analysis, "C", turn, ski="carver", runs=4, seed=3, workers=1, progress=said.append)
@@ -434,9 +432,7 @@ def test_defaults_of_the_command_are_those_of_the_call() -> None:
     assert (defaults["runs"], defaults["unloading_ratio"], defaults["scenario"]) == (64, None, "carved-46m")
 
 
-def test_a_site_that_is_not_there_is_reported_before_the_analysis(
-    analysis: Analysis, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unknown_site_is_reported_before_the_analysis(analysis: Analysis, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline_turn, "analyse", lambda *_, **__: pytest.fail("analysed for nothing"))
     with raises(ParameterError, "no_data", site="Z"):
         skisnow.turn(analysis.campaign, "Z")

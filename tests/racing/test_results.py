@@ -50,9 +50,7 @@ OTHER = RacingLine(
         (4, 4, 1, [4], [4]),
     ],
 )
-def test_a_window_moves_on_to_the_last_gate(
-    gates: int, window: int, step: int, turns: list[int], searched: list[int]
-) -> None:
+def test_windows_reach_the_last_gate(gates: int, window: int, step: int, turns: list[int], searched: list[int]) -> None:
     """The whole, then so many gates behind each other, raced through two more; one evaluation each: where it begins."""
     found = raced(EASY, gates=gates, window=window, step=step, evaluations=1)
     assert [len(each.row["turns"]) for each in found.history] == turns

@@ -426,9 +426,7 @@ def test_results_json_is_that_of_the_estimates(reference: Reported) -> None:
     assert json.loads(text) == json.loads(json.dumps(reference.results))
 
 
-def test_the_same_results_give_the_same_bytes_whatever_the_user_has_set(
-    campaign: Campaign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_equal_results_give_equal_bytes(campaign: Campaign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The second time under other settings of the drawing library, which stay as they are."""
     written: list[str] = []
     said: list[str] = []

@@ -259,9 +259,7 @@ def test_the_figure_shows_each_site_with_mean_interval_and_letters(reference: Re
         np.testing.assert_allclose(ends, [each["interval"] for each in rows])
 
 
-def test_of_many_experiments_those_are_drawn_that_the_caption_says(
-    reference: Reported, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_of_many_experiments_those_it_names_are_drawn(reference: Reported, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.report.figures.style.MOST_POINTS", 30)
     data = ReportData(reference.analysis)
     drawing = sites(data, ())

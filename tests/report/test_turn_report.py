@@ -112,9 +112,7 @@ def test_parameters_are_in_the_units_of_the_field() -> None:
     assert stress[3] == pytest.approx((0.4, 0.6))
 
 
-def test_what_was_measured_beside_them_is_in_the_table_and_is_narrowed_by_further_readings(
-    chain: TurnChain,
-) -> None:
+def test_what_was_measured_beside_them_is_in_the_table_and_is_narrowed_by_further_readings(chain: TurnChain) -> None:
     snow = replace(
         SNOW,
         unloading_ratio=9.0,

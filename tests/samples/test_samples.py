@@ -56,9 +56,7 @@ def test_campaigns_have_the_errors_that_are_stated(samples: Path) -> None:
     assert errors("2024-01-12") == errors("campaign") == []
 
 
-def test_tracks_have_their_runs_lifts_and_gates(
-    samples: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_tracks_of_a_day(samples: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.track.path_estimate.EXCERPT", 60)  # a quarter of the time
     day = track_summary(read_track(samples / "day.gpx"))
     assert (len(day.day.runs), len(day.day.lifts)) == (3, 2)

@@ -187,9 +187,7 @@ MOT = "turn\nnRows=4\nEndHeader\n\ntime left_edge_angle_deg\n0 0\n1 10\n2 20\n3 
         (MOT, "a.trc", "wrong_ending"),
     ],
 )
-def test_tables_that_are_none_are_rejected_with_their_place(
-    tmp_path: Path, text: str, name: str, told: str | Coded
-) -> None:
+def test_invalid_tables_are_rejected_with_their_place(tmp_path: Path, text: str, name: str, told: str | Coded) -> None:
     with raises(ParameterError, told):
         read_boots(table(tmp_path, text, name))
 
@@ -230,7 +228,7 @@ def test_a_scenario_given_in_python_is_changed_as_a_file() -> None:
         ("distance_m", (-1.0, 1.0, 2.0, 9.5), {"run.length_m": 9.0}, ""),
     ],
 )
-def test_boots_that_rest_in_a_run_are_reported(
+def test_boots_at_rest_are_reported(
     tmp_path: Path, clock: str, rows: tuple[float, ...], end: dict[str, float], said: str
 ) -> None:
     path = table(tmp_path, f"{clock},left_up_m\n" + "".join(f"{at},0\n" for at in rows))

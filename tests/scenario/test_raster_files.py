@@ -330,7 +330,7 @@ def test_a_geotiff_that_would_be_misread_is_rejected(tif: Any, changes: dict[str
         (1, {"photometric": "PALETTE"}, False),
     ],
 )
-def test_only_one_band_can_be_the_heights(
+def test_the_band_of_heights(
     rasterio: Any, tmp_path: Path, count: int, form: dict[str, Any], *, readable: bool
 ) -> None:
     path, transform = tmp_path / "heights.tif", rasterio.Affine(2.0, 0.0, 500000.0, 0.0, -2.0, 5200000.0)

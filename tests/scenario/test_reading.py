@@ -162,9 +162,7 @@ def test_drag_acts_at_the_centre_of_mass_where_nothing_else_is_reported(tmp_path
     assert load_scenario(path).air.centre_of_pressure_height == 0.2
 
 
-def test_paths_start_at_the_files_folder_and_those_of_changes_at_the_current_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_paths_begin_at_the_file_and_those_of_changes_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "slope").mkdir()
     (tmp_path / "slope" / "down.csv").write_text(PROFILE, encoding="utf-8")
     path = written(tmp_path, replaced={"kind": 'kind = "profile"', "angle_deg": 'profile = "slope/down.csv"'})

@@ -13,13 +13,7 @@ from scipy.spatial.transform import Rotation
 from skisnow.scenario import Plane, Profile, RigidSledge
 from skisnow.simulation.run_setup import Setup, laid_out
 from skisnow.simulation.simulated_run import _groove
-from skisnow.simulation.sledge_body import (
-    SledgeInertia,
-    base_lateral,
-    base_normal,
-    rotation,
-    sledge_inertia,
-)
+from skisnow.simulation.sledge_body import SledgeInertia, base_lateral, base_normal, rotation, sledge_inertia
 from skisnow.simulation.static_start import _carried_across, no_start, weight_meets_base
 from skisnow.ski.beam import ClampedSki, beam_at, clamped, dense
 from tests.carving.synthetic import plain_ski, shovel
@@ -206,9 +200,7 @@ def test_in_soft_snow_and_flat_the_whole_base_carries() -> None:
         (0.79, 0.28, "at rest"),
     ],
 )
-def test_where_the_weight_passes_is_reported(
-    ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_place_of_the_weight_is_reported(ahead: float, left: float, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("skisnow.simulation.static_start.weight_meets_base", lambda _: (ahead, left))
     assert told in str(no_start(stood(12.5e6, 45.0)))
 

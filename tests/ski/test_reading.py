@@ -154,9 +154,7 @@ def test_one_stiffness_holds_everywhere(ski_file: Written) -> None:
         ({"shape": "no.json", "table": "no.csv"}, "cannot_read"),
     ],
 )
-def test_bad_files_name_file_key_value_and_remedy(
-    ski_file: Written, changes: dict[str, object], named: str | Coded
-) -> None:
+def test_errors_have_file_key_value_remedy(ski_file: Written, changes: dict[str, object], named: str | Coded) -> None:
     path = ski_file(**changes)
     with raises(ParameterError, named) as raised:
         read_ski(path)
@@ -185,9 +183,7 @@ def test_lengths_in_centimetres_are_rejected(ski_file: Written) -> None:
     ],
 )
 @pytest.mark.filterwarnings(IGNORE_RANGE_WARNING)
-def test_unusual_numbers_are_used_and_warned_of(
-    ski_file: Written, changes: dict[str, object], named: str | Coded
-) -> None:
+def test_warnings_of_unusual_numbers(ski_file: Written, changes: dict[str, object], named: str | Coded) -> None:
     path = ski_file(**changes)
     with warns(RangeWarning, named) as warned:
         ski = read_ski(path)

@@ -267,11 +267,7 @@ def test_heights_left_out_are_the_stated_defaults() -> None:
 
 def test_base_has_no_kink_also_with_rocker() -> None:
     shape = BaseShape(
-        camber=0.005,
-        tip_rocker_length=0.25,
-        tip_rocker_height=0.008,
-        tail_rocker_length=0.1,
-        tail_rocker_height=0.002,
+        camber=0.005, tip_rocker_length=0.25, tip_rocker_height=0.008, tail_rocker_length=0.1, tail_rocker_height=0.002
     )
     station = np.linspace(LAYOUT.tip, LAYOUT.tail, 100001)
     slope = np.diff(shape.height_at(station, LAYOUT)) / np.diff(station)

@@ -112,7 +112,7 @@ def test_coverage_with_few_unequal_clusters() -> None:
     assert classical / trials < 0.75
 
 
-def test_a_coefficient_of_one_cluster_has_no_interval() -> None:
+def test_one_cluster_has_no_interval() -> None:
     # a second level that only site b has: between sites nothing tells how it scatters
     x = np.array([0.0, 0, 0, 0, 0, 1, 1, 1])
     y = np.array([1.0, 2, 1, 2, 3, 5, 6, 4])
@@ -197,7 +197,7 @@ def test_small_scatter_needs_three() -> None:
     assert needed(0.02, ratio=0.8, power=0.9, alpha=0.01) == 3
 
 
-def test_numbers_of_tests_at_large_scatter_follow_the_normal_formula() -> None:
+def test_normal_counts_at_large_scatter() -> None:
     # n → 2 (z_0.975 + z_0.8)² (sd/ln ratio)², here far above a million
     expected = 2 * (1.959963984540054 + 0.8416212335729143) ** 2 * (50.0 / math.log(1.1)) ** 2
     assert needed(50.0) == pytest.approx(expected, rel=1e-4)

@@ -106,9 +106,7 @@ def test_tiny_and_huge_units_do_not_matter() -> None:
         assert float(welch_satterthwaite([1.0 * unit, 3.0 * unit], [2.0, 8.0])) == pytest.approx(16 / (1 / 2 + 9 / 8))
 
 
-@given(
-    st.lists(st.tuples(st.floats(1e-3, 1e3), st.floats(1.0, 100.0)), min_size=1, max_size=5),
-)
+@given(st.lists(st.tuples(st.floats(1e-3, 1e3), st.floats(1.0, 100.0)), min_size=1, max_size=5))
 def test_between_the_least_and_the_sum(parts: list[tuple[float, float]]) -> None:
     variances, dof = np.array(parts).T
     found = float(welch_satterthwaite(variances, dof))
@@ -116,7 +114,7 @@ def test_between_the_least_and_the_sum(parts: list[tuple[float, float]]) -> None
 
 
 @EXACT_QUANTILES
-def test_expanded_factors_of_elementary_distributions() -> None:
+def test_closed_expanded_factors() -> None:
     # t with 1 degree: tan(π c/2); with 2: c √(2/(1 - c²)); the limit: normal
     c = 0.9545
     found = expanded_factor([1.0, 2.0, np.inf], c)

@@ -151,9 +151,7 @@ def wampler5() -> tuple[FloatArray, FloatArray]:
 
 
 @pytest.mark.parametrize("data", [filip_like, wampler5])
-def test_every_linear_regression_warns_by_the_condition_number(
-    data: Callable[[], tuple[FloatArray, FloatArray]],
-) -> None:
+def test_each_linear_regression_warns_by_condition_number(data: Callable[[], tuple[FloatArray, FloatArray]]) -> None:
     y, X = data()
     regressions: tuple[Callable[[], object], ...] = (
         lambda: linear_fit(y, X),

@@ -160,9 +160,7 @@ def test_an_earlier_table_that_cannot_be_moved_is_reported(study_file: Path, mon
     assert read_study(study_file).out.read_bytes() == before
 
 
-def test_an_error_that_nobody_foresaw_is_the_reason_of_its_point(
-    study_file: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unforeseen_error_is_the_reason_of_its_point(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by nothing")
 
@@ -207,9 +205,7 @@ def test_no_workers_are_rejected_for_a_finished_study_too(study_file: Path) -> N
         (lambda _: ["station_mm,width_mm", "0,60", "10,61,3"], "wrong_kind"),
     ],
 )
-def test_damaged_table_is_reported_with_its_line(
-    study_file: Path, damage: Callable[[list[str]], list[str]], told: str | Coded
-) -> None:
+def test_damage_has_its_line(study_file: Path, damage: Callable[[list[str]], list[str]], told: str | Coded) -> None:
     study = read_study(study_file)
     run_study(study, workers=1)
     lines = study.out.read_text(encoding="utf-8").splitlines()

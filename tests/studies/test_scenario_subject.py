@@ -102,9 +102,7 @@ def test_bad_points_have_their_reason_and_stop_nothing(tmp_path: Path) -> None:
     assert table.rows[0]["sledge.mass_kg"] == 80.0
 
 
-def test_interruption_ends_the_study_not_the_point(
-    tmp_path: Path, replaced: Callable[[Callable[..., Run]], None]
-) -> None:
+def test_interruption_ends_the_whole_study(tmp_path: Path, replaced: Callable[[Callable[..., Run]], None]) -> None:
     study = read_study(study_file(tmp_path))
     asked: list[Scenario] = []
 

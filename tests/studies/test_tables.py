@@ -189,9 +189,7 @@ def test_large_table_is_read_as_it_is_used(study: Study, request: pytest.Fixture
     ],
 )
 @pytest.mark.usefixtures("large")
-def test_damaged_large_table_is_reported(
-    study: Study, damage: Callable[[list[str]], list[str]], told: str | Coded
-) -> None:
+def test_damage_of_a_large_table(study: Study, damage: Callable[[list[str]], list[str]], told: str | Coded) -> None:
     run_study(study, workers=1)
     lines = study.out.read_text(encoding="utf-8").splitlines()
     study.out.write_bytes(("\n".join(damage(lines)) + "\n").encode("utf-8", "surrogateescape"))

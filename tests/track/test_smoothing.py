@@ -236,10 +236,7 @@ def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
     return found
 
 
-@pytest.mark.parametrize(
-    ("period", "rate", "count"),
-    [(4.0, 1.0, 50), (17.0, 2.0, 100), (4.0, 10.0, 200)],
-)
+@pytest.mark.parametrize(("period", "rate", "count"), [(4.0, 1.0, 50), (17.0, 2.0, 100), (4.0, 10.0, 200)])
 def test_linked_turns_at_constant_speed(period: float, rate: float, count: int) -> None:
     """No maximum at an end, and no length below the polyline's."""
     place = linked_turns(period, rate=rate, count=count)

@@ -123,9 +123,7 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
     )
 
 
-def test_a_campaign_that_measured_the_unloading_gives_its_ratio_to_the_run_unless_one_is_typed(
-    lab: Lab, tmp_path: Path
-) -> None:
+def test_a_measured_unloading_ratio_is_that_of_the_run_unless_one_is_typed(lab: Lab, tmp_path: Path) -> None:
     skisnow.write_reference(tmp_path / "reference", seed=1)
     key = f"kept-{lab.store.add(tmp_path / 'reference').id}"
     analysis = campaign_snow(lab, key)

@@ -249,9 +249,7 @@ def test_what_was_entered_in_a_lab_on_a_server_outlives_the_lab(
 
 
 @pytest.mark.slow
-def test_nobody_comes_in_unencrypted_or_with_another_password(
-    group_server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_encryption_and_password_needed(group_server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from skisnow._support.errors import StoreError
 
     monkeypatch.setenv("PGPASSFILE", str(password_file(tmp_path, group_server)))

@@ -182,9 +182,7 @@ def test_half_typed_text_outlives_a_reload_and_a_restart(page: Page, served: Ser
 
 
 @pytest.mark.parametrize("was_stored", [pytest.param(False, marks=pytest.mark.slow), True])
-def test_a_test_that_was_sent_when_the_lab_was_killed_is_stored_once(
-    page: Page, served: Served, was_stored: bool
-) -> None:
+def test_a_test_sent_when_the_lab_was_killed_is_stored_once(page: Page, served: Served, was_stored: bool) -> None:
     """The answer does not come; Enter is pressed again by the page, and later text follows it."""
     opened(page, served, "?table=density.csv")
     page.keyboard.type("A\n310")

@@ -47,9 +47,7 @@ def unpacked(page: Page, folder: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_a_study_of_runs_is_cancelled_continues_and_outlives_its_server(
-    page: Page, served: Served, tmp_path: Path
-) -> None:
+def test_a_study_of_runs_is_cancelled_continues_after_a_restart(page: Page, served: Served, tmp_path: Path) -> None:
     ask(page, served, {f"{FIRST}: number of values": "20", "Ends after (s)": "0.3"}, of="carved-46m")
     page.locator(".card .progress", has_text=" of 20 points").wait_for(timeout=LONG_MS)
     page.get_by_role("button", name="Cancel").click()
@@ -88,9 +86,7 @@ def with_scheduler(tmp_path: Path) -> Iterator[tuple[Served, list[str]]]:
 
 
 @pytest.mark.slow
-def test_a_scheduler_computes_the_studies_of_the_lab(
-    page: Page, with_scheduler: tuple[Served, list[str]], tmp_path: Path
-) -> None:
+def test_a_scheduler_computes_the_studies(page: Page, with_scheduler: tuple[Served, list[str]], tmp_path: Path) -> None:
     served, (address,) = with_scheduler
     ask(page, served, {f"{FIRST}: number of values": "4"})
     page.get_by_text(f"The workers of {address} compute.").wait_for()

@@ -87,9 +87,7 @@ def test_what_is_rejected_is_shown_at_its_field_and_nothing_is_lost(page: Page, 
 
 
 @pytest.mark.parametrize("is_seen", [False, True])
-def test_what_is_typed_on_after_a_last_reading_that_is_rejected_is_not_written_there(
-    page: Page, served: Served, is_seen: bool
-) -> None:
+def test_what_is_typed_after_a_rejected_last_reading_is_not_stored(page: Page, served: Served, is_seen: bool) -> None:
     page.add_init_script(PAUSES)
     page.goto(begun(served))
     page.get_by_label("Site", exact=True).and_(page.locator(":focus")).wait_for()

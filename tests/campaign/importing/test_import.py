@@ -12,11 +12,7 @@ from openpyxl.styles import Font
 from tests.present import present
 
 from skisnow._support.errors import ParameterError
-from skisnow.campaign.importing import (
-    Answers,
-    Proposal,
-    propose,
-)
+from skisnow.campaign.importing import Answers, Proposal, propose
 from skisnow.campaign.importing.sheets import read_sheets
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
@@ -357,9 +353,7 @@ OPEN = [
 
 
 @pytest.mark.parametrize(("change", "answers"), OPEN)
-def test_what_is_not_stated_is_an_error_until_it_is_answered(
-    change: Callable[[Workbook], None], answers: dict[str, dict[str, str]]
-) -> None:
+def test_an_unstated_fact_is_an_error(change: Callable[[Workbook], None], answers: dict[str, dict[str, str]]) -> None:
     book = everyday()
     change(book)
     data = bytes_of(book)

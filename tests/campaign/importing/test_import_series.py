@@ -63,9 +63,7 @@ def _book(rows: list[list[Any]]) -> bytes:
 
 
 @pytest.mark.parametrize(("rows", "answers"), RIGHT)
-def test_series_side_by_side_and_headings_on_two_rows(
-    rows: list[list[Any]], answers: dict[str, dict[str, str]]
-) -> None:
+def test_series_side_by_side_under_two_heading_rows(rows: list[list[Any]], answers: dict[str, dict[str, str]]) -> None:
     proposal = propose(FILE, _book(rows), Answers(**{"site": {"Hang oben": "Hang oben"}, **answers}))
     assert not proposal.problems, [str(problem) for problem in proposal.problems]
     campaign = campaign_of_files(proposal.files)

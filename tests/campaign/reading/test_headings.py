@@ -35,9 +35,7 @@ S1;Süd;blade;90;5,5;300;12,25;23.11.26
 }
 
 
-def test_the_proposal_is_one_line_a_file_and_does_what_it_says(
-    small: SmallCampaign, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_each_proposal_is_one_line_and_can_be_applied(small: SmallCampaign, capsys: pytest.CaptureFixture[str]) -> None:
     """Tables as a German Excel writes them: semicolons, decimal commas, Windows-1252."""
     german = {name: text.encode("cp1252") for name, text in GERMAN.items()}
     assert main(["check", str(small.written(german))]) == 1

@@ -19,18 +19,7 @@ from skisnow.campaign.reading.columns import is_number, iso_moment, number, numb
 from ..conftest import SmallCampaign
 
 GOOD = {"1": 1.0, "-2.5": -2.5, "+.5": 0.5, "3.": 3.0, "1e3": 1000.0, "2.5E-1": 0.25, " 7.5\u00a0": 7.5, "007": 7.0}
-BAD = [
-    "",
-    "nan",
-    "inf",
-    "1_000",
-    "1 000",
-    "١",
-    "1.2.3",
-    "0x10",
-    "1e999",
-    ".",
-]
+BAD = ["", "nan", "inf", "1_000", "1 000", "١", "1.2.3", "0x10", "1e999", "."]
 
 
 @pytest.mark.parametrize("with_bad", [False, True])
@@ -179,7 +168,7 @@ def test_the_reference_campaign_is_not_warned_of(reference: Path) -> None:
         ("drop_cone.csv", DROP_CONE_DEPTH, 1e-3, "m"),
     ],
 )
-def test_a_file_in_another_unit(
+def test_a_file_in_other_units(
     reference: Path, tmp_path: Path, file: str, column: str, factor: float, unit: str
 ) -> None:
     (found,) = warned(changed(reference, tmp_path / "c", file, times(column, factor)))
@@ -207,9 +196,7 @@ def test_one_row_in_another_unit(reference: Path, tmp_path: Path, file: str, col
     [("penetration.csv", "load_N"), ("shear.csv", "moment_Nm"), ("shear.csv", "lever_arm_mm"),
      ("density.csv", SNOW_DENSITY), ("drop_cone.csv", DROP_CONE_DEPTH)],
 )  # fmt: skip
-def test_numbers_beyond_reason_are_refused(
-    reference: Path, tmp_path: Path, file: str, column: str, factor: float
-) -> None:
+def test_absurd_numbers_are_rejected(reference: Path, tmp_path: Path, file: str, column: str, factor: float) -> None:
     found = check_campaign(changed(reference, tmp_path / "c", file, times(column, factor)))
     errors = [problem for problem in found if problem.severity == "error"]
     assert {(problem.code, problem.file, problem.column) for problem in errors} == {("out_of_range", file, column)}

@@ -285,9 +285,7 @@ def test_random_files_give_problems(small: SmallCampaign, name: str, content: by
     length=st.integers(0, 12),
     content=BROKEN,
 )
-def test_damaged_files_give_problems(
-    small: SmallCampaign, name: str, place: float, length: int, content: bytes
-) -> None:
+def test_damaged_files_are_rejected(small: SmallCampaign, name: str, place: float, length: int, content: bytes) -> None:
     checked_bytes = small[name].encode()
     start = int(place * len(checked_bytes))
     damaged = checked_bytes[:start] + content[:length] + checked_bytes[start + length :]

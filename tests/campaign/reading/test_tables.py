@@ -85,9 +85,7 @@ def test_missing_columns_name_the_nearest(small: SmallCampaign) -> None:
 
 
 @pytest.mark.parametrize(("heading", "newtons"), [("load_kg", 9.80665), ("Last [kg]", 9.80665), ("load_kN", 1e3)])
-def test_a_heading_in_another_unit_is_mapped_and_not_renamed(
-    small: SmallCampaign, heading: str, newtons: float
-) -> None:
+def test_a_heading_in_another_unit_is_mapped_not_renamed(small: SmallCampaign, heading: str, newtons: float) -> None:
     """Numbers in kg below the name load_N would be read as N."""
     before = small.read().penetration
     small.replace(PEN, "load_N", heading)
@@ -112,9 +110,7 @@ def test_points_in_a_file_of_commas(small: SmallCampaign) -> None:
 
 
 @pytest.mark.parametrize(("cell", "separator", "mark"), [("12 mm", ",", "."), ("1x", ";", ",")])
-def test_a_cell_that_is_no_number_in_either_way_of_writing(
-    small: SmallCampaign, cell: str, separator: str, mark: str
-) -> None:
+def test_a_cell_that_is_a_number_in_no_notation(small: SmallCampaign, cell: str, separator: str, mark: str) -> None:
     rows = ["test,site,repeat,drop_cone_depth_mm", f"C1,S,1,12{mark}5", f"C1,S,2,13{mark}5", f"C2,S,1,{cell}"]
     first, *others = (row.split(",", 3) for row in rows)
     text = "".join(separator.join(row) + "\n" for row in (first, *others))

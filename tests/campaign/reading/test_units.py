@@ -83,17 +83,7 @@ def test_loads_that_look_like_kg_are_rejected_with_both_readings(write_campaign:
     assert "Last [kg]" in problem.action
 
 
-@pytest.mark.parametrize(
-    "heading",
-    [
-        "Last [kg]",
-        "Last (kg)",
-        "Last / kg",
-        "Last in kg",
-        "Last kg",
-        "Last_kg",
-    ],
-)
+@pytest.mark.parametrize("heading", ["Last [kg]", "Last (kg)", "Last / kg", "Last in kg", "Last kg", "Last_kg"])
 def test_a_heading_in_kg_is_believed(write_campaign: WriteCampaign, heading: str) -> None:
     folder = write_campaign(campaign(load=heading))
     assert loads_of(read_campaign(folder)) == pytest.approx([98.0665, 294.1995, 490.3325])
@@ -176,9 +166,7 @@ def test_lever_arms_in_cm_are_rejected_with_both_readings(write_campaign: WriteC
         ("lever_arm_mm", 6000, 6000.0),
     ],
 )
-def test_stated_lever_arms_are_believed(
-    write_campaign: WriteCampaign, arm: str, cell: float, millimetres: float
-) -> None:
+def test_stated_lever_arms_are_used(write_campaign: WriteCampaign, arm: str, cell: float, millimetres: float) -> None:
     folder = write_campaign(campaign(shear=f"S1,A,blade,90,5.8,{cell},23.1\n", arm=arm, load="Last [N]"))
     assert not [each for each in problems(folder) if each.severity == "error"]
     shear = present(read_campaign(folder).shear)
@@ -206,9 +194,7 @@ def test_one_lever_arm_above_five_metres_is_enough(write_campaign: WriteCampaign
         ("Tiefe", "depth_mm", "0.0058", "m"),
     ],
 )
-def test_other_quantities_below_silent_headings(
-    write_campaign: WriteCampaign, heading: str, column: str, cells: str, unit: str
-) -> None:
+def test_unitless_headings(write_campaign: WriteCampaign, heading: str, column: str, cells: str, unit: str) -> None:
     row = {"Tiefe": "5.8", "Drehmoment": "23.1"} | {heading: cells}
     files = campaign(shear=f"S1,A,blade,90,{row['Tiefe']},250,{row['Drehmoment']}\n", load="Last [N]")
     if heading == "Dichte":
@@ -227,9 +213,7 @@ def test_other_quantities_below_silent_headings(
         ("Dichte [g/l]", SNOW_DENSITY, 410.0, 410.0),
     ],
 )
-def test_densities_are_converted(
-    write_campaign: WriteCampaign, heading: str, column: str, cell: float, value: float
-) -> None:
+def test_density_units(write_campaign: WriteCampaign, heading: str, column: str, cell: float, value: float) -> None:
     files = campaign(load="Last [N]", mapped={heading: column}, density=f"Probe,Ort,{heading}\nD1,A,{cell}\n")
     density = present(read_campaign(write_campaign(files)).density)
     assert density.snow_density.tolist() == pytest.approx([value])

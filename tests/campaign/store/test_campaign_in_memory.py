@@ -21,9 +21,7 @@ from skisnow.campaign.store import (
     replay_journal,
     sync,
 )
-from skisnow.campaign.store import (
-    conflict as conflict_module,
-)
+from skisnow.campaign.store import conflict as conflict_module
 from skisnow.campaign.store.conflict import Divergence, EntryIndex, Side, _shorten_text
 from skisnow.campaign.store.journal_entry import JournalEntry
 from skisnow.campaign.store.stored_tables import (
@@ -184,13 +182,7 @@ def test_what_is_written_down(column: str, typed: str, written: str) -> None:
         ("penetration.csv", "depth_mm", "-1", "not_allowed", Message(AT_LEAST, low=0.0)),
         ("penetration.csv", "edge_angle_deg", "90", "not_allowed", Message(BETWEEN[False, True], low=0.0, high=90.0)),
         ("penetration.csv", "air_temperature_C", "nan", "not_allowed", ANY_NUMBER),
-        (
-            "penetration.csv",
-            SNOW_DENSITY,
-            "918",
-            "not_allowed",
-            Message(BETWEEN[True, False], low=0.0, high=917.0),
-        ),
+        ("penetration.csv", SNOW_DENSITY, "918", "not_allowed", Message(BETWEEN[True, False], low=0.0, high=917.0)),
         ("shear.csv", "edge_angle_deg", "91", "not_allowed", Message(BETWEEN[True, False], low=0.0, high=90.0)),
         (
             "shear.csv",
@@ -359,9 +351,7 @@ def test_names_that_meet_for_the_first_time_are_reported_by_kind() -> None:
     assert here.all == {"1": "x", "2": "y", "3": "x"}
 
 
-def test_the_next_free_name_is_taken_and_progress_is_reported(
-    ada: Laptop, bo: Laptop, group: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_next_free_name_and_progress(ada: Laptop, bo: Laptop, group: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """A series 2 (2) is there already, in one of both stores; corrections follow to the new name.
 
     Entries are requested in portions, here of two.

@@ -220,13 +220,7 @@ def test_export_rejects_unsafe_paths(path: str, folder: Path, place: Path, tmp_p
         assert any(finding.path == path and "not safe" in finding.message for finding in store.verify())
 
 
-@pytest.mark.parametrize(
-    ("number", "sentence"),
-    [
-        (errno.ENOSPC, "no room left"),
-        (errno.EACCES, "not allowed"),
-    ],
-)
+@pytest.mark.parametrize(("number", "sentence"), [(errno.ENOSPC, "no room left"), (errno.EACCES, "not allowed")])
 @pytest.mark.parametrize("call", [1, len(FILES) + 1])
 def test_export_to_a_disk_that_fails_leaves_nothing(
     number: int, sentence: str, call: int, folder: Path, place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -173,9 +173,7 @@ def test_a_connection_that_may_not_write(id_: str, place: Path, folder: Path, tm
         store.export(id_, tmp_path / "out")
 
 
-def test_a_store_in_a_folder_that_allows_no_log(
-    id_: str, place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_store_beside_no_log(id_: str, place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """SQLite's behaviour if the file beside the store cannot be made, root or not."""
     connect = sqlite3.connect
 

@@ -257,12 +257,7 @@ def synchronise_killed(
     ],
 )
 def test_nothing_is_lost_and_nothing_comes_twice(
-    nursery: Nursery,
-    where: str,
-    seed: int,
-    empty_file: Path,
-    tmp_path: Path,
-    request: pytest.FixtureRequest,
+    nursery: Nursery, where: str, seed: int, empty_file: Path, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     generator = np.random.default_rng(seed)
     laptops = {who: Path(shutil.copy(empty_file, tmp_path / f"{who}.sqlite3")) for who in ("Ada", "Bo")}

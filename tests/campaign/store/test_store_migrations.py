@@ -283,9 +283,7 @@ def test_a_newer_store_is_rejected_and_left_alone(migrated_place: Path) -> None:
     assert migrated_place.read_bytes() == before
 
 
-def test_migrating_is_quiet_and_needs_no_ini(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_migration_is_quiet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "alembic.ini").write_text("[alembic]\nscript_location = nowhere\n")
     monkeypatch.chdir(tmp_path)
     loggers = {name: (logging.getLogger(name).level, len(logging.getLogger(name).handlers)) for name in ("", "alembic")}

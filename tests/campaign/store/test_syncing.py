@@ -337,9 +337,7 @@ def test_a_store_is_not_synchronised_with_itself(ada: Laptop) -> None:
 # The command
 
 
-def test_the_command_shows_conflicts_and_takes_choices(
-    ada: Laptop, bo: Laptop, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_conflicts_in_the_terminal(ada: Laptop, bo: Laptop, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Over a stick: a file that is carried about is the group's store."""
     stick = tmp_path / "stick" / "group.sqlite3"
     bos = ["store", "--store", str(bo.store.path), "sync", str(stick)]

@@ -38,9 +38,7 @@ FEW = settings(max_examples=25)
 """For each of many laws."""
 SAMPLES = (
     Sample(
-        ConstantFriction(0.05),
-        ConstantFriction(0.10),
-        (lambda: ConstantFriction(0.02), lambda: ConstantFriction(0.2)),
+        ConstantFriction(0.05), ConstantFriction(0.10), (lambda: ConstantFriction(0.02), lambda: ConstantFriction(0.2))
     ),
     Sample(LinearFriction(0.03, 0.001), LinearFriction(0.06, 0.002), (lambda: LinearFriction(0.05, 0.01),)),
     Sample(

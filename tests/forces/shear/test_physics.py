@@ -42,10 +42,7 @@ class Sample:
 
 SAMPLES = (
     Sample(
-        ConstantShear(0.1e6),
-        ConstantShear(0.3e6),
-        3.0,
-        (lambda: ConstantShear(0.03e6), lambda: ConstantShear(0.6e6)),
+        ConstantShear(0.1e6), ConstantShear(0.3e6), 3.0, (lambda: ConstantShear(0.03e6), lambda: ConstantShear(0.6e6))
     ),
     Sample(AngleShear(0.1e6, 0.266), AngleShear(0.2e6, 0.266), 2.0, (lambda: AngleShear(0.6e6, 0.266),)),
     Sample(

@@ -268,11 +268,7 @@ def force_by_inertia(run: Run) -> np.ndarray:
 
 @pytest.mark.parametrize(
     "changes",
-    [
-        {},
-        {"friction.mu_0": 0.1, "friction.acts_on": "base-normal"},
-        {"snow.S_f_N_per_mm2": 0.1},
-    ],
+    [{}, {"friction.mu_0": 0.1, "friction.acts_on": "base-normal"}, {"snow.S_f_N_per_mm2": 0.1}],
     ids=["left", "friction", "side-slip"],
 )
 def test_the_total_force_is_what_boot_and_inertia_take(changes: dict[str, object]) -> None:

@@ -61,9 +61,7 @@ def test_run_ends_a_metre_behind_the_last_gate(straight: Run) -> None:
     ("y", "side", "outcome", "said"),
     [(0.2, "left", "straddled", "2"), (0.5, "left", "missed_gate", "0.25 m"), (0.5, "right", "finished", "")],
 )
-def test_outcome_is_that_of_the_first_gate_that_was_not_passed(
-    straight: Run, y: float, side: str, outcome: str, said: str
-) -> None:
+def test_outcome_is_that_of_the_first_missed_gate(straight: Run, y: float, side: str, outcome: str, said: str) -> None:
     """A gate of the other side would bend the course; here all poles are in line, one where the feet go."""
     middle = Gate(name="2", turning=(8.0, y), side=side)  # type: ignore[arg-type]
     before, after = (Gate(name=str(i), turning=(x, -1.0), side="left") for i, x in ((1, 4.0), (3, 12.0)))

@@ -58,12 +58,7 @@ ACROSS = {"snow.S_f_N_per_mm2": 0.05, "sledge.edge_angle_deg": 10.0, "start.head
 
 
 @pytest.mark.parametrize(
-    ("changes", "duration"),
-    [
-        ({**CARVES, **ICE}, 0.3),
-        ({**CARVES, "snow.S_f_N_per_mm2": 0.02}, 0.4),
-        (ACROSS, 0.4),
-    ],
+    ("changes", "duration"), [({**CARVES, **ICE}, 0.3), ({**CARVES, "snow.S_f_N_per_mm2": 0.02}, 0.4), (ACROSS, 0.4)]
 )
 def test_mirrored_skids(changes: dict[str, float], duration: float) -> None:
     """Windows of cells, pieces of older tracks and the order of the skis are the same from both sides."""

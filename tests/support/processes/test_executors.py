@@ -124,9 +124,7 @@ def test_a_worker_with_other_files_is_rejected() -> None:
         (ZeroDivisionError("of the function"), ZeroDivisionError, None),
     ],
 )
-def test_errors_of_an_executor_are_reported_and_those_of_the_function_passed_on(
-    error: Exception, kind: type[Exception], code: str | None
-) -> None:
+def test_errors_of_an_executor_and_of_the_function(error: Exception, kind: type[Exception], code: str | None) -> None:
     class Failing(Here):
         def submit(self, *_: Any, **__: Any) -> Future[Any]:
             future: Future[Any] = Future()

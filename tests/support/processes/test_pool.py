@@ -71,9 +71,7 @@ def test_workers_are_at_least_one_and_as_many_as_cores_where_left_out() -> None:
 
 
 @pytest.mark.parametrize(("counted", "cores"), [(6, 6), (None, 1)])
-def test_cores_of_a_system_that_does_not_say_which_are_ours(
-    counted: int | None, cores: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_cores_of_a_system_without_affinity(counted: int | None, cores: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: counted)
     assert worker_count(None) == cores
@@ -95,9 +93,7 @@ def test_only_a_pool_starts_a_worker() -> None:
 
 
 @pytest.mark.parametrize(("points", "each"), [([2.0], 2.0), ([1.0, 3.0], 2.0), ([], 0.0)])
-def test_a_chunk_tells_how_long_a_point_takes(
-    points: list[float], each: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_chunk_reports_time_per_point(points: list[float], each: float, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
 
     def lasting(seconds: float) -> dict[str, Any]:
@@ -111,9 +107,7 @@ def test_a_chunk_tells_how_long_a_point_takes(
 @pytest.mark.parametrize(
     ("error", "finished", "at_once"), [(None, True, False), (None, False, True), (KeyboardInterrupt, True, True)]
 )
-def test_workers_are_ended_at_once_where_work_is_left_or_an_error_came(
-    error: type[BaseException] | None, finished: bool, at_once: bool
-) -> None:
+def test_workers_end_at_once_after_an_error(error: type[BaseException] | None, finished: bool, at_once: bool) -> None:
     pool, said, future = Pool(dict, 2, advice=""), list[bool](), Future[Any]()
     if finished:
         future.set_result(None)

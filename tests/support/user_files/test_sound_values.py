@@ -166,9 +166,7 @@ def test_names_that_no_file_has(path: str, told: str | Coded) -> None:
 
 
 @pytest.mark.parametrize("read", [load_scenario, read_ski, read_study, snow_from_results, read_profile])
-def test_device_without_end_and_pipe_that_nobody_fills(
-    tmp_path: Path, read: object, noted_errors: list[SkisnowError]
-) -> None:
+def test_endless_device_and_pipe_without_writer(tmp_path: Path, read: object, noted_errors: list[SkisnowError]) -> None:
     assert callable(read)
     pipe = tmp_path / "pipe.toml"
     os.mkfifo(pipe)

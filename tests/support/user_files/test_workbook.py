@@ -92,7 +92,7 @@ FIRST = "xl/worksheets/sheet1.xml"
         ("xl/workbook.xml", None, "not_readable"),
     ],
 )
-def test_what_a_table_has_no_need_of_is_rejected(
+def test_unneeded_content_rejected(
     part: str, content: bytes | None, told: str | Coded, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workbook, "MOST_ROWS", 1000)

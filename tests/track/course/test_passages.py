@@ -199,9 +199,7 @@ def parts(*tracks: tuple[float, float]) -> dict[str, MovingPoint]:
         ([(0.0, 4.2), (0.0, 4.6), (0.9, 4.2), (0.9, 4.6)], "missed", -0.2),
     ],
 )
-def test_feet_and_tips_on_both_sides_of_a_pole_straddle_it(
-    places: list[tuple[float, float]], outcome: str, clearance: float
-) -> None:
+def test_a_straddle_by_feet_and_by_tips(places: list[tuple[float, float]], outcome: str, clearance: float) -> None:
     """The turning pole is at y = -1, the outer one at y = 4. The time is that of the middle."""
     middle = along_x(y=sum(y for _, y in places) / len(places))
     found = passages(WIDE, middle, parts(*places)).passages[0]
@@ -341,9 +339,7 @@ def test_other_courses_are_not_compared_and_damage_is_named(pair: tuple[Path, Pa
 
 
 @pytest.mark.parametrize(("beside", "same"), [(0.4, True), (-0.6, False)])
-def test_a_course_beside_the_fall_line_is_the_same_where_its_gates_are(
-    tmp_path: Path, beside: float, same: bool
-) -> None:
+def test_a_course_beside_the_fall_line_is_equal_where_its_gates_are(tmp_path: Path, beside: float, same: bool) -> None:
     """All gates 0.4 m to the left in both; -0.6 m is 1 m away and another course, as it is from either side."""
     pair = (folder_of(tmp_path / "a", [1.0, 2.0], beside=0.4), folder_of(tmp_path / "b", [1.1, 2.3], beside=beside))
     for one, other in (pair, pair[::-1]):

@@ -240,9 +240,7 @@ def test_a_published_snow_takes_the_place_of_its_sliders(desk: Desk) -> None:
 @pytest.mark.parametrize(
     ("shear", "site", "own"), [("", "", {"S_f_N_per_mm2": 0.5}), ("", "B", {"S_f_N_per_mm2": 0.5}), (SHEAR, "", {})]
 )
-def test_the_snow_of_a_campaign_gives_what_was_measured(
-    desk: Desk, tmp_path: Path, shear: str, site: str, own: dict[str, float]
-) -> None:
+def test_measured_snow_of_a_campaign(desk: Desk, tmp_path: Path, shear: str, site: str, own: dict[str, float]) -> None:
     key = campaign(desk, tmp_path / "kept", shear=shear)
     (tmp_path / "results.json").write_bytes(results_json(results_dict(analyse(read_campaign(tmp_path / "kept")))))
     snow = {"results": str(tmp_path / "results.json"), **({"site": site} if site else {}), **own}
@@ -273,9 +271,7 @@ def test_a_ski_that_cannot_be_read_is_reported(desk: Desk) -> None:
     page.shows("[status] slalom: equilibrium.")
 
 
-def test_while_an_answer_is_late_it_is_reported_and_only_the_last_question_waits(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_late_answer_is_reported_and_one_question_waits(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     released, asked = held(monkeypatch)
     monkeypatch.setattr(carved_turn, "PATIENCE_S", 0.0)
     page = desk.open("/carve")

@@ -87,9 +87,7 @@ def test_only_names_of_the_list_lead_anywhere(runs: Path, client: Client, name: 
 
 
 @pytest.mark.parametrize(("asked", "given"), [("nan", 1.0), ("-3", 1.0), ("inf", 20.0), ("1e9", 20.0)])
-def test_an_exaggeration_that_the_page_has_not_becomes_the_nearest(
-    runs: Path, client: Client, asked: str, given: float
-) -> None:
+def test_an_unknown_exaggeration_becomes_the_nearest(runs: Path, client: Client, asked: str, given: float) -> None:
     replay = replay_of_file(runs / "older", title="older")
     answer = client.get("/replay/moving-model/older.glb", params={"exaggeration": asked})
     assert answer.content == moving_replay_model(replay, exaggeration=given)
@@ -100,9 +98,7 @@ def test_an_exaggeration_that_the_page_has_not_becomes_the_nearest(
 NESTED = b"<gpx>" + b"<extensions>" * 200_000
 
 
-def test_a_kept_track_is_read_in_a_process_of_its_own(
-    runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_kept_track_is_read_in_another_process(runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Whatever it does to that one, this one answers on."""
     app, folder, tracks = FastAPI(), RunFolders(tmp_path), TrackFolders(tmp_path)
     add_addresses(app, folder)
@@ -169,9 +165,7 @@ def test_a_name_that_leads_elsewhere_is_no_track(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_a_kept_track_has_a_page_with_its_turns_in_both_languages(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_kept_track_has_a_page_of_turns_in_both_languages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Half circles of 12 m at 6 m/s, left then right: two turns, with radius and speed in the table."""
     way = np.arange(0.0, 2.0 * math.pi * 12.0, 1.2)
     heading = np.where(way < math.pi * 12.0, way / 12.0, 2.0 * math.pi - way / 12.0)

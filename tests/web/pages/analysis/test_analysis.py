@@ -257,9 +257,7 @@ def test_a_choice_made_during_the_computation_is_shown(desk: Desk, tmp_path: Pat
     assert figures(page) == [("data:0", "2 points"), ("data:2", "2 points")]
 
 
-def test_what_is_wrong_in_files_is_listed_and_where_it_can_be_corrected(
-    desk: Desk, tmp_path: Path, drawing: Drawing
-) -> None:
+def test_errors_in_files_are_listed_with_where_to_correct_them(desk: Desk, tmp_path: Path, drawing: Drawing) -> None:
     page = desk.open(f"/analysis/kept/{kept(desk, tmp_path / 'kept', WRONG)}")
     page.until(lambda: status(page) != "Computing …")
     lines = page.outline()
@@ -297,9 +295,7 @@ def test_report_and_zip_are_of_what_is_chosen(desk: Desk, tmp_path: Path, drawin
     assert len({name for name, _ in drawing.reports}) == 3
 
 
-def test_a_report_waits_for_the_numbers_of_the_choice(
-    desk: Desk, tmp_path: Path, drawing: Drawing, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_numbers_come_first(desk: Desk, tmp_path: Path, drawing: Drawing, monkeypatch: pytest.MonkeyPatch) -> None:
     asked, report_of = threading.Event(), page_module._report
 
     async def report(*what: Any) -> Path | None:
@@ -377,9 +373,7 @@ def looked_at(desk: Desk, analyses: AnalysisCache, *campaigns: tuple[str, str]) 
     return desk.wait(done())
 
 
-def test_the_campaigns_that_were_looked_at_last_are_known(
-    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_last_campaigns_are_kept_in_memory(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(analyses_module, "MOST_CAMPAIGNS", 2)
     analyses, journals = AnalysisCache(desk.lab, Worker()), Journals(desk.lab.store)
     first, second = (("entry", journals.begin(TOML)) for _ in range(2))

@@ -230,7 +230,7 @@ def test_an_error_is_reported_in_the_corner_of_its_page(desk: Desk) -> None:
     ("error", "status"),
     [(StoreError("a"), 404), (ParameterError("b"), 404), (OutputError("c"), 500), (ValueError("secret"), 500)],
 )
-def test_a_page_that_cannot_be_shown_says_why(
+def test_a_page_with_an_error_has_its_reason(
     desk: Desk, monkeypatch: pytest.MonkeyPatch, error: Exception, status: int
 ) -> None:
     monkeypatch.setattr(AnalysisCache, "cached", raising(error))
@@ -351,9 +351,7 @@ def test_the_lab_is_served_to_this_machine(desk: Desk, announced: list[Any]) -> 
     assert len(announced) == 1
 
 
-def test_serving_others_prints_the_address_for_them(
-    desk: Desk, announced: list[Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_serving_others_prints_their_address(desk: Desk, announced: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[str] = []
     secure = SimpleNamespace(file=Path("a.pem"), key=Path("b.pem"))
     monkeypatch.setattr(server, "_adapters", lambda _: ["192.168.1.7", "10.0.0.2"])
@@ -401,9 +399,7 @@ def test_addresses_that_others_can_open(host: str, own: list[str] | None, expect
 @pytest.mark.parametrize(
     ("host", "expected"), [("0.0.0.0", ["10.0.0.2", "192.168.1.7"]), ("::", ["10.0.0.2", "fd00::1", "192.168.1.7"])]
 )
-def test_addresses_of_this_machine_need_no_name_of_an_adapter(
-    monkeypatch: pytest.MonkeyPatch, host: str, expected: list[str]
-) -> None:
+def test_addresses_without_name_of_an_adapter(monkeypatch: pytest.MonkeyPatch, host: str, expected: list[str]) -> None:
     def of(*ips: tuple[Any, bool]) -> Any:
         return SimpleNamespace(ips=[SimpleNamespace(ip=ip, is_IPv4=old) for ip, old in ips])
 

@@ -208,9 +208,7 @@ def test_a_campaign_that_is_sent_twice_is_begun_once(desk: Desk) -> None:
         ({CAMPAIGN_NAME: "S", "Name of plate 1": " "}, "no_name"),
     ],
 )
-def test_a_description_that_cannot_be_stored_is_rejected_and_stays(
-    desk: Desk, typed: dict[str, str], code: str
-) -> None:
+def test_a_description_that_cannot_be_stored_stays_on_the_page(desk: Desk, typed: dict[str, str], code: str) -> None:
     page = desk.open("/describe")
     for name, text in typed.items():
         page.fill(name, text)

@@ -159,7 +159,7 @@ def test_a_question_is_done_once_and_answered_each_time(desk: Desk, result: bool
         ({"number": 0}, PageRequest(number=0), ["lab.answered(0, true)"]),
     ],
 )
-def test_what_the_browser_says_is_taken_as_far_as_it_is_expected(
+def test_unexpected_answers_of_a_browser_are_left(
     desk: Desk, said: object, taken: PageRequest, told: list[str]
 ) -> None:
     done: list[PageRequest] = []

@@ -8,18 +8,7 @@ from skisnow.campaign import read_campaign
 from skisnow.web.transfer import write_entry
 
 from ..desk import Desk, Sheet, values
-from .conftest import (
-    CANCEL,
-    DENSITY,
-    DROP_CONE,
-    KG_PER_M3,
-    NAME,
-    SHEAR,
-    SHEARED,
-    Entered,
-    begun,
-    undo_button,
-)
+from .conftest import CANCEL, DENSITY, DROP_CONE, KG_PER_M3, NAME, SHEAR, SHEARED, Entered, begun, undo_button
 
 
 def store(page: Sheet, **typed: str) -> None:

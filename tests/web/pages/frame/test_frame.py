@@ -173,9 +173,7 @@ def test_results_in_words() -> None:
         ("fr", " de ;q=1", "de"),
     ],
 )
-def test_a_language_that_was_chosen_comes_before_those_of_the_browser(
-    chosen: str | None, accepted: str, code: str
-) -> None:
+def test_a_chosen_language_comes_before_those_of_the_browser(chosen: str | None, accepted: str, code: str) -> None:
     assert language_asked(chosen, accepted) == code
 
 

@@ -104,9 +104,7 @@ def test_jobs_that_are_damaged_are_left_out(tmp_path: Path) -> None:
     assert runs.jobs() == [newer, older]
 
 
-def test_the_queue_continues_with_the_oldest_and_tells_how_it_stands(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_queue_starts_the_oldest_and_reports_its_state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     acts(
         monkeypatch,
         "open(sys.argv[-1] + '/asked', 'a').write(repr(sys.argv[1:]) + os.environ['SKISNOW_PROGRESS_LINES'] + "
@@ -154,9 +152,7 @@ def test_what_a_run_says_is_its_progress_until_it_is_cancelled(tmp_path: Path, m
         runs.cancel(job.name)
 
 
-def test_a_run_that_is_cancelled_before_its_process_stands_is_ended(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_is_cancelled_before_its_process_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     acts(monkeypatch, "time.sleep(60)\n")
     runs = Runs(tmp_path)
     job = runs.ask("a", {})
@@ -172,9 +168,7 @@ def test_a_run_that_is_cancelled_before_its_process_stands_is_ended(
     assert state(runs, job.name).state == "cancelled"
 
 
-def test_a_server_that_ends_kills_the_run_and_leaves_it_running(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_server_that_ends_kills_the_run_which_stays_running(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     acts(monkeypatch, says("begun") + "time.sleep(20)\n")
     runs, seen = Runs(tmp_path), list[Any]()
     job = runs.ask("a", {})
@@ -210,9 +204,7 @@ def test_one_that_waits_is_cancelled_and_no_other(tmp_path: Path) -> None:
         ({"outcome": "interrupted"}, True, "cancelled", 0.0),
     ],
 )
-def test_how_a_run_ended_follows_from_its_summary(
-    tmp_path: Path, summary: Any, cancelled: bool, over: str, took: float
-) -> None:
+def test_end_of_a_run_by_its_summary(tmp_path: Path, summary: Any, cancelled: bool, over: str, took: float) -> None:
     runs = Runs(tmp_path)
     job = runs.ask("a", {})
     if summary is not None:
@@ -331,9 +323,7 @@ def test_what_a_study_has_finished_is_kept_and_told(tmp_path: Path, cancelled: b
     assert "0 of 2" in ended(studies, job, said, cancelled=cancelled).said
 
 
-def test_a_study_that_another_process_still_writes_is_restarted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_that_another_process_writes_is_restarted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(studies_module, "_AGAIN_S", 0.0)
     studies = Studies(tmp_path)
     job = studies.ask_for(TURNS)

@@ -103,9 +103,7 @@ def test_a_track_that_was_imported_is_chosen_for_a_run_alone(desk: Desk, run_fil
     assert TrackFolders(desk.lab.runs).names() == []
 
 
-def test_a_track_of_a_receiver_without_a_direction_has_turns_but_is_not_put_next_to_a_run(
-    desk: Desk, run_files: dict[str, bytes]
-) -> None:
+def test_a_track_without_direction_has_turns_and_no_run_next_to_it(desk: Desk, run_files: dict[str, bytes]) -> None:
     keep(desk.lab.runs, "older", run_files)
     own = keep_track(desk.lab.runs)
     without, placed = (
@@ -273,9 +271,7 @@ def test_a_track_is_turned_to_the_slope_of_its_run(tmp_path: Path) -> None:
         TrackFolders(tmp_path).beside("x", shown)
 
 
-def test_a_run_is_fetched_with_its_track_and_in_the_readers_language(
-    desk: Desk, run_files: dict[str, bytes], here: list[Any]
-) -> None:
+def test_a_run_has_its_track_and_the_readers_language(desk: Desk, run_files: dict[str, bytes], here: list[Any]) -> None:
     keep(desk.lab.runs, "mine", run_files)
     name = keep_track(desk.lab.runs, starts_at_s=2.0)
     alone = replay_of_file(desk.lab.runs / "mine", title="mine")

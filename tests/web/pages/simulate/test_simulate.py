@@ -8,19 +8,7 @@ from skisnow.web.scenario_fields import ScenarioField, field_label
 from tests.coded import raises
 
 from ..desk import Desk, Sheet, values
-from .shared import (
-    ENDS,
-    HARDNESS,
-    MASS,
-    SPEED,
-    STANCE,
-    STEERS,
-    STRESS,
-    WAY,
-    asked,
-    jobs,
-    refused,
-)
+from .shared import ENDS, HARDNESS, MASS, SPEED, STANCE, STEERS, STRESS, WAY, asked, jobs, refused
 
 INERTIA = "Moments of inertia I (kg m²)"
 
@@ -112,9 +100,7 @@ def test_a_number_of_the_snow_goes_with_the_other_one_beside_it(desk: Desk, name
         (INERTIA, "[1,2]", "wrong_kind"),
     ],
 )
-def test_impossible_input_is_rejected_at_the_button_and_at_its_field(
-    desk: Desk, name: str, typed: str, code: str
-) -> None:
+def test_invalid_input_is_rejected_at_the_button_and_its_field(desk: Desk, name: str, typed: str, code: str) -> None:
     page = desk.open("/simulate")
     at_first = page.field(name).value
     page.fill(name, typed)

@@ -17,14 +17,7 @@ from nicegui import ui
 from skisnow._support.errors import OutputError, ParameterError, RangeWarning, SkisnowError
 from skisnow.ski import read_ski
 from skisnow.web import lab_skis as measured_ski
-from skisnow.web.lab_skis import (
-    LabSkis,
-    check_ski_texts,
-    read_ski_files,
-    ski_of_texts,
-    ski_of_uploads,
-    texts_of_ski,
-)
+from skisnow.web.lab_skis import LabSkis, check_ski_texts, read_ski_files, ski_of_texts, ski_of_uploads, texts_of_ski
 from skisnow.web.settings import Limits
 from skisnow.web.ski_editor import FACTORS, SkiEditInput, edit_ski_texts
 from skisnow.web.subprocesses import SKI_BOUNDS
@@ -238,9 +231,7 @@ def test_what_cannot_be_written_is_an_error_of_ours(tmp_path: Path) -> None:
         LabSkis(tmp_path / "file").save_texts("mine", TEXT, "")
 
 
-def test_the_slower_of_two_saves_is_rejected_and_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_slower_of_two_saves_is_rejected_and_not_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     skis = LabSkis(tmp_path)
     skis.save_texts("one", TEXT, "")
     monkeypatch.setattr(LabSkis, "require_new", lambda *_: None)
@@ -308,9 +299,7 @@ ONES = dict.fromkeys(FACTORS, "1")
         (ONES, {("width_mm", 4): "70"}, False),
     ],
 )
-def test_whether_only_the_file_says_what_the_ski_is(
-    factors: dict[str, str], cells: dict[tuple[str, int], str], *, is_file: bool
-) -> None:
+def test_source_of_a_measured_ski(factors: dict[str, str], cells: dict[tuple[str, int], str], *, is_file: bool) -> None:
     asked = SkiEditInput(TEXT, factors=factors, cells=cells)
     assert asked.is_file is is_file
     found = edit_ski_texts(asked)

@@ -138,9 +138,7 @@ def test_of_a_scenario_only_what_is_changed_is_fixed(desk: Desk) -> None:
         ({RATIO: "11"}, {"snow.unloading_ratio": 11.0}),
     ],
 )
-def test_of_the_two_numbers_of_the_snow_both_or_none_are_given(
-    desk: Desk, typed: dict[str, str], fixed: dict[str, float]
-) -> None:
+def test_both_numbers_of_the_snow_or_none_are_given(desk: Desk, typed: dict[str, str], fixed: dict[str, float]) -> None:
     page = scenario(desk)
     for name, value in typed.items():
         page.fill(name, value)
