@@ -27,17 +27,9 @@ Series = list[tuple[float, float]]  # load in N, depth in mm
 TOOLS = {"ski": SkiPiece(0.2, 0.062), "disc": Disc(0.06), "roll": LyingCylinder(0.05, 0.1)}
 GOOD: Series = [(70.5, 1.0), (140.5, 2.0), (210.5, 3.0)]
 CODES = [
-    "cancelled",
-    "too_few_loads",
-    "loads_not_rising",
-    "depth_shrinks",
-    "zero_depth",
-    "beyond_tool",
-    "below_resolution",
-    "creeps",
-    "unloading_not_falling",
-    "unloading_sinks",
-]
+    "cancelled", "too_few_loads", "loads_not_rising", "depth_shrinks", "zero_depth", "beyond_tool", "below_resolution",
+    "creeps", "unloading_not_falling", "unloading_sinks",
+]  # fmt: skip
 
 
 def campaign_of(

@@ -21,22 +21,10 @@ from .json_answer import json_answer
 
 SCHEMA = json_schema("carve")
 CONTRACT = [
-    "outcome",
-    "holds",
-    "side_force_N",
-    "side_force_limit_N",
-    "turn_radius_boot_m",
-    "turn_radius_chord_m",
-    "contact_length_m",
-    "afterbody_depth_ratio",
-    "station_m",
-    "edge_depth_mm",
-    "force_per_length_N_per_m",
-    "bending_mm",
-    "twist_deg",
-    "residual_force_N",
-    "residual_moment_Nm",
-]
+    "outcome", "holds", "side_force_N", "side_force_limit_N", "turn_radius_boot_m", "turn_radius_chord_m",
+    "contact_length_m", "afterbody_depth_ratio", "station_m", "edge_depth_mm", "force_per_length_N_per_m", "bending_mm",
+    "twist_deg", "residual_force_N", "residual_moment_Nm",
+]  # fmt: skip
 ASKED = ["--ski", "slalom", "--edge-angle-deg", "45", "--load-N", "800"]
 SNOW = ["--H-V-N-per-mm3", "0.2", "--S-f-N-per-mm2", "0.35", "--unloading-ratio", "10"]
 Printed = pytest.CaptureFixture[str]
@@ -150,15 +138,12 @@ def test_each_choice_is_in_force_and_named(capsys: Printed) -> None:
     switches: tuple[tuple[str, str, object], ...] = (
         ("--no-side-force-bending", "side_force_bending", False),
         ("--side-force-spread base-reaction", "side_force_spread", "base-reaction"),
-        ("--groove path", "groove", "path"),
-        ("--moment-balance free", "moment_balance", "free"),
-        ("--no-twist", "twist", False),
-        ("--clamp-length-m 0", "clamp_length_m", 0.0),
+        ("--groove path", "groove", "path"), ("--moment-balance free", "moment_balance", "free"),
+        ("--no-twist", "twist", False), ("--clamp-length-m 0", "clamp_length_m", 0.0),
         ("--footprint-stiffness-N-per-mm2 30", "footprint_stiffness_N_per_mm2", 30.0),
-        ("--elements 80", "elements", 80),
-        ("--moment-Nm 40", "moment_Nm", 40.0),
+        ("--elements 80", "elements", 80), ("--moment-Nm 40", "moment_Nm", 40.0),
         ("--unloading-ratio inf", "unloading_ratio", 1000.0),
-    )
+    )  # fmt: skip
     for words, key, value in switches:
         switched = answer([*ASKED, *SNOW, *words.split()], capsys)
         assert switched["inputs"] == plain["inputs"] | {key: value}

@@ -137,17 +137,8 @@ def test_models_of_an_earlier_run_do_not_stay_beside_a_new_one(tmp_path: Path) -
 
 
 EASY = [
-    "race",
-    "slalom-20-gates",
-    "--set",
-    "greatest_edge_deg=75",
-    "--model",
-    "point",
-    "--gates",
-    "2",
-    "--workers",
-    "1",
-]
+    "race", "slalom-20-gates", "--set", "greatest_edge_deg=75", "--model", "point", "--gates", "2", "--workers", "1",
+]  # fmt: skip
 
 
 def race(out: Path, *more: str) -> int:

@@ -10,22 +10,9 @@ from .binaries import BINARY
 from .texts import Mutation
 
 _NAMES: Final = (
-    "",
-    "/",
-    "../x",
-    "/x",
-    "a/../../x",
-    "C:\\x",
-    "a\\b",
-    "x\0y",
-    "a" * 300,
-    "a/" * 40 + "b",
-    "CON",
-    "é",
-    "x/",
-    ".",
+    "", "/", "../x", "/x", "a/../../x", "C:\\x", "a\\b", "x\0y", "a" * 300, "a/" * 40 + "b", "CON", "é", "x/", ".",
     "..",
-)
+)  # fmt: skip
 
 
 def members(rng: Random, data: bytes, change: Callable[[Random, str, bytes], bytes]) -> bytes:

@@ -19,13 +19,8 @@ CASES = Path(__file__).parents[3] / "shared" / "cases" / "terrain"
 PLANE = 2500.0 - math.tan(math.radians(12.0)) * (1.0 + 2.0 * np.arange(40.0)) + np.zeros((40, 1))
 """A slope of 12° that falls east, cells of 2 m: the terrain of the cases."""
 HEADER = {
-    "ncols": "3",
-    "nrows": "2",
-    "xllcorner": "100.0",
-    "yllcorner": "50.0",
-    "cellsize": "2.0",
-    "NODATA_value": "-9999",
-}
+    "ncols": "3", "nrows": "2", "xllcorner": "100.0", "yllcorner": "50.0", "cellsize": "2.0", "NODATA_value": "-9999",
+}  # fmt: skip
 VALUES = "5 6 7\n1 2 3\n"
 US_FOOT = 1200.0 / 3937.0
 

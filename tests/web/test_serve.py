@@ -136,20 +136,10 @@ def test_a_store_that_broke_is_reported_in_a_sentence(tmp_path: Path) -> None:
 
 
 MESSAGES = (
-    '42["event"]',
-    '42["event",{}]',
-    '42["event",{"client_id":[]}]',
-    '42["event",7,8,9]',
-    '42["handshake",{}]',
-    '42["javascript_response",null]',
-    '42["ack",{"client_id":1}]',
-    '42["log",{}]',
-    "42[]",
-    '42{"a":1}',
-    "4",
-    "49",
+    '42["event"]', '42["event",{}]', '42["event",{"client_id":[]}]', '42["event",7,8,9]', '42["handshake",{}]',
+    '42["javascript_response",null]', '42["ack",{"client_id":1}]', '42["log",{}]', "42[]", '42{"a":1}', "4", "49",
     "451-",
-)
+)  # fmt: skip
 
 
 def test_malformed_messages_leave_a_line_each_and_no_trace(served: Served, capfd: pytest.CaptureFixture[str]) -> None:

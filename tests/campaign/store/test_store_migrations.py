@@ -162,33 +162,12 @@ def test_name(raw: bytes, name: str, tmp_path: Path) -> None:
 
 NOWHERE = ["", ".", "..", "/", "/a", "//a", "a//b", "a/", "a/../b", "./a", "C:", "c:/a", "z:a", "a\0b", "\udcff"]
 NOT_ON_WINDOWS = [
-    "back\\slash",
-    "nul",
-    "end.",
-    "q?",
-    "1:2",
-    "NUL.txt",
-    "a/Com1",
-    "lpt9.csv",
-    "COM¹",
-    "con .txt",
-    "CONIN$",
-]
+    "back\\slash", "nul", "end.", "q?", "1:2", "NUL.txt", "a/Com1", "lpt9.csv", "COM¹", "con .txt", "CONIN$",
+]  # fmt: skip
 NOT_ON_WINDOWS += ["a./b", "a ", "ab:c", "a\\b", "a\tb", "a|b"]
 ANYWHERE = [
-    "a",
-    "a/b.csv",
-    "...a",
-    "a b/ä",
-    "null",
-    "com10",
-    "console.csv",
-    "a.nul",
-    ".hidden",
-    "a.b/c d",
-    "com",
-    "ünï",
-]
+    "a", "a/b.csv", "...a", "a b/ä", "null", "com10", "console.csv", "a.nul", ".hidden", "a.b/c d", "com", "ünï",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -89,13 +89,8 @@ def test_a_campaign_that_is_being_entered_is_given_out_as_it_stands(desk: Desk) 
     journals = Journals(desk.lab.store)
     id_ = journals.begin(TOML)
     cells = {
-        "experiment": "1",
-        "site": "A",
-        "tool": "ski piece",
-        "edge_angle_deg": "30",
-        "load_N": "20",
-        "depth_mm": "1",
-    }
+        "experiment": "1", "site": "A", "tool": "ski piece", "edge_angle_deg": "30", "load_N": "20", "depth_mm": "1",
+    }  # fmt: skip
     entry = NewEntry(action="add", file="penetration.csv", test="1", cells=cells)
     journals.append(id_, entry, seen=journals.entries(id_)[-1].sequence)
     exported = desk.get(f"/export/entry/{id_}.zip")
