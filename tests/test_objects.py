@@ -20,6 +20,7 @@ from skisnow.campaign.reference import reference_campaign
 from skisnow.estimation.results import results_json
 from tests.coded import Coded, coded, raises
 from tests.key_names import EDGE_ANGLE
+from tests.present import present
 
 from .conftest import without_figures
 from .report.runs import RADIUS, SPEED, circle_run
@@ -100,10 +101,8 @@ def test_snow_of_a_site_is_that_of_results_json(analysis: Analysis, tmp_path: Pa
 
 def test_snow_of_a_site_by_hand(analysis: Analysis) -> None:
     tests, found = analysis.campaign.penetration, analysis.penetration
-    assert tests is not None
-    assert found is not None
-    mine = found.screened.used & (np.array(tests.site) == "site C")
-    by_hand = math.exp(float(np.mean(np.log(found.hardness["H_V"].value[mine]))))
+    mine = present(found).screened.used & (np.array(present(tests).site) == "site C")
+    by_hand = math.exp(float(np.mean(np.log(present(found).hardness["H_V"].value[mine]))))
     assert analysis.snow("C").snow_hardness == pytest.approx(by_hand, rel=1e-12)
 
 

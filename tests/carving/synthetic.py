@@ -11,6 +11,7 @@ import numpy.typing as npt
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow.properties import SnowProperties
+from tests.present import present
 
 FloatArray = npt.NDArray[np.float64]
 Along = Callable[[FloatArray], FloatArray]
@@ -78,12 +79,9 @@ def boot_pose(found: Equilibrium, ski: Ski, edge_angle: float) -> tuple[float, f
 
     At every station e = b₀ + b₁ s - cos ϑ (h + w) + (W/2) sin(ϑ + φ).
     """
-    assert found.edge_depth is not None
-    assert found.bending is not None
-    assert found.twist is not None
     at = ski.at(found.station)
-    middle = found.edge_depth - at.width / 2.0 * np.sin(edge_angle + found.twist)
-    straight = middle + math.cos(edge_angle) * (at.base_height + found.bending)
+    middle = present(found.edge_depth) - at.width / 2.0 * np.sin(edge_angle + present(found.twist))
+    straight = middle + math.cos(edge_angle) * (at.base_height + present(found.bending))
     slope, depth = np.polyfit(found.station, straight, 1)
     assert np.max(np.abs(straight - depth - slope * found.station)) < 1e-9  # else the arrays contradict each other
     return float(depth), float(slope)

@@ -13,6 +13,7 @@ from skisnow.carving.equilibrium import ELEMENTS, _conditions, carve, rest
 from skisnow.carving.solve import solved
 from skisnow.ski import read_ski
 from skisnow.ski.beam import clamped
+from tests.present import present
 
 from .synthetic import boot_pose, circular_sidecut, plain_ski, shovel, snow
 
@@ -73,8 +74,7 @@ def tip_depths(*, with_shovel: bool) -> np.ndarray[tuple[int, ...], np.dtype[np.
             clamp_length=0.0,
             elements=elements,
         )
-        assert found.edge_depth is not None
-        depths.append(float(found.edge_depth[found.station > 0.0].max()))
+        depths.append(float(present(found.edge_depth)[found.station > 0.0].max()))
     return np.array(depths)
 
 
@@ -103,8 +103,7 @@ def carved() -> EdgeLine:
 
 def test_the_circle_meets_the_edge_at_the_boot_and_before_and_behind_it() -> None:
     line = carved()
-    radius = line.radius_at_boot()
-    assert radius is not None
+    radius = present(line.radius_at_boot())
     offset = np.interp([0.0, BOOT_REACH, -BOOT_REACH], line.station[::-1], line.offset_from_circle()[::-1])
     # straight between stations 2 cm apart: a chord of (2 cm)²/8 R
     assert offset == pytest.approx(np.zeros(3), abs=0.02**2 / 8.0 / radius)
@@ -183,9 +182,8 @@ def deviation(hardness: float, elements: int) -> tuple[float, float]:
     foundation = hardness * 1e9 * WIDTH
     rate = (foundation / (4.0 * EI)) ** 0.25
     depth = boot_pose(found, ski, 0.0)[0]
-    assert found.contact_length is not None
     expected = LOAD * rate / (2.0 * foundation) / math.tanh(math.pi / 2.0)
-    return depth / expected - 1.0, found.contact_length / (math.pi / rate) - 1.0
+    return depth / expected - 1.0, present(found.contact_length) / (math.pi / rate) - 1.0
 
 
 @pytest.mark.parametrize(
@@ -219,8 +217,7 @@ def test_short_or_soft_enough_to_press_everywhere(reach: float) -> None:
     shape = (2.0 + math.cosh(reach) + math.cos(reach)) / (math.sinh(reach) + math.sin(reach))
     # the load vector of two points per element is of order 4 in a smooth load
     assert boot_pose(found, ski, 0.0)[0] == pytest.approx(LOAD * rate / (2.0 * foundation) * shape, rel=1e-7)
-    assert found.edge_depth is not None
-    assert np.all(found.edge_depth > 0.0)
+    assert np.all(present(found.edge_depth) > 0.0)
 
 
 def test_deflection_along_the_contact() -> None:
@@ -241,7 +238,6 @@ def test_deflection_along_the_contact() -> None:
     shape = np.cosh(x) * np.cos(y) + np.cos(x) * np.cosh(y) - np.sinh(x) * np.sin(y) + np.sin(x) * np.sinh(y)
     shape = (shape + 2.0 * np.cosh(x) * np.cos(x)) / math.sinh(math.pi)
     expected = LOAD * rate / (2.0 * foundation) * shape
-    assert found.edge_depth is not None
-    assert found.edge_depth[inside] == pytest.approx(expected[inside], abs=2e-4 * float(expected.max()))
+    assert present(found.edge_depth)[inside] == pytest.approx(expected[inside], abs=2e-4 * float(expected.max()))
     beyond = x > 1.02 * math.pi / 2.0
-    assert np.ptp(np.diff(found.edge_depth[beyond & (found.station > 0)][::2])) < 1e-9
+    assert np.ptp(np.diff(present(found.edge_depth)[beyond & (found.station > 0)][::2])) < 1e-9

@@ -24,6 +24,7 @@ from skisnow.ski.layout import SkiSections
 from skisnow.ski.ski_file import ski_of_keys
 from skisnow.snow import SnowProperties
 from tests.coded import raises
+from tests.present import present
 
 from .synthetic import FloatArray, rigid_ski, snow
 
@@ -62,8 +63,7 @@ def drawn(random: np.random.Generator) -> tuple[Ski, SnowProperties, dict[str, A
 
 
 def derivatives(found: Equilibrium) -> CarveDerivatives:
-    assert found.request is not None
-    return CarveDerivatives(found.request)
+    return CarveDerivatives(present(found.request))
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,12 +250,11 @@ def test_at_a_kink_both_sides_have_their_derivative() -> None:
         (found,) = exact.sensitivity(output, ["load_N"])
         assert (found.one_sided is None) == (found.kink > AT_KINK)
         kink, load = found.kink, load * (1.0 + found.kink)
-    assert found.one_sided is not None
     place, near, h = OUTPUTS.index(output), exact.at.solution, 4e-3
-    for side, value in zip((-1.0, 1.0), found.one_sided, strict=True):
+    for side, value in zip((-1.0, 1.0), present(found.one_sided), strict=True):
         one, two, three = (moved(exact.request, near, "load_N", side * n * h)[place] for n in (1.0, 2.0, 3.0))
         assert value == pytest.approx(side * (8.0 * two - 5.0 * one - 3.0 * three) / (2.0 * h), rel=1e-6)
-    assert np.ptp(np.array(found.one_sided, float)) > 0.01
+    assert np.ptp(np.array(present(found.one_sided), float)) > 0.01
     elastic = derivatives(carve(read_ski("slalom"), snow(0.21, 0.52), load=800.0, edge_angle=0.5, unloading_ratio=1.0))
     assert elastic._beside("unloading_ratio", -1e-6, output) is None  # no snow is softer when it unloads
 
@@ -269,12 +268,10 @@ def test_each_form_of_a_carve_has_its_outputs_and_derivatives(form: dict[str, An
     ski, case = read_ski("slalom"), {"edge_angle": 0.8, "load": 800.0, "unloading_ratio": 10.0, **form}
     found, exact = carve(ski, snow(0.21, 0.52), **case), differentiable_carve(ski, snow(0.21, 0.52), **case)
     assert exact is not None
-    assert found.edge_depth is not None
-    assert found.force_per_length is not None
     radii = found.turn_radius_boot, found.turn_radius_chord, found.turn_radius_median
-    known = (*radii, 1e3 * found.edge_depth.max(), found.grip_utilisation)
+    known = (*radii, 1e3 * present(found.edge_depth).max(), found.grip_utilisation)
     assert [exact.output(name) for name in OUTPUTS[:5]] == pytest.approx(known, rel=1e-9)
-    assert exact.output(OUTPUTS[6]) == pytest.approx(found.force_per_length.max(), rel=1e-9)
+    assert exact.output(OUTPUTS[6]) == pytest.approx(present(found.force_per_length).max(), rel=1e-9)
     assert exact.output(OUTPUTS[7]) == pytest.approx(found.contact_length, rel=1e-9)
     reference, _ = differences(exact.request, exact.at.solution, "edge_angle_deg", math.degrees(0.8))
     steeper = [exact.derivative(output, "edge_angle_deg") for output in OUTPUTS]

@@ -21,6 +21,7 @@ from skisnow._support.errors import SkisnowError
 from skisnow.cli import main
 from skisnow.cli.shell import NAMES, json_schema
 from skisnow.report.figures.drawing import FORMS
+from tests.present import present
 
 from ..identification import straight_tracks
 from ..identification.test_photo_cell_times import AREA, CHANGES, MU, STATION, truth
@@ -114,11 +115,9 @@ def commands(folder: Path) -> list[list[str]]:
     """Arguments of the commands of the demo, with its own settings."""
     text = MAKEFILE.read_text(encoding="utf-8")
     turn = re.search(r"^TURN := (.*)$", text, re.MULTILINE)
-    recipe = re.search(r"^demo:.*\n((?:\t.*\n)+)", text, re.MULTILINE)
-    assert turn is not None
-    assert recipe is not None
+    recipe = present(re.search(r"^demo:.*\n((?:\t.*\n)+)", text, re.MULTILINE))
     lines = re.findall(r"^\t\$\(BIN\)/skisnow (.*)$", recipe[1], re.MULTILINE)
-    values = {"DEMO": str(folder), "SEED": "1", "TURN": turn[1]}
+    values = {"DEMO": str(folder), "SEED": "1", "TURN": present(turn)[1]}
     return [shlex.split(re.sub(r"\$\((\w+)\)", lambda found: values[found[1]], line)) for line in lines]
 
 

@@ -15,6 +15,7 @@ from skisnow.comparison.result import fit_time
 from skisnow.track.slope_frame import in_slope_frame, inclination, lay_on_slope
 from skisnow.track.track import Track
 from tests.coded import raises
+from tests.present import present
 
 from .made_tracks import FloatArray, build_track, slalom, turned
 
@@ -125,8 +126,7 @@ def test_the_next_turn_of_a_slalom_is_a_rival_where_both_have_the_whole_track_be
     wave = np.column_stack([along, 5.0 * np.sin(along / 6.0)])
     noise = 0.05 * np.random.default_rng(4).normal(size=(300, 2))
     motion = fit_motion(line_of(wave), line_of(wave[300:600] + noise), start=True, heading=True)
-    assert motion.rival is not None
-    apart = np.linalg.norm(motion.rival.moved - motion.moved) / (12.0 * math.pi)
+    apart = np.linalg.norm(present(motion.rival).moved - motion.moved) / (12.0 * math.pi)
     assert apart == pytest.approx(round(apart), abs=0.05)
     assert round(apart) in (1, 2)
 
@@ -149,9 +149,8 @@ def test_the_interval_of_a_heading_grows_with_noise_and_holds_the_truth() -> Non
             noise = size * np.random.default_rng(seed).normal(size=(100, 2))
             measured = turned(slalom(ALONG[::5]), 0.4, (40.0, -7.0, 0.0))[:, :2] + noise
             motion = fit_motion(line_of(slalom(ALONG)[:, :2]), line_of(measured), start=True, heading=True)
-            assert motion.turned_error is not None
-            inside.append(abs(motion.turned - 0.4) < motion.turned_error)
-            errors.append(motion.turned_error)
+            inside.append(abs(motion.turned - 0.4) < present(motion.turned_error))
+            errors.append(present(motion.turned_error))
     assert sum(inside) >= 8
     assert np.mean(errors[1::2]) == pytest.approx(10.0 * np.mean(errors[::2]), rel=0.3)
 
@@ -184,9 +183,8 @@ def test_arcs_of_one_circle_have_a_rival() -> None:
     noise = 0.05 * np.random.default_rng(2).normal(size=(300, 2))
     measured = line_of(10.0 * np.column_stack([np.cos(angle[:300] * 0.8), np.sin(angle[:300] * 0.8)]) + noise)
     motion = fit_motion(simulated, measured, start=True, heading=True)
-    assert motion.rival is not None
-    assert abs(math.remainder(motion.rival.turned - motion.turned, math.tau)) > math.radians(5.0)
-    assert 0.99 * motion.rms < motion.rival.rms < 2.0 * motion.rms
+    assert abs(math.remainder(present(motion.rival).turned - motion.turned, math.tau)) > math.radians(5.0)
+    assert 0.99 * motion.rms < present(motion.rival).rms < 2.0 * motion.rms
     assert motion.turned_error is None
 
 
@@ -256,9 +254,7 @@ def fitted(run: Track, measured: Track, slope: float | None = None) -> Compariso
 
 
 def azimuth_of(found: Comparison) -> float:
-    assert found.fitted is not None
-    assert found.fitted.azimuth is not None
-    return math.degrees(found.fitted.azimuth)
+    return math.degrees(present(present(found.fitted).azimuth))
 
 
 def test_a_laid_track_is_that_of_the_slopes_axes() -> None:
@@ -274,8 +270,7 @@ def test_a_laid_track_is_that_of_the_slopes_axes() -> None:
 
 @pytest.mark.parametrize("slope", [0.0, 8.0, 35.0])
 def test_inclination_of_a_track(slope: float) -> None:
-    found = inclination(on_map(run_of(1.0), 250.0, slope, noise=0.02))
-    assert found is not None
+    found = present(inclination(on_map(run_of(1.0), 250.0, slope, noise=0.02)))
     assert math.degrees(found.angle) == pytest.approx(slope, abs=0.3)
     assert found.error < math.radians(0.1)
 
@@ -291,9 +286,8 @@ def test_the_heading_of_a_run_on_a_slope(azimuth: float, slope: float, side: flo
     found = fitted(run, measured, slope if source == "given" else None)
     assert azimuth_of(found) == pytest.approx(azimuth, abs=0.01 if source != "heights" and not noise else 0.5)
     assert found.dimensions == 3
-    assert found.nearest.numbers is not None
-    assert found.nearest.numbers.rms < 2.0 * noise + 0.01
-    assert found.nearest.numbers.compared > 0.99 * found.measured.length
+    assert present(found.nearest.numbers).rms < 2.0 * noise + 0.01
+    assert present(found.nearest.numbers).compared > 0.99 * found.measured.length
 
 
 def test_a_measured_track_may_be_the_one_on_the_slope() -> None:
@@ -308,11 +302,9 @@ def test_metres_of_a_site_are_a_map_if_their_heights_fall() -> None:
     site = replace(on_map(run, 90.0, 25.0), axes="file")
     for measured, slope in ((site, 25.0), (replace(run, axes="file", slope_angle=None), None)):
         found = fitted(run, measured)
-        assert found.fitted is not None
-        assert found.fitted.slope_angle == (slope and pytest.approx(math.radians(slope)))
-        assert found.fitted.turned == pytest.approx(0.0, abs=1e-4)
-        assert found.nearest.numbers is not None
-        assert found.nearest.numbers.max < 1e-3
+        assert present(found.fitted).slope_angle == (slope and pytest.approx(math.radians(slope)))
+        assert present(found.fitted).turned == pytest.approx(0.0, abs=1e-4)
+        assert present(found.nearest.numbers).max < 1e-3
 
 
 def test_an_arc_of_one_radius_has_an_uncertain_heading() -> None:
@@ -321,9 +313,7 @@ def test_an_arc_of_one_radius_has_an_uncertain_heading() -> None:
     noise = 0.05 * np.random.default_rng(1).normal(size=(100, 2))
     measured = build_track(arc.place[:, :2] + noise, angle)
     found = compare_tracks(arc, measured, fit=("start", "heading"))
-    assert found.fitted is not None
-    assert found.fitted.turned_error is not None
-    assert found.fitted.turned_error > math.radians(2.0)
+    assert present(present(found.fitted).turned_error) > math.radians(2.0)
     assert any("uncertain" in each for each in found.warnings)
 
 

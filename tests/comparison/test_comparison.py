@@ -12,6 +12,7 @@ from skisnow.comparison import Comparison, Distances, compare_tracks, comparison
 from skisnow.comparison.distances import DistanceStatistics, polyline, time_offsets
 from skisnow.track.track import Track
 from tests.coded import raises
+from tests.present import present
 
 from .made_tracks import FloatArray, arc, build_track, slalom, turned
 
@@ -20,8 +21,7 @@ ROUNDING = 1e-9
 
 
 def numbers(found: Distances) -> DistanceStatistics:
-    assert found.numbers is not None, found.reason
-    return found.numbers
+    return present(found.numbers)
 
 
 def every(found: Comparison) -> list[float]:
@@ -269,8 +269,7 @@ def test_tracks_that_have_one_moment_in_common_are_compared_there() -> None:
     """One ends at 10 s, where the other begins: 3 m to its side at that moment. A moment later there is nothing."""
     early = polyline(np.array([[0.0, 0.0], [5.0, 0.0]]), np.array([0.0, 10.0]))
     late = polyline(np.array([[5.0, 3.0], [9.0, 3.0]]), np.array([10.0, 20.0]))
-    met = time_offsets(late, early)
-    assert met is not None
+    met = present(time_offsets(late, early))
     assert set(met.distance.tolist()) == {3.0}
     assert set(met.arc_length.tolist()) == {5.0}
     assert time_offsets(late, early, later=-0.001) is None

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from skisnow.contact import Runner, SnowField
 from skisnow.forces.shear import MachiningShear
 from skisnow.forces.shear.law import strength_left
+from tests.present import present
 
 from .reference_pressure import pressure
 
@@ -293,7 +294,6 @@ class _Section:
         deeper = 0 if self.edges[0].depth > self.edges[1].depth else 1
         if self.stood(deeper) is None or self.line.passed is None or self.edges[deeper].depth <= 0.0:
             return []
-        assert self.line.holds is not None
         slope_change = (self.line.passed[0] - self.on_ski) * (self.line.passed[1] - self.climb)
         if slope_change >= 0.0:
             return []
@@ -301,8 +301,8 @@ class _Section:
         mean = 0.5 * (self.line.passed[0] - self.on_ski) * (rise + fall)
         bent = (before - now - mean) * float(self.pose.rotation[:, 2] @ self.line.out)  # 0 for a parabola
         width = [edge.place for edge in self.edges[::-1]]
-        fallen = [edge.depth - hold.depth for edge, hold in zip(self.edges, self.line.holds, strict=True)]
-        moved = [hold.place - edge.place for edge, hold in zip(self.edges, self.line.holds, strict=True)]
+        fallen = [edge.depth - hold.depth for edge, hold in zip(self.edges, present(self.line.holds), strict=True)]
+        moved = [hold.place - edge.place for edge, hold in zip(self.edges, present(self.line.holds), strict=True)]
         # d'(w) = 0 at 1 - since, which is linear across: only the places that pass their deepest on the way
         since = [0.5 + (each - bent) / slope_change for each in reversed(fallen)]
         slope = (since[1] - since[0]) / (width[1] - width[0])
@@ -384,8 +384,7 @@ class _Section:
 
     def _ways(self) -> FloatArray:
         """Of the base since it stuck, along the ski and over the line: the point at the same arm, seen from there."""
-        assert self.line.stuck is not None
-        station, place, arm = self.line.stuck
+        station, place, arm = present(self.line.stuck)
         return np.array([station - self.gap, self.touch.place + (arm - self.reach) / self.wide - place])
 
     def _way(self) -> FloatArray:

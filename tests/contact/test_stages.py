@@ -18,6 +18,7 @@ from skisnow.compiled import core
 from skisnow.contact import ContactForces, Runner, Sections, SnowContact, SnowField
 from skisnow.forces.friction import WaterFilmFriction
 from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
+from tests.present import present
 
 from .conftest import edged, straight
 from .reference_contact import Pose, ReferenceRunner
@@ -140,8 +141,7 @@ def a_pose(rng: np.random.Generator, near: Pose | None = None) -> Pose:
     else:
         rotation = near.rotation @ edged(*(float(rng.normal(0.0, 3e-3)) for _ in range(3)))
         position = near.position + near.rotation @ (rng.normal(size=3) * [4e-3, 3e-4, 3e-4])
-        assert near.beam is not None
-        beam = near.beam + rng.normal(size=near.beam.shape) * [1e-4, 3e-4, 1e-3]
+        beam = present(near.beam) + rng.normal(size=present(near.beam).shape) * [1e-4, 3e-4, 1e-3]
     return Pose(position, rotation, rng.normal(size=6) * [8, 1, 0.3, 1, 1, 1], beam, rng.normal(size=beam.shape) * 0.1)
 
 
@@ -177,17 +177,15 @@ def differences(seed: int, *, steps: int) -> list[float]:
     reference = ReferenceRunner(runner, snow, pose, SPACING)
     out = []
     for step in range(steps):
-        assert pose.beam is not None
-        assert pose.rate is not None
         placed = [pose.position], [pose.rotation]
         found = contact.force(
-            *placed, [pose.velocity], 1e-3 * (step > 0), beam_dofs=[pose.beam], beam_rates=[pose.rate]
+            *placed, [pose.velocity], 1e-3 * (step > 0), beam_dofs=[present(pose.beam)], beam_rates=[present(pose.rate)]
         )
         wrench, loads = reference.force(pose, 1e-3 * (step > 0))
         allowed = 1e-11 * max(float(np.abs(wrench).max()), 1e-3) + 1e-12 * ratio * hardness * 1.9 * 0.07
         out.append(float(np.abs(found.wrench[0] - wrench).max()) / allowed)
         out.append(float(np.abs(found.beam_loads[0] - loads).max()) / allowed)
-        contact.update(*placed, 1e-3 * (step > 0), beam_dofs=[pose.beam])
+        contact.update(*placed, 1e-3 * (step > 0), beam_dofs=[present(pose.beam)])
         reference.update(pose)
         pose = a_pose(rng, pose)
     return out

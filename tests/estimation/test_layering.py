@@ -20,6 +20,7 @@ from skisnow.estimation.readings import Readings, ReadingUncertainty
 from skisnow.estimation.screening import hardness_outliers, screened_penetration
 from skisnow.estimation.weather import weather_at_tests, weather_results
 from skisnow.interop.snowex import site_pit
+from tests.present import present
 
 from .conftest import MakeCampaign
 from .test_hardness import LOADS, TOOL, pressed
@@ -73,9 +74,8 @@ def test_conditions_at_the_time_of_each_experiment(make_campaign: MakeCampaign) 
 
 def test_a_gap_that_is_too_long_leaves_it_open(make_campaign: MakeCampaign) -> None:
     analysis = skisnow.analyse(campaign(make_campaign, SECTION + "longest_gap_h = 1.5\n"), n_resamples=100)
-    assert analysis.weather is not None
     nan = math.nan
-    np.testing.assert_allclose(analysis.weather.quantities["air_temperature_C"], [nan, nan, nan, nan, -6.0])
+    np.testing.assert_allclose(present(analysis.weather).quantities["air_temperature_C"], [nan, nan, nan, nan, -6.0])
 
 
 def test_without_the_section_nothing_is_reported(make_campaign: MakeCampaign) -> None:
@@ -243,10 +243,8 @@ def test_the_snow_of_a_site_has_the_interval_of_its_mean() -> None:
             ("S_f_N_per_mm2", N_PER_MM2, snow.failure_shear_stress, snow.failure_shear_stress_interval),
         ):
             row = means[key, f"site {letter}"]
-            assert value is not None
-            assert interval is not None
-            assert value / unit == pytest.approx(row["mean"], rel=1e-12)
-            assert [end / unit for end in interval] == pytest.approx(row["interval"], rel=1e-9)
+            assert present(value) / unit == pytest.approx(row["mean"], rel=1e-12)
+            assert [end / unit for end in present(interval)] == pytest.approx(row["interval"], rel=1e-9)
 
 
 # The weather at each experiment: times, offsets, units, means of sites
@@ -290,9 +288,7 @@ def test_each_experiment_has_the_weather_at_its_first_time_with_a_day_and_an_hou
         PENETRATION, SHEAR, columns=",time", shear_columns=",time", further={"station.smet": STATION},
         extra='[weather]\nfile = "station.smet"\n',
     )  # fmt: skip
-    found = weather_at_tests(campaign)
-    assert found is not None
-    assert campaign.weather is not None
+    found = present(weather_at_tests(campaign))
     assert found.kind == ("penetration",) * 3 + ("shear",) * 2
     assert (found.experiment, found.site) == (("P1", "P2", "P3", "S1", "S2"), tuple("AACBB"))
     assert found.time[0] == "2026-02-03T09:00"
@@ -304,7 +300,7 @@ def test_each_experiment_has_the_weather_at_its_first_time_with_a_day_and_an_hou
         assert math.isnan(day_alone)
         assert second != first
     assert "3 of 5" in repr(found)
-    results = weather_results(campaign.weather, found)
+    results = weather_results(present(campaign.weather), found)
     assert (results["station"], results["altitude_m"], results["utc_offset_h"]) == ("X1", 2540.0, 1.0)
     assert (results["latitude_deg"], results["longitude_deg"], results["longest_gap_h"]) == (46.8, 9.8, 3.0)
     rows = {row["site"]: row for row in results["sites"]}

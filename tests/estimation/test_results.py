@@ -19,6 +19,7 @@ from skisnow.estimation.results import _published_relations, results_json
 from skisnow.snow.published.hand_hardness import RESISTANCE_SOURCE
 from tests.coded import raises
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
+from tests.present import present
 
 from .conftest import MakeCampaign
 
@@ -49,11 +50,9 @@ def results(reference: Campaign) -> Json:
 
 
 def test_every_experiment_is_there_in_the_order_of_the_file(results: Json, reference: Campaign) -> None:
-    assert reference.penetration is not None
-    assert reference.shear is not None
     rows = results["penetration"]["experiments"]
-    assert [row["experiment"] for row in rows] == list(reference.penetration.experiment)
-    assert [row["experiment"] for row in results["shear"]["experiments"]] == list(reference.shear.experiment)
+    assert [row["experiment"] for row in rows] == list(present(reference.penetration).experiment)
+    assert [row["experiment"] for row in results["shear"]["experiments"]] == list(present(reference.shear).experiment)
     assert len(rows) == 236
     assert sum(row["n_loads"] for row in rows) == 236 * 7
     assert len(results["shear"]["experiments"]) == 108
@@ -70,8 +69,7 @@ def test_the_paper_s_order_of_the_definitions(results: Json, terms: str) -> None
 
 def test_coefficients_are_in_the_units_of_the_table(results: Json, reference: Campaign) -> None:
     """rmse worked out again from the file's own numbers: N, mm, mm², mm³, rad."""
-    tests = reference.penetration
-    assert tests is not None
+    tests = present(reference.penetration)
     tool, series = reference.tools[tests.tool[0]], tests.series_of_reading
     rows = results["penetration"]["experiments"]
     used = np.array([row["used"] for row in rows])[series]

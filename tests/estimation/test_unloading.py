@@ -28,6 +28,7 @@ from skisnow.estimation.screening import quality_flags, series_estimates
 from skisnow.estimation.unloading import Unloading, _stiffness_ratio, site_unloading, unloading
 from skisnow.forces.penetration import HypoplasticPoint
 from tests.key_names import SHEAR_DISPLACEMENT_INTERVAL
+from tests.present import present
 
 from .conftest import MakeCampaign
 
@@ -193,11 +194,10 @@ def test_a_snow_takes_it_and_the_file_says_the_same(tmp_path: Path) -> None:
         assert replace(snow, source="") == replace(read, source="")
         assert (snow.unloading_ratio is None) == (site == "C")
     snow = found.snow("B")
-    assert snow.unloading_ratio is not None
     assert snow.unloading_ratio_interval is not None
-    assert snow.unloading_ratio_interval[0] < snow.unloading_ratio < snow.unloading_ratio_interval[1]
+    assert snow.unloading_ratio_interval[0] < present(snow.unloading_ratio) < snow.unloading_ratio_interval[1]
     turn = skisnow.load_scenario("carved-46m").with_(snow=snow.__class__(**_fields(snow, failure_shear_stress=2e5)))
-    assert turn.contact.unloading_ratio == snow.unloading_ratio
+    assert turn.contact.unloading_ratio == present(snow.unloading_ratio)
     assert found.snow("B", unloading_ratio=3.0).unloading_ratio == 3.0
 
 
@@ -235,8 +235,7 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
     campaign = make_campaign([*flat("P1", ratio=2.0), *edged("P2", ratio=2.0)], columns=BRANCH)
     tests, u, step = campaign.penetration, 1e-5, 1e-7
     assert tests is not None
-    branch = tests.unloading
-    assert branch is not None
+    branch = present(tests.unloading)
     readings = readings_of(tests, campaign.tools, geometry="extended")
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
     priors = replace(DEFAULT_PRIORS, rebound=1e-9)
@@ -270,8 +269,7 @@ ROW = ("s1", "A", "blade", 90, 6, 250, 30)
 
 
 def one(campaign: Campaign) -> tuple[float, float, list[float]]:
-    assert campaign.shear is not None
-    found = shear_stress(campaign, campaign.shear)
+    found = shear_stress(campaign, present(campaign.shear))
     return float(found.force[0]), float(found.value[0]), found.interval[0].tolist()
 
 
@@ -315,8 +313,7 @@ def test_intervals_cover_the_truth_as_often_as_they_claim(make_campaign: MakeCam
     columns = depth + rng.normal(0, 0.1, n), arm + rng.normal(0, 7.5, n), moment * (1 + rng.normal(0, 0.04, n))
     rows = [(f"s{i}", "A", "blade", 90, *cells) for i, cells in enumerate(zip(*columns, strict=True))]
     campaign = make_campaign(shear=rows, gauge=0.1 * math.sqrt(12), moment=0.04 * moment, arm=7.5)
-    assert campaign.shear is not None
-    found = shear_stress(campaign, campaign.shear)
+    found = shear_stress(campaign, present(campaign.shear))
     covered = np.mean((found.interval[:, 0] <= truth * 1e6) & (truth * 1e6 <= found.interval[:, 1]))
     assert abs(covered - 0.95) < 3 * math.sqrt(0.95 * 0.05 / n) + 0.002
 
@@ -426,8 +423,7 @@ def test_true_shear_displacement_is_covered_without_bias(make_campaign: MakeCamp
     rng = np.random.default_rng(5)
     rows = [row for index in range(1000) for row in turned(f"S{index}", noise=rng, reading=0.03)]
     campaign = make_campaign((), rows, shear_columns=COLUMN)
-    assert campaign.shear is not None
-    found = shear_displacement(campaign, campaign.shear)
+    found = shear_displacement(campaign, present(campaign.shear))
     assert np.mean(found.value) == pytest.approx(WAY * 1e-3, rel=0.01)
     low, high = found.interval.T
     assert np.mean((low <= WAY * 1e-3) & (high >= WAY * 1e-3)) == pytest.approx(0.95, abs=0.021)

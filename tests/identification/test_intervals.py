@@ -20,6 +20,7 @@ from skisnow.identification.problem import Fit, Kind, Values, unweighted_problem
 from skisnow.identification.solution import build_identification
 from skisnow.identification.solving import SearchRequest, solution_of
 from tests.coded import raises
+from tests.present import present
 
 from . import straight_tracks
 from .straight_tracks import SCENARIO, track
@@ -78,8 +79,7 @@ def refits_by_scipy(decay: Decay, found: Identification, linear: np.ndarray) -> 
     The draws follow from the linear samples' own draws: the same numbers in the same order.
     """
     a, b = (float(found[key].value or 0.0) for key in ("a", "b"))
-    best = decay.residuals([{"a": a, "b": b}])[0]
-    assert best is not None
+    best = present(decay.residuals([{"a": a, "b": b}])[0])
     rng = np.random.default_rng(4)
     inflated = np.sqrt(len(X) / (len(X) - 2))
     refits = []
@@ -100,12 +100,10 @@ def test_samples_are_those_of_refits_by_another_program() -> None:
     The linearised model is off by ten times as much.
     """
     decay, found = resampled("refit", 1)
-    linear = resampled("linear", 1)[1].bootstrap
-    assert found.bootstrap is not None
-    assert linear is not None
+    linear = present(resampled("linear", 1)[1].bootstrap)
     wanted = refits_by_scipy(decay, found, linear)
     error = np.std(wanted, axis=0)
-    assert np.all(np.quantile(np.abs(found.bootstrap - wanted) / error, 0.9, axis=0) < 0.02)
+    assert np.all(np.quantile(np.abs(present(found.bootstrap) - wanted) / error, 0.9, axis=0) < 0.02)
     assert np.quantile(np.abs(linear - wanted)[:, 1], 0.9) > 0.1 * error[1]
 
 
@@ -114,10 +112,8 @@ def test_what_is_not_linear_shows_in_the_interval() -> None:
     lengths = {}
     for by in ("refit", "linear"):
         b = resampled(by, 1)[1]["b"]
-        assert b.bootstrap_interval is not None
-        assert b.value is not None
-        low, high = (end for end in b.bootstrap_interval if end is not None)
-        lengths[by] = (high - b.value) / (b.value - low)
+        low, high = (end for end in present(b.bootstrap_interval) if end is not None)
+        lengths[by] = (high - present(b.value)) / (present(b.value) - low)
     assert lengths["refit"] > 1.15 * lengths["linear"]
 
 
@@ -136,10 +132,8 @@ class TestTracks:
         """A straight run is linear in friction and speed: the samples are the same to what a search leaves open."""
         one = track(seed=1)
         refit, linear = (found_from(one, bootstrap=60, bootstrap_by=by) for by in ("refit", "linear"))
-        assert refit.bootstrap is not None
-        assert linear.bootstrap is not None
         error = [each.standard_error for each in refit.parameters]
-        assert np.max(np.abs(refit.bootstrap - linear.bootstrap) / error) < 0.01
+        assert np.max(np.abs(present(refit.bootstrap) - present(linear.bootstrap)) / error) < 0.01
         assert refit.effort.simulations >= linear.effort.simulations + 60
         assert any("60 resamples" in text and "refitted" in text for text in refit.methods)
 
@@ -256,10 +250,9 @@ def test_about_so_many_samples_are_drawn_about_the_best_place(kind: str, told: s
     said: list[str] = []
     places, words = intervals.posterior_places(solution(kind), 4000, np.random.default_rng(1), said.append)
     assert words == told
-    assert places is not None
     (made,) = sampler
     assert (made.walkers, made.p) == (16, 2)
-    assert len(places) == pytest.approx(4000, abs=2 * 16)
+    assert len(present(places)) == pytest.approx(4000, abs=2 * 16)
     assert said == [f"posterior: step {n} of {made.steps}" for n in range(1, made.steps + 1)]
     spread = made.begin - BEST
     assert np.abs(spread).max(axis=0) == pytest.approx([0.1, 0.2], rel=0.6)  # half a standard error each

@@ -14,6 +14,7 @@ from skisnow.identification import MeasuredGrooves, identification_dict, identif
 from skisnow.identification.groove_residuals import GrooveResiduals
 from skisnow.scenario import scenario_file
 from tests.coded import raises
+from tests.present import present
 
 CHANGES: dict[str, object] = {"snow.H_V_N_per_mm3": 0.1, "start.heading_deg": 0.0}
 
@@ -46,8 +47,7 @@ def measured(
 
 def test_a_groove_is_what_carve_leaves() -> None:
     """Depth of the wedge 2 % of its width tan 30°, and e (1 - 1/10) of the deepest edge stays."""
-    groove = residuals_of().groove({"snow.H_V_N_per_mm3": 0.2})
-    assert groove is not None
+    groove = present(residuals_of().groove({"snow.H_V_N_per_mm3": 0.2}))
     assert groove.depth / 0.9 / groove.width == pytest.approx(math.tan(math.radians(30.0)), rel=0.1)  # twist
     assert groove.turn_radius == pytest.approx(16.2, abs=0.5)  # the simulated turn's median radius
 
@@ -55,15 +55,12 @@ def test_a_groove_is_what_carve_leaves() -> None:
 def test_hardness_scales_as_in_the_wedge() -> None:
     """e = √(2 F tan ϑ/(H_V L)) for a rigid ski: a quarter of the hardness doubles the depth; skis bend, so 20 %."""
     soft, hard = (residuals_of().groove({"snow.H_V_N_per_mm3": value}) for value in (0.1, 0.4))
-    assert soft is not None
-    assert hard is not None
-    assert soft.depth / hard.depth == pytest.approx(2.0, rel=0.2)
+    assert present(soft).depth / present(hard).depth == pytest.approx(2.0, rel=0.2)
 
 
 def test_hardness_and_edge_angle_of_a_twin_are_found() -> None:
     truth = {"snow.H_V_N_per_mm3": 0.25, "sledge.edge_angle_deg": 35.0}
-    groove = residuals_of().groove(truth)
-    assert groove is not None
+    groove = present(residuals_of().groove(truth))
     data = measured(groove.depth, groove.width, groove.turn_radius)
     found = identify("carved-46m", data, "H_V,edge_angle", changes=CHANGES)
     assert found.outcome == "converged"
@@ -74,8 +71,7 @@ def test_hardness_and_edge_angle_of_a_twin_are_found() -> None:
 def test_an_edge_that_holds_bounds_the_strength_from_below() -> None:
     """At heading 0 the turn needs m v²/R of both skis, S_f ∫ e ds holds it: the bound by hand from the groove."""
     own = residuals_of()
-    groove = own.groove({"snow.H_V_N_per_mm3": 0.25})
-    assert groove is not None
+    groove = present(own.groove({"snow.H_V_N_per_mm3": 0.25}))
     data = measured(groove.depth, groove.width, groove.turn_radius)
     found = identify("carved-46m", data, "H_V,S_f", changes=CHANGES)
     assert found.outcome == "not_identifiable"
@@ -83,35 +79,27 @@ def test_an_edge_that_holds_bounds_the_strength_from_below() -> None:
     needed = mass_of(own) * 7.0**2 / groove.turn_radius / (2.0 * groove.grip_area) / 1e6
     low, high = found["S_f"].interval or (None, None)
     assert high is None
-    assert low is not None
-    assert 0.7 * needed < low < needed
+    assert 0.7 * needed < present(low) < needed
     assert "bounded from below" in found.warnings[0]
     assert found["H_V"].value == pytest.approx(0.25, rel=0.01)
 
 
 def test_profile_and_bootstrap_of_what_a_holding_edge_tells() -> None:
     """Depth goes with 1/√H_V, which is linear in logarithms nearly: both intervals go with that by curvature."""
-    groove = residuals_of().groove({"snow.H_V_N_per_mm3": 0.25})
-    assert groove is not None
+    groove = present(residuals_of().groove({"snow.H_V_N_per_mm3": 0.25}))
     data = measured(groove.depth, groove.width, groove.turn_radius, seed=2)
     found = identify("carved-46m", data, "H_V,S_f", changes=CHANGES, profile=True, bootstrap=60)
     hardness = found["H_V"]
-    assert hardness.interval is not None
-    assert hardness.profile_interval == pytest.approx(hardness.interval, rel=0.02)
-    assert hardness.bootstrap_interval is not None
-    assert found.bootstrap is not None
-    assert np.isnan(found.bootstrap[:, 1]).all()
-    low, high = hardness.bootstrap_interval
-    assert low is not None
-    assert high is not None
-    assert low < 0.25 < high
+    assert hardness.profile_interval == pytest.approx(present(hardness.interval), rel=0.02)
+    assert np.isnan(present(found.bootstrap)[:, 1]).all()
+    low, high = present(hardness.bootstrap_interval)
+    assert present(low) < 0.25 < present(high)
 
 
 def test_an_edge_that_slides_gives_the_strength() -> None:
     """The radius that S_f = 0.03 N/mm² holds at 7 m/s, wider than the ski carves."""
     own = residuals_of()
-    groove = own.groove({"snow.H_V_N_per_mm3": 0.25})
-    assert groove is not None
+    groove = present(own.groove({"snow.H_V_N_per_mm3": 0.25}))
     radius = mass_of(own) * 7.0**2 / (2.0 * 0.03e6 * groove.grip_area)
     assert radius > 1.2 * groove.turn_radius
     found = identify("carved-46m", measured(groove.depth, 3.0 * groove.width, radius), "H_V,S_f", changes=CHANGES)
@@ -192,8 +180,7 @@ class TestFile:
 def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> None:
     """Nothing else is identified: the bound is that of the own snow, with the scatter of the radius."""
     own = residuals_of()
-    groove = own.groove({})
-    assert groove is not None
+    groove = present(own.groove({}))
     data = replace(measured(groove.depth, groove.width, groove.turn_radius, share=0.02, seed=1), stated=stated)
     found = identify("carved-46m", data, "S_f", changes=CHANGES)
     assert found.outcome == "not_identifiable"
@@ -204,8 +191,7 @@ def test_the_strength_alone_from_marks_of_an_edge_that_held(stated: bool) -> Non
     radius = float(np.mean(data.turn_radius))
     needed = mass_of(own) * 7.0**2 / radius / (2.0 * groove.grip_area) / 1e6
     assert low == pytest.approx(needed * (1.0 - 1.645 * 0.02 / 2.0), rel=1e-3)  # four places, 1/R, one-sided
-    assert low is not None
-    assert f"the turn needed {needed:.3g} N/mm² (95 %: at least {low:.3g})" in found.warnings[0]
+    assert f"the turn needed {needed:.3g} N/mm² (95 %: at least {present(low):.3g})" in found.warnings[0]
     assert len(found.fits) == 1
     assert found.data == (("marks.csv", "measured grooves (places: 4)"),)
-    assert identification_dict(found)["parameters"]["snow.S_f_N_per_mm2"]["interval"] == [low, None]
+    assert identification_dict(found)["parameters"]["snow.S_f_N_per_mm2"]["interval"] == [present(low), None]

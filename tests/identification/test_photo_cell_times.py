@@ -11,6 +11,7 @@ from skisnow.identification import Identification, PhotoCellRun, PhotoCells, ide
 from skisnow.identification.data import read_data
 from skisnow.scenario import scenario_file, scenario_text
 from tests.coded import raises
+from tests.present import present
 
 from . import glide_in_closed_form as exact
 from .test_glide import times_on_two_planes, two_planes
@@ -66,8 +67,7 @@ def test_exact_times_give_the_truth_with_the_errors_of_the_fisher_information() 
     for each, true, error in zip(found.parameters, (MU, AREA, SPEED), fisher_errors([0, 1, 2]), strict=True):
         assert each.value == pytest.approx(true, abs=0.003 * error)
         assert each.standard_error == pytest.approx(error, rel=1e-4)
-        assert each.interval is not None
-        assert each.interval[1] == pytest.approx(true + 1.959964 * error, abs=0.003 * error)
+        assert present(each.interval)[1] == pytest.approx(true + 1.959964 * error, abs=0.003 * error)
 
 
 @pytest.mark.slow
@@ -79,9 +79,7 @@ def test_errors_over_many_noises_are_what_the_intervals_say() -> None:
         found = found_from(cells(truth() + noise))
         for name, true in (("mu_0", MU), ("drag_area", AREA)):
             each = found[name]
-            assert each.value is not None
-            assert each.standard_error is not None
-            squares.append(((each.value - true) / each.standard_error) ** 2)
+            squares.append(((present(each.value) - true) / present(each.standard_error)) ** 2)
     assert 0.4 < np.mean(squares) < 1.8
 
 
@@ -119,8 +117,7 @@ def test_a_free_clock_takes_an_offset_away_and_knows_less() -> None:
     shifted = cells(truth() + 17.25)
     found = identify("carved-46m", shifted, "mu_0,drag_area", changes=CHANGES, clock_is_free=True)
     assert found["mu_0"].value == pytest.approx(MU, abs=1e-6)
-    error = found["mu_0"].standard_error
-    assert error is not None
+    error = present(found["mu_0"].standard_error)
     assert error > fisher_errors([0, 1])[0]
 
 
@@ -133,7 +130,6 @@ def test_profile_and_bootstrap_agree_with_the_curvature_of_a_nearly_linear_probl
     )
     for each in found.parameters:
         assert each.interval is not None
-        assert each.profile_interval is not None
         assert each.bootstrap_interval is not None
         width = each.interval[1] - each.interval[0]  # type: ignore[operator]
         assert each.profile_interval == pytest.approx(each.interval, abs=0.01 * width)
@@ -143,8 +139,7 @@ def test_profile_and_bootstrap_agree_with_the_curvature_of_a_nearly_linear_probl
 def test_a_prior_pulls_as_much_as_it_knows(tmp_path: Path) -> None:
     """A linear problem with standard error s₁ and a prior s₂ at distance d is pulled by d s₁²/(s₁² + s₂²)."""
     changes = CHANGES | {"drag.drag_area_m2": AREA}
-    free = identify("carved-46m", cells(truth()), "mu_0", changes=changes)["mu_0"].standard_error
-    assert free is not None
+    free = present(identify("carved-46m", cells(truth()), "mu_0", changes=changes)["mu_0"].standard_error)
     text = f'[identify."friction.mu_0"]\nprior_mean = {MU + 2.0 * free!r}\nprior_sd = {free!r}\n'
     found = identify(with_section(tmp_path, text), cells(truth()), "mu_0", changes=changes)["mu_0"]
     assert found.value == pytest.approx(MU + free, abs=0.02 * free)
@@ -220,8 +215,7 @@ class TestFile:
         read = read_photo_cells(path)
         assert [run.name for run in read.runs] == ["a", "b"]
         assert read.runs[0].time.tolist() == [2.5, 3.5]
-        sd = read.runs[1].time_sd
-        assert sd is not None
+        sd = present(read.runs[1].time_sd)
         assert sd.tolist() == [0.02]
 
     @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])

@@ -21,6 +21,7 @@ from skisnow.scenario.identify_section import given_parameters
 from skisnow.scenario.keys import FREE_KEYS
 from skisnow.scenario.reading import load_input
 from tests.coded import raises
+from tests.present import present
 
 FAR = np.full(2, 1e3)
 Places = Sequence[np.ndarray]
@@ -31,10 +32,9 @@ def rosenbrock(places: Places) -> list[np.ndarray | None]:
 
 
 def test_rosenbrocks_valley_ends_at_one_one() -> None:
-    found = Search(rosenbrock, -FAR, FAR, replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True)).run(
-        np.array([-1.2, 1.0])
+    found = present(
+        Search(rosenbrock, -FAR, FAR, replace(CLOSED_FORM_SEARCH, accuracy_is_stated=True)).run(np.array([-1.2, 1.0]))
     )
-    assert found is not None
     assert found.state == "converged"
     assert found.place == pytest.approx([1.0, 1.0], abs=1e-5)
 
@@ -43,10 +43,9 @@ def test_bounds_hold_as_in_bounded_linear_least_squares() -> None:
     rng = np.random.default_rng(1)
     design, wanted = rng.standard_normal((12, 3)), rng.standard_normal(12)
     low, high = np.full(3, -0.1), np.full(3, 0.15)
-    found = Search(lambda many: [design @ each - wanted for each in many], low, high, CLOSED_FORM_SEARCH).run(
-        np.zeros(3)
+    found = present(
+        Search(lambda many: [design @ each - wanted for each in many], low, high, CLOSED_FORM_SEARCH).run(np.zeros(3))
     )
-    assert found is not None
     assert found.place == pytest.approx(lsq_linear(design, wanted, (low, high)).x, abs=1e-7)
 
 
@@ -87,8 +86,7 @@ def test_interrupts_keep_the_best_so_far() -> None:
             raise KeyboardInterrupt
         return rosenbrock(many)
 
-    found = Search(residuals, -FAR, FAR, CLOSED_FORM_SEARCH).run(np.array([-1.2, 1.0]))
-    assert found is not None
+    found = present(Search(residuals, -FAR, FAR, CLOSED_FORM_SEARCH).run(np.array([-1.2, 1.0])))
     assert found.state == "interrupted"
     assert found.cost <= 24.2 + 1e-9  # of the start: 10² 0.44² + 2.2²
 
@@ -99,8 +97,7 @@ def test_places_without_residuals_are_avoided() -> None:
     def residuals(many: Places) -> list[np.ndarray | None]:
         return [None if each[0] > 0.7 else each - 0.65 for each in many]
 
-    found = Search(residuals, -FAR[:1], FAR[:1], CLOSED_FORM_SEARCH).run(np.zeros(1))
-    assert found is not None
+    found = present(Search(residuals, -FAR[:1], FAR[:1], CLOSED_FORM_SEARCH).run(np.zeros(1)))
     assert found.place == pytest.approx([0.65], abs=1e-6)
     assert Search(lambda many: [None for _ in many], -FAR[:1], FAR[:1], CLOSED_FORM_SEARCH).run(np.zeros(1)) is None
 
@@ -121,17 +118,14 @@ def test_broydens_update_replaces_jacobians_on_the_way() -> None:
         return bent(many)
 
     far, options = np.full(3, 1e3), replace(SearchOptions(), accuracy_is_stated=True)
-    found = Search(residuals, -far, far, options).run(np.zeros(3))
-    assert found is not None
+    found = present(Search(residuals, -far, far, options).run(np.zeros(3)))
     assert (found.state, found.rounds) == ("converged", 2)
     assert found.cost < 4.0  # 2 standard deviations, the tolerance
     assert [len(many) for many in asked].count(3) == 1
     (last,) = (many for many in asked if len(many) == 3)
-    assert found.differentiated_at is not None
-    away = np.diag(last) - found.differentiated_at
+    away = np.diag(last) - present(found.differentiated_at)
     assert np.abs(away) == pytest.approx(np.full(3, 0.02), abs=1e-9)  # one-sided, over the smallest step
-    quick = Search(bent, -far, far, replace(options, renews=False)).run(np.zeros(3))
-    assert quick is not None
+    quick = present(Search(bent, -far, far, replace(options, renews=False)).run(np.zeros(3)))
     assert (quick.state, quick.rounds) == ("converged", 1)  # another search continues next to the minimum
 
 
@@ -152,8 +146,7 @@ def test_the_last_steps_use_the_jacobian_of_cheaper_residuals() -> None:
         return bent(many, 0.41)
 
     far, options = np.full(3, 1e3), replace(SearchOptions(), accuracy_is_stated=True, renews=False)
-    found = Search(bent, -far, far, options).run(np.zeros(3))
-    assert found is not None
+    found = present(Search(bent, -far, far, options).run(np.zeros(3)))
     options = replace(options, renews=True)
     last = Search(expensive, -far, far, replace(options, tolerance=0.2), differences=counted)
     better, apart = last.resume(found)
@@ -161,17 +154,14 @@ def test_the_last_steps_use_the_jacobian_of_cheaper_residuals() -> None:
     assert calls in ([1, 1], [1, 1, 1])
     assert cheap_calls == [3, 2]
     (cheap,), (dear,) = bent([better.place]), bent([better.place], 0.41)
-    assert cheap is not None
-    assert dear is not None
-    assert apart == pytest.approx(np.sqrt(np.mean((cheap - dear) ** 2)), rel=0.2)
+    assert apart == pytest.approx(np.sqrt(np.mean((present(cheap) - present(dear)) ** 2)), rel=0.2)
 
 
 def test_a_side_without_residuals_is_replaced_by_the_other() -> None:
     """Nothing above 0.01, less than a step of the differences: the slope is that of the other side."""
     options = replace(SearchOptions(), accuracy_is_stated=True, tolerance=0.2)
-    found = Search(lambda many: [None if a > 0.01 else np.array([30.0 * a + 3.0]) for (a,) in many],
-                   -FAR[:1], FAR[:1], options).run(np.zeros(1))  # fmt: skip
-    assert found is not None
+    found = present(Search(lambda many: [None if a > 0.01 else np.array([30.0 * a + 3.0]) for (a,) in many],
+                   -FAR[:1], FAR[:1], options).run(np.zeros(1)))  # fmt: skip
     assert found.jacobian == pytest.approx(np.array([[30.0]]))
     assert found.place == pytest.approx([-0.1], abs=2e-5)  # the damping is 1e-5
 
@@ -194,8 +184,7 @@ def test_columns_hardly_told_apart_are_differentiated_along_their_difference(low
     options = replace(SearchOptions(), accuracy_is_stated=True)
     low = np.array([-2.0, lowest])
     search = Search(nearly_parallel(0.1 if lowest else 0.0, asked), low, np.full(2, 2.0), options)
-    begun = search._differentiate(np.zeros(2))
-    assert begun is not None
+    begun = present(search._differentiate(np.zeros(2)))
     renewed = search._sharpened(begun)
     assert renewed.jacobian is not None
     wanted = 100.0 * np.column_stack([t, t + 1e-3 * t**2])

@@ -25,6 +25,7 @@ from skisnow.simulation.simulated_run import simulate
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.track import Track
 from tests.coded import raises
+from tests.present import present
 
 from ..simulation.straight_run import straight_run
 from . import straight_tracks
@@ -59,8 +60,7 @@ class TestStraight:
 
         def folded(scenario: Scenario) -> Run:
             run = straight_run(scenario)
-            strength = scenario.contact.snow.failure_shear_stress
-            assert strength is not None
+            strength = present(scenario.contact.snow.failure_shear_stress)
             return replace(run, place=run.place + np.array([0.0, float(strength > 0.5002e6), 0.0]))
 
         module = ModuleType("skisnow.simulation.simulated_run")
@@ -117,8 +117,7 @@ class TestStraight:
 
     def test_noise_beyond_the_stated_accuracy_widens_the_intervals_and_is_reported(self) -> None:
         one = track(seed=3)
-        assert one.place_sd is not None
-        proud = replace(one, place_sd=one.place_sd / 10.0)
+        proud = replace(one, place_sd=present(one.place_sd) / 10.0)
         found = found_from(proud)
         assert any("stated accuracy" in text for text in found.warnings)
         assert found["mu_0"].standard_error == pytest.approx(found_from(one)["mu_0"].standard_error, rel=0.3)
@@ -153,9 +152,7 @@ class TestStraight:
         for each in (ground, known):
             assert found_from(each)["speed"].value == pytest.approx(TRUE_SPEED, abs=1e-4)
         errors = [found_from(each)["speed"].standard_error for each in (ground, known)]
-        assert errors[0] is not None
-        assert errors[1] is not None
-        assert errors[1] < 0.7 * errors[0]
+        assert present(errors[1]) < 0.7 * present(errors[0])
 
     def test_a_parameter_without_effect_is_named(self) -> None:
         """A straight run does not feel the snow's strength."""
@@ -264,7 +261,6 @@ class TestStraight:
         found = found_from(track(seed=8), posterior=4000)
         for each in found.parameters:
             assert each.interval is not None
-            assert each.posterior_interval is not None
             width = each.interval[1] - each.interval[0]  # type: ignore[operator]
             assert each.posterior_interval == pytest.approx(each.interval, abs=0.1 * width)
 
@@ -327,8 +323,5 @@ def test_friction_of_a_simulated_run_is_found_again() -> None:
     assert found.outcome == "converged"
     for name, true in (("mu_0", 0.05), ("speed", 7.3)):
         each = found[name]
-        assert each.value is not None
-        assert each.standard_error is not None
-        assert abs(each.value - true) < 4.0 * each.standard_error
-    assert found["mu_0"].standard_error is not None
-    assert found["mu_0"].standard_error < 0.005
+        assert abs(present(each.value) - true) < 4.0 * present(each.standard_error)
+    assert present(found["mu_0"].standard_error) < 0.005

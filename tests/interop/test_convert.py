@@ -12,6 +12,7 @@ from skisnow.cli import main
 from skisnow.interop.caaml import write_caaml
 from skisnow.interop.snowex import site_pit
 from skisnow.scenario.snow_map import read_snow_layers
+from tests.present import present
 
 from ..campaign.recordings import NEWTON, STEP_MM, built, plain_snow
 from .pits import full_pit
@@ -64,10 +65,9 @@ def test_a_site_of_a_campaign_becomes_caaml(campaign: Path, tmp_path: Path, caps
     assert [each.temperature_C for each in pit.temperatures] == [-2.0]
     assert pit.air_temperature_C == -8.0
     assert "without a depth" in pit.comment
-    assert pit.snow_hardness is not None
     soft, hard = (300.0 / (3.14159265 * 2500.0 * depth) for depth in (6.0, 3.0))
-    assert pit.snow_hardness.value == pytest.approx((soft * hard) ** 0.5, rel=1e-6)
-    assert (pit.snow_hardness.n, pit.failure_shear_stress) == (2, None)
+    assert present(pit.snow_hardness).value == pytest.approx((soft * hard) ** 0.5, rel=1e-6)
+    assert (present(pit.snow_hardness).n, pit.failure_shear_stress) == (2, None)
     (force,) = pit.forces
     assert force.force.mean() == pytest.approx(2.0, rel=0.02)
     assert force.depth[0] == pytest.approx(0.0005, abs=1e-5)
@@ -94,8 +94,7 @@ def test_shear_of_a_site_goes_along(campaign: Path, tmp_path: Path) -> None:
     head = "experiment,site,plate,edge_angle_deg,depth_mm,lever_arm_mm,moment_Nm\n"
     (campaign / "shear.csv").write_text(head + rows, encoding="utf-8")
     assert main(["convert", str(campaign), str(tmp_path / "a.caaml"), "--site", "A"]) == 0
-    stress = read_caaml(tmp_path / "a.caaml").failure_shear_stress
-    assert stress is not None
+    stress = present(read_caaml(tmp_path / "a.caaml").failure_shear_stress)
     shear = analyse(read_campaign(campaign)).results["shear"]["experiments"]
     here = [row["S_f_N_per_mm2"] for row in shear if row["site"] == "A"]
     assert len(here) == 2 < len(shear)

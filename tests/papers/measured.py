@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 from benchmarks.page_tables import write_tables
+from tests.present import present
 
 from skisnow import carve, read_ski
 from skisnow.carving.result import Equilibrium
@@ -58,13 +59,11 @@ CENTRAL: Final[Mapping[str, Any]] = {"load": 800.0, "clamp_length": 0.3, "unload
 
 
 def chord(found: Equilibrium) -> float:
-    assert found.turn_radius_chord is not None
-    return found.turn_radius_chord
+    return present(found.turn_radius_chord)
 
 
 def boot(found: Equilibrium) -> float:
-    assert found.turn_radius_boot is not None
-    return found.turn_radius_boot
+    return present(found.turn_radius_boot)
 
 
 def carved(degrees: float, ski: Ski | None = None, **changes: Any) -> Equilibrium:
@@ -120,8 +119,7 @@ def footprint_rows() -> list[tuple[str, tuple[Equilibrium, Equilibrium]]]:
 
 def borne_by_boot(found: Equilibrium) -> float:
     """Share of the snow's force within 0.15 m of the boot."""
-    assert found.force_per_length is not None
-    station, force = found.station, found.force_per_length
+    station, force = found.station, present(found.force_per_length)
     length = -np.gradient(station)
     return float((length * force)[np.abs(station) < 0.15].sum() / (length * force).sum())
 
@@ -148,9 +146,7 @@ LOADS: Final = (800.0, 1500.0)
 
 def grip(found: Equilibrium) -> float:
     """S_f ∫ e ds over the side force of the balance."""
-    assert found.side_force is not None
-    assert found.side_force_limit is not None
-    return found.side_force_limit / found.side_force
+    return present(found.side_force_limit) / present(found.side_force)
 
 
 def grip_table() -> str:

@@ -29,6 +29,7 @@ from skisnow.scenario.identify_section import prior_of
 from skisnow.ski import write_ski
 from skisnow.snow import SnowProperties
 from tests.coded import Coded, coded, raises
+from tests.present import present
 
 from ..report.runs import circle_run
 
@@ -83,8 +84,7 @@ def test_the_chain_simulates_each_contact_and_each_drawn_snow(analysis: Analysis
 
 def test_a_measured_unloading_ratio_is_the_one_of_the_turn(analysis: Analysis, asked: list[Scenario]) -> None:
     """Over all sites of the reference campaign it is measured; a given one comes first."""
-    measured = analysis.snow().unloading_ratio
-    assert measured is not None
+    measured = present(analysis.snow().unloading_ratio)
     found = skisnow.turn(analysis, scenario=skisnow.load_scenario("carved-46m", changes=TURN), runs=3, workers=1)
     assert found.snow.unloading_ratio == measured
     assert [each.contact.unloading_ratio for each in asked[:2]] == [measured, 1.0]
@@ -166,8 +166,7 @@ def test_each_input_has_a_column_of_shares_in_its_order(analysis: Analysis, monk
     snow = analysis.snow("C", unloading_ratio=10.0)
     two = (prior_of("snow.unloading_ratio=2:32"), prior_of("ski.stiffness_factor=0.25:4"))
     (first,) = pipeline_turn.drawn_scenarios(skisnow.load_scenario("carved-46m").with_(snow=snow), two, 1, 8)
-    assert snow.snow_hardness_interval is not None
-    assert first.contact.snow.snow_hardness == pytest.approx(snow.snow_hardness_interval[0])
+    assert first.contact.snow.snow_hardness == pytest.approx(present(snow.snow_hardness_interval)[0])
     assert first.contact.snow.failure_shear_stress == pytest.approx(snow.failure_shear_stress)
     assert first.contact.unloading_ratio == pytest.approx(4.0)
     assert first.stiffness_factor == pytest.approx(0.25 * math.sqrt(2.0))

@@ -24,6 +24,7 @@ from skisnow.racing.score import NOT_PASSED
 from skisnow.racing.search import Evaluated, Evaluations
 from skisnow.racing.windows import Search, Windows, WindowSettings
 from skisnow.skier.plan import HalfWaves
+from tests.present import present
 
 SLALOM = load_scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
@@ -98,8 +99,7 @@ def test_invalid_racing_lines_are_rejected(turns: tuple[LineTurn, ...], words: s
 
 def test_a_line_comes_back_from_its_table(tmp_path: Path) -> None:
     write_line(CURVED, tmp_path / "line.csv")
-    assert SLALOM.course is not None
-    read = read_line(tmp_path / "line.csv", SLALOM.course, CURVED.start)
+    read = read_line(tmp_path / "line.csv", present(SLALOM.course), CURVED.start)
     assert read.turns == CURVED.turns
     assert read.apexes == CURVED.apexes
 
@@ -117,11 +117,10 @@ def test_a_table_that_is_no_line(old: str, new: str, words: str, tmp_path: Path)
     place = tmp_path / "line.csv"
     write_line(CURVED, place)
     place.write_text(place.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
-    assert SLALOM.course is not None
     with pytest.raises(ParameterError, match=words):
-        read_line(place, SLALOM.course, CURVED.start)
+        read_line(place, present(SLALOM.course), CURVED.start)
     with pytest.raises(ParameterError, match="cannot be read"):
-        read_line(tmp_path / "none.csv", SLALOM.course, CURVED.start)
+        read_line(tmp_path / "none.csv", present(SLALOM.course), CURVED.start)
 
 
 def test_a_race_needs_course_and_skier() -> None:
@@ -197,8 +196,7 @@ def test_three_numbers_a_turn_lose_little_to_a_free_line() -> None:
     """What docs/how-to/race.md says."""
     pytest.importorskip("cmaes")
     free, _ = quickest_free_line(PointRacer.of(SLALOM))
-    found = race(SLALOM, gates=4, model="point", evaluations=1000, seed=1, workers=1).score.time
-    assert found is not None
+    found = present(race(SLALOM, gates=4, model="point", evaluations=1000, seed=1, workers=1).score.time)
     assert 0.0 < found - free < LOST
 
 

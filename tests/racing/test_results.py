@@ -29,6 +29,7 @@ from skisnow.racing.point import Racer
 from skisnow.racing.quickest import _fingerprint
 from skisnow.racing.worth import AS_IT_IS, _on_snow, wider
 from skisnow.track.course.gates_table import GateGap
+from tests.present import present
 
 from .test_point import WAY, glide, straight_course
 from .test_search import EASY, SLALOM, raced
@@ -127,8 +128,7 @@ def test_a_last_apex_before_its_gate_is_gone_on_from() -> None:
     free = PointRacer(slope_angle=0.2, mass=80.0, friction=0.0, drag=0.0, speed=4.0)
     line = RacingLine(straight_course(), (0.0, 0.0), (*(LineTurn(aside=1.0),) * 2, LineTurn(aside=1.0, along=-0.4)))
     result, end = free.race(line)
-    assert result is not None
-    assert result.passed == 3
+    assert present(result).passed == 3
     assert end == pytest.approx((31.0, 0.0))
 
 
@@ -177,8 +177,7 @@ def test_a_ski_is_faster_only_where_the_whole_interval_says_so(gaps: tuple[float
 
 def test_on_a_drawn_snow_a_skier_assumes_the_scenarios_own() -> None:
     snow = replace(STRAIGHT.contact.snow, snow_hardness=9e8)
-    assumed = _on_snow(STRAIGHT, STRAIGHT, snow).skier
-    assert assumed is not None
+    assumed = present(_on_snow(STRAIGHT, STRAIGHT, snow).skier)
     assert assumed.assumed_hardness == STRAIGHT.contact.snow.snow_hardness
     assert assumed.assumed_strength == STRAIGHT.contact.snow.failure_shear_stress
     assert Worth(name="", scores=(score(None),), base=(score(1.0),)).on_own_snow is None

@@ -16,6 +16,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.replay import Replay, ReplayTrack, replay_bytes, replay_of_bytes, replay_of_run, replay_page, write_replay
 from skisnow.replay.page import MODULES, static_text
 from tests.coded import Coded, coded, raises
+from tests.present import present
 
 from ..report.runs import circle_run
 from .held import held_replay
@@ -83,12 +84,10 @@ def test_numbers_of_a_later_reader_are_where_the_text_says(replay: Replay) -> No
 
 
 def test_a_track_without_heights_lies_on_the_snow(replay: Replay) -> None:
-    back = replay_of_bytes(replay_bytes(replay)).track
-    assert back is not None
+    back = present(replay_of_bytes(replay_bytes(replay)).track)
     assert back.name == "GNSS <1>"
     assert back.place == pytest.approx(np.array([[0.0, 0.0, 0.1], [1.0, 2.0, 0.0]]), abs=1e-6)
-    assert back.time is not None
-    assert back.time.tolist() == [0.0, 0.5]
+    assert present(back.time).tolist() == [0.0, 0.5]
 
 
 @pytest.mark.parametrize("count", [802, 2002])

@@ -24,6 +24,7 @@ from skisnow.ski import ski_named, write_ski
 from skisnow.track.course import Course, Gate, read_course
 from skisnow.track.track import Track
 from tests.coded import raises
+from tests.present import present
 
 from ..report.runs import RADIUS, SPEED, STANCE, circle_run
 
@@ -116,7 +117,6 @@ def track(axes: str = "slope") -> Track:
 def test_a_measured_track_keeps_its_places_and_moves_in_time() -> None:
     found = measured_track(track(), starts_at=1.5)
     assert found.place[:, :2].tolist() == [[0.0, 1.0], [2.0, 3.0]]
-    assert found.time is not None
     assert found.time == pytest.approx([1.5, 1.7])
     with raises(ParameterError, "wrong_axes"):
         measured_track(track("east_north_up"))
@@ -127,8 +127,7 @@ def test_a_measured_track_keeps_its_places_and_moves_in_time() -> None:
 def test_a_course_of_the_catalogue_is_in_a_run_of_a_file(tmp_path: Path) -> None:
     run = circle_run(count=3)
     written(run, tmp_path, **{"course.name": "slalom-20-gates"})
-    gates = replay_of_file(tmp_path).gates
-    assert gates is not None
+    gates = present(replay_of_file(tmp_path).gates)
     assert gates[:, :2].tolist() == [list(gate.turning) for gate in read_course("slalom-20-gates").gates]
 
 
@@ -142,7 +141,6 @@ def test_times_at_gates_are_those_of_both_feet() -> None:
     run = replace(run, scenario=replace(run.scenario, course=Course(gates=tuple(gates))))
     found, times = run_gates(run), replay_of_run(run).gate_times
     assert found is not None
-    assert times is not None
     assert found.passed == 2
     assert times == pytest.approx([time - found.start_time for time in found.times if time is not None], abs=1e-9)
 

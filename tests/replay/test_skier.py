@@ -39,6 +39,7 @@ from skisnow.simulation.run_summary import run_gates
 from skisnow.skier import body_of
 from skisnow.skier.anthropometry import FOOT, FOREARM, SHANK, THIGH, TRUNK, UPPER_ARM
 from skisnow.track.course import Course, Gate
+from tests.present import present
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile, Playing
@@ -83,9 +84,8 @@ def replay(run: Run) -> Replay:
 
 def joints_of(replay: Replay) -> dict[str, np.ndarray]:
     """In space."""
-    assert replay.skier is not None
     turn = Rotation.from_quat(replay.attitude, scalar_first=True).as_matrix()
-    places = replay.place[:, None] + np.einsum("nab,nkb->nka", turn, replay.skier.joints)
+    places = replay.place[:, None] + np.einsum("nab,nkb->nka", turn, present(replay.skier).joints)
     return {name: places[:, i] for i, name in enumerate(JOINTS)}
 
 
@@ -104,8 +104,7 @@ def test_bones_have_the_lengths_of_a_body_so_tall(replay: Replay) -> None:
 
 
 def test_the_masses_have_their_centre_where_the_run_has_it(run: Run, replay: Replay) -> None:
-    assert run.boots is not None
-    assert centre_of_mass(joints_of(replay)) == pytest.approx(run.boots.centre_of_mass, abs=2e-3)
+    assert centre_of_mass(joints_of(replay)) == pytest.approx(present(run.boots).centre_of_mass, abs=2e-3)
 
 
 def test_each_segment_has_its_centre_from_its_upper_end() -> None:
@@ -151,8 +150,7 @@ def test_two_bones_meet_by_hand() -> None:
 
 
 def test_a_body_that_legs_cannot_reach_is_drawn_all_the_same(run: Run) -> None:
-    assert run.boots is not None
-    far = replace(run.boots, centre_of_mass=run.boots.centre_of_mass + np.array([0.0, 0.0, 2.0]))
+    far = replace(present(run.boots), centre_of_mass=present(run.boots).centre_of_mass + np.array([0.0, 0.0, 2.0]))
     joints = joints_of(replay_of_run(replace(run, boots=far)))
     for side in ("left", "right"):
         length = np.linalg.norm(joints[f"{side} hip"] - joints[f"{side} ankle"], axis=1)
@@ -164,8 +162,7 @@ def test_bytes_and_file_hold_the_skier_and_its_gates(run: Run, replay: Replay, t
     back = replay_of_bytes(replay_bytes(replay))
     assert back.skier is not None and replay.skier is not None
     assert back.skier.joints == pytest.approx(replay.skier.joints, abs=5e-5)
-    result = run_gates(run)
-    assert result is not None
+    result = present(run_gates(run))
     assert replay.gate_times is not None and back.gate_times is not None
     assert replay.gate_times.tolist() == [time - run.time[0] for time in result.times if time is not None]
     assert back.gate_times == pytest.approx(replay.gate_times, abs=1e-6)
@@ -184,10 +181,8 @@ def test_a_gate_that_was_not_reached_has_no_time(run: Run) -> None:
     """Even with it every number of the page's header is one."""
     gates = (*run.scenario.course.gates, Gate(name="3", turning=(500.0, 0.0), side="left"))  # type: ignore[union-attr]
     late = replay_of_run(replace(run, scenario=replace(run.scenario, course=Course(gates=gates, source="of the test"))))
-    assert late.gate_times is not None
-    assert np.isnan(late.gate_times).tolist() == [False, False, True]
-    back = replay_of_bytes(replay_bytes(late)).gate_times
-    assert back is not None
+    assert np.isnan(present(late.gate_times)).tolist() == [False, False, True]
+    back = present(replay_of_bytes(replay_bytes(late)).gate_times)
     assert np.isnan(back).tolist() == [False, False, True]
 
 
@@ -196,12 +191,11 @@ def test_both_models_have_the_skier(replay: Replay) -> None:
     (mesh,) = [each for each in still.words["meshes"] if each["name"] == "skier"]
     vertices = still.array(mesh["primitives"][0]["attributes"]["POSITION"])
     assert vertices == pytest.approx(skier_mesh(replay, 4).vertices, abs=2e-6)
-    assert replay.skier is not None
-    names = {part.name for part in skier_parts(replay.skier.height)}
+    names = {part.name for part in skier_parts(present(replay.skier).height)}
     assert len(names) == 14
     assert names <= {each["name"] for each in moving.words["nodes"]}
     whole = skier_mesh(replay, 6)
-    parts = skier_parts(replay.skier.height)
+    parts = skier_parts(present(replay.skier).height)
     first = 0
     playing = Playing(moving, float(replay.time[6] - replay.time[0]))
     upright = Rotation.from_quat(moving.words["nodes"][moving.node("run")]["rotation"])
@@ -215,13 +209,12 @@ def test_both_models_have_the_skier(replay: Replay) -> None:
 
 def test_parts_stand_upright_between_their_joints(replay: Replay) -> None:
     """Their z axis goes from one joint to the other; their x axis has no part to the body's left."""
-    assert replay.skier is not None
     for part in skier_parts(HEIGHT):
         if part.start not in JOINTS:
             continue
-        start, turn = part_poses(replay.skier, part)
+        start, turn = part_poses(present(replay.skier), part)
         axes = Rotation.from_quat(turn, scalar_first=True).as_matrix()
-        end = replay.skier.joints[:, JOINTS.index(part.end)]
+        end = present(replay.skier).joints[:, JOINTS.index(part.end)]
         way = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
         assert axes[:, :, 2] == pytest.approx(way, abs=1e-9), part.name
         assert axes[:, 1, 0] == pytest.approx(np.zeros(len(start)), abs=1e-9), part.name
@@ -259,9 +252,8 @@ def test_parts_are_as_large_as_those_that_were_looked_at(height: float, boxes: d
 
 def test_meshes_are_closed_and_look_outward(replay: Replay) -> None:
     """By the divergence theorem the volume of each part is above 0: that of a body, 70 litres, all together."""
-    assert replay.skier is not None
     volumes = []
-    for part in skier_parts(replay.skier.height):
+    for part in skier_parts(present(replay.skier).height):
         a, b, c = (part.mesh.vertices[part.mesh.pieces[:, i]] for i in range(3))
         volumes.append(float(np.einsum("ta,ta->t", a, np.cross(b, c)).sum()) / 6.0)
     assert min(volumes) > 0.0
@@ -275,8 +267,6 @@ def test_joint_angles_for_opensim_lead_to_the_joints_and_boots(tmp_path: Path) -
     table = read_motion(tmp_path / "turn_joints.mot")
     assert table.in_degrees
     angles, replay = table.columns, replay_of_run(run)
-    assert replay.skier is not None
-    assert replay.skis.boots is not None
 
     def turn(order: str, *names: str, sign: float = 1.0) -> Rotation:
         senses = np.array([1.0, sign, sign])[: len(names)]
@@ -287,7 +277,7 @@ def test_joint_angles_for_opensim_lead_to_the_joints_and_boots(tmp_path: Path) -
 
     body = Rotation.from_quat(np.roll(replay.attitude, -1, axis=1))
     joints = {
-        name: (replay.place + body.apply(replay.skier.joints[:, k]))[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
+        name: (replay.place + body.apply(present(replay.skier).joints[:, k]))[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
         for k, name in enumerate(JOINTS)
     }
     place = np.stack([angles[f"pelvis_t{axis}"] for axis in "xyz"], axis=1)
@@ -300,7 +290,7 @@ def test_joint_angles_for_opensim_lead_to_the_joints_and_boots(tmp_path: Path) -
         knee = joints[f"{side} hip"] + down(thigh, THIGH.length)
         assert np.allclose(knee, joints[f"{side} knee"], atol=1e-9)
         assert np.allclose(knee + down(shank, SHANK.length), joints[f"{side} ankle"], atol=1e-9)
-        boot = Rotation.from_quat(np.roll(replay.skis.boots.attitude[:, k], -1, axis=1))
+        boot = Rotation.from_quat(np.roll(present(replay.skis.boots).attitude[:, k], -1, axis=1))
         sole = boot.apply([0.0, 0.0, 1.0])[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
         assert np.allclose(foot.apply([0.0, 1.0, 0.0]), sole, atol=1e-9)
         assert (angles[f"knee_angle{end}"] > 10.0).all()

@@ -14,6 +14,7 @@ from skisnow.scenario import Profile, Terrain, read_terrain
 from skisnow.simulation.moving_boots import BootHistory
 from skisnow.simulation.run import Run
 from skisnow.track.course import Course, Gate
+from tests.present import present
 
 from ..report.runs import circle_run
 from .glb_files import GlbFile
@@ -46,8 +47,7 @@ def run_with_boots() -> Run:
 
 def test_a_tilted_plane_as_a_grid_is_that_plane_everywhere() -> None:
     plane = -0.2 * X[:, None] + 0.05 * Y
-    shown = replay_of_run(over(plane)).terrain
-    assert shown is not None
+    shown = present(replay_of_run(over(plane)).terrain)
     assert shown.grade == pytest.approx((-0.2, 0.05), abs=1e-12)
     for x, y in ((3.21, 4.4), (-300.0, 7.0), (500.0, -900.0)):
         assert float(shown.heights(x, y)) == pytest.approx(-0.2 * x + 0.05 * y, abs=1e-9)
@@ -55,8 +55,7 @@ def test_a_tilted_plane_as_a_grid_is_that_plane_everywhere() -> None:
 
 def test_heights_are_those_that_the_skis_run_on() -> None:
     run = over(hills(X[:, None], Y))
-    terrain = replay_of_run(run).terrain
-    assert terrain is not None
+    terrain = present(replay_of_run(run).terrain)
     x, y = np.random.default_rng(1).uniform((-4.0, -10.0), (25.0, 10.0), (200, 2)).T
     apart = terrain.heights(x, y) - run.scenario.slope.surface.heights(x, y)  # type: ignore[union-attr]
     # straight over half a metre: 0.3 m (1/4² + 1/5²) 0.5² / 8 = 1 mm, the patches' bends at the places besides
@@ -66,16 +65,14 @@ def test_heights_are_those_that_the_skis_run_on() -> None:
 
 def test_a_long_run_has_no_more_places_than_a_screen_needs() -> None:
     run = over(hills(X[:, None], Y))
-    far = replay_of_run(replace(run, place=run.place * 60.0)).terrain
-    assert far is not None
+    far = present(replay_of_run(replace(run, place=run.place * 60.0)).terrain)
     assert 30_000 < far.height.size < 45_000
 
 
 def test_meshes_lie_on_the_snow() -> None:
     replay = replay_of_run(over(hills(X[:, None], Y)))
-    assert replay.terrain is not None
     for mesh, least, most in ((snow_mesh(replay), 0.0, 1e-9), (grid_mesh(replay), 4.5e-4, 5.5e-4)):
-        above = mesh.vertices[:, 2] - replay.terrain.heights(*mesh.vertices[:, :2].T)
+        above = mesh.vertices[:, 2] - present(replay.terrain).heights(*mesh.vertices[:, :2].T)
         assert above.min() >= least - 1e-9
         assert above.max() <= most
     triangles = snow_mesh(replay).pieces
@@ -110,8 +107,7 @@ def test_gates_of_the_course_stand_on_the_snow() -> None:
     gates = tuple(Gate(name=str(i), turning=place, side="left") for i, place in enumerate([(4.0, 2.0), (9.0, -1.0)]))
     run = over(hills(X[:, None], Y))
     run = replace(run, scenario=replace(run.scenario, course=Course(gates=gates)))
-    found = replay_of_run(run).gates
-    assert found is not None
+    found = present(replay_of_run(run).gates)
     assert found[:, :2].tolist() == [[4.0, 2.0], [9.0, -1.0]]
     assert found[:, 2] == pytest.approx(run.scenario.slope.surface.heights([4.0, 9.0], [2.0, -1.0]))  # type: ignore[union-attr]
 
@@ -119,14 +115,13 @@ def test_gates_of_the_course_stand_on_the_snow() -> None:
 def test_skis_are_where_their_boots_have_them() -> None:
     """By hand: the middle of a flat ski's base goes from the boot along its own axis ahead."""
     run = run_with_boots()
-    assert run.boots is not None
     skis = replace(run.skis, bending=0.0 * run.skis.bending, twist=0.0 * run.skis.twist)
     replay = replay_of_run(replace(run, skis=skis))
     for frame in (0, 3):
         edges = ski_edges(replay, frame)
         for ski in (0, 1):
-            ahead, left, off = run.boots.axes[frame, ski]
-            middle = run.boots.place[frame, ski] + replay.skis.station[:, None] * ahead
+            ahead, left, off = present(run.boots).axes[frame, ski]
+            middle = present(run.boots).place[frame, ski] + replay.skis.station[:, None] * ahead
             middle = middle + replay.skis.base_height[:, None] * off
             assert edges[ski].mean(axis=1) == pytest.approx(middle, abs=1e-12)
             across = edges[ski, :, 0] - edges[ski, :, 1]

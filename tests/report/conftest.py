@@ -10,6 +10,7 @@ from skisnow.campaign import Campaign, PenetrationTests, ShearTests
 from skisnow.campaign.reference import reference_campaign
 from skisnow.estimation import Analysis, analyse
 from skisnow.report import write_report
+from tests.present import present
 
 from ..conftest import only_drawn
 
@@ -56,8 +57,7 @@ def reported(campaign: Campaign, folder: Path) -> Reported:
 
 def first_series(campaign: Campaign, count: int) -> PenetrationTests:
     """The first penetration experiments."""
-    tests = campaign.penetration
-    assert tests is not None
+    tests = present(campaign.penetration)
     readings = int(tests.first[count])
     keys = ("experiment", "site", "tool", "spot", "edge_angle", "snow_density", "drop_cone_depth", "cancelled")
     by_series: dict[str, Any] = {name: getattr(tests, name)[:count] for name in keys}
@@ -74,8 +74,7 @@ def first_series(campaign: Campaign, count: int) -> PenetrationTests:
 
 def first_shear(campaign: Campaign, count: int) -> ShearTests:
     """The first shear experiments."""
-    tests = campaign.shear
-    assert tests is not None
+    tests = present(campaign.shear)
     whole = ("further", "turning")
     columns: dict[str, Any] = {name: getattr(tests, name)[:count] for name in ShearTests.__slots__ if name not in whole}
     return replace(tests, **columns, further={})

@@ -26,6 +26,7 @@ from skisnow.report.campaign.verdicts import verdicts
 from skisnow.report.figures.drawing import FORMS
 from skisnow.report.formatting import interval, significant
 from tests.coded import raises
+from tests.present import present
 
 from ..conftest import only_drawn
 from .conftest import Reported, altered, analysis_of, first_series, first_shear, reported
@@ -238,8 +239,7 @@ def test_a_measured_campaign_is_not_called_synthetic(campaign: Campaign, tmp_pat
 
 @pytest.mark.usefixtures("undrawn")
 def test_names_are_text_and_never_markup(campaign: Campaign, tmp_path: Path) -> None:
-    assert campaign.shear is not None
-    shear = replace(campaign.shear, site=tuple(f"{_HOSTILE} {name}" for name in campaign.shear.site))
+    shear = replace(present(campaign.shear), site=tuple(f"{_HOSTILE} {name}" for name in present(campaign.shear).site))
     evil = replace(campaign, name=_HOSTILE, place="{{ 7 * 7 }}", observers=("<b>",), shear=shear, penetration=None)
     found = reported(evil, tmp_path)
     reader = _Reader(found.html)
@@ -331,8 +331,7 @@ def test_what_was_not_measured_has_no_section_and_what_was_has(campaign: Campaig
 
 @pytest.mark.usefixtures("undrawn")
 def test_long_tables_are_cut_with_a_sentence(campaign: Campaign, tmp_path: Path) -> None:
-    tests = campaign.penetration
-    assert tests is not None
+    tests = present(campaign.penetration)
     names: dict[str, Any] = {
         name: getattr(tests, name) * 2 for name in ("experiment", "site", "tool", "spot", "cancelled")
     }

@@ -10,6 +10,7 @@ import pytest
 from skisnow._support.messages import Message
 from skisnow.report.pair_verdicts import RADII, run_verdict, ski_verdict
 from skisnow.track.track import Track
+from tests.present import present
 
 NAMES = ("wide", "tight")
 
@@ -58,10 +59,8 @@ def run(name: str, speed: float, duration: float) -> Track:
 
 def test_faster_run_over_the_length_of_both() -> None:
     """40 m at 10 m/s take 4 s, at 8 m/s 5 s."""
-    found = run_verdict(run("slow", 8.0, 6.0), run("fast", 10.0, 4.0))
-    assert found is not None
+    found = present(run_verdict(run("slow", 8.0, 6.0), run("fast", 10.0, 4.0)))
     assert (found.fields["a"], found.fields["b"]) == ("fast", "slow")
     assert (found.fields["seconds"], found.fields["length"]) == pytest.approx((1.0, 40.0))
-    same = run_verdict(run("a", 10.0, 4.0), run("b", 10.0, 5.0))
-    assert same is not None
+    same = present(run_verdict(run("a", 10.0, 4.0), run("b", 10.0, 5.0)))
     assert "equally fast" in same

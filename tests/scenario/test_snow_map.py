@@ -23,6 +23,7 @@ from skisnow.snow import published_snow
 from tests.coded import raises
 from tests.forces.friction.test_friction import STATES
 from tests.key_names import DAMPING, IGNORE_RANGE_WARNING
+from tests.present import present
 
 ALONG = "x_m,H_V_N_per_mm3,S_f_N_per_mm2\n0,0.1,0.3\n10,0.4,0.5\n40,0.4,0.4\n"
 OVER = "x_m,y_m,S_f_N_per_mm2\n0,-5,0.2\n0,5,0.4\n20,-5,0.2\n20,5,0.4\n"
@@ -48,20 +49,17 @@ def test_table_along_the_slope_holds_its_values_and_does_not_overshoot(tmp_path:
 def test_grid_holds_its_values(tmp_path: Path) -> None:
     found = read_snow_map(written(tmp_path, OVER))
     assert found.hardness is None
-    assert found.failure_shear_stress is not None
-    assert float(found.failure_shear_stress.values_at(3.0, 0.0)) == pytest.approx(0.3 * N_PER_MM2)
+    assert float(present(found.failure_shear_stress).values_at(3.0, 0.0)) == pytest.approx(0.3 * N_PER_MM2)
     assert repr(found).startswith("<SnowMap S_f 0.2 to 0.4 N/mm²")
 
 
 def test_friction_over_the_place_leaves_the_snow_as_it_is(tmp_path: Path) -> None:
     path = written(tmp_path, "x_m,mu_share\n0,0.5\n10,2\n20,2\n")
     given, plain = load_scenario("carved-46m", changes={"snow.map_file": str(path)}), load_scenario("carved-46m")
-    assert given.contact.snow_map is not None
-    assert given.contact.snow_map.friction_share is not None
-    values = given.contact.snow_map.friction_share.values_at(np.array([0.0, 10.0, 15.0]), 3.0)
+    values = present(present(given.contact.snow_map).friction_share).values_at(np.array([0.0, 10.0, 15.0]), 3.0)
     np.testing.assert_allclose(values, [0.5, 2.0, 2.0], atol=1e-12)
     assert given.contact.snow == plain.contact.snow
-    assert repr(given.contact.snow_map).startswith("<SnowMap mu_share 0.5")
+    assert repr(present(given.contact.snow_map)).startswith("<SnowMap mu_share 0.5")
 
 
 def test_means_stand_for_the_snow(tmp_path: Path) -> None:
@@ -279,9 +277,8 @@ def test_friction_is_that_of_a_law_file_or_a_line(tmp_path: Path) -> None:
     changes: dict[str, Any] = {"friction.mu_0": 0.0, "friction.law_file": str(path), "friction.temperature_C": -8.0}
     cold = load_scenario("carved-46m", changes=changes).contact
     assert cold.friction_at(2.0) == pytest.approx(0.0425)  # half-way between two states of the file
-    assert cold.friction_law is not None
     wet = replace(cold, temperature=0.0, liquid_water=0.5)
-    assert wet.glide_friction == cold.friction_law.at(0.0, 0.5) != cold.glide_friction
+    assert wet.glide_friction == present(cold.friction_law).at(0.0, 0.5) != cold.glide_friction
     with raises(ParameterError, "not_supported"):
         cold.require_linear_friction()
     line = load_scenario("carved-46m", changes={"mu_0": 0.05, "mu_1_s_per_m": 0.002}).contact

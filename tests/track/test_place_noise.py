@@ -10,6 +10,7 @@ from skisnow._support.arrays import FloatArray
 from skisnow.track.path_estimate import PlaceNoise, estimate_place_noise
 from skisnow.track.smoothing import SmoothedTrack, smooth_track
 from skisnow.track.summary import summary_dict
+from tests.present import present
 
 from .paths import track
 
@@ -23,9 +24,7 @@ def linked_turns(turn_s: float, step: float, count: int, seed: int) -> FloatArra
 
 def noise_of(turn_s: float, step: float, noise: float, seed: int, count: int = 200) -> PlaceNoise:
     made = track(linked_turns(turn_s, step, count, seed), interval=step, noise=noise, seed=seed)
-    found = estimate_place_noise(made, smoothed(step, count))
-    assert found is not None
-    return found
+    return present(estimate_place_noise(made, smoothed(step, count)))
 
 
 @cache
@@ -56,16 +55,14 @@ def test_a_point_each_second_gives_a_bound(turn_s: float, noise: float) -> None:
 def test_a_bound_is_below_the_error_of_the_smoothing() -> None:
     made = track(linked_turns(4.0, 1.0, 200, 0), interval=1.0, noise=0.02)
     about_cubics = smooth_track(made)
-    found = estimate_place_noise(made, about_cubics)
-    assert found is not None
+    found = present(estimate_place_noise(made, about_cubics))
     assert 0.02 < found.value < 0.1 * about_cubics.place_noise
 
 
 def test_uneven_times_and_gaps_take_no_part() -> None:
     made = track(linked_turns(3.0, 0.1, 200, 0), interval=0.1, noise=0.3)
     made.time[100:] += 0.05
-    found = estimate_place_noise(made, smooth_track(made))
-    assert found is not None
+    found = present(estimate_place_noise(made, smooth_track(made)))
     assert found.value == pytest.approx(0.3, rel=0.25)
     made.time[::5] += 0.03
     assert estimate_place_noise(made, smooth_track(made)) is None

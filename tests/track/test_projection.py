@@ -18,6 +18,7 @@ from skisnow.track.projection import (
 from skisnow.track.slope_frame import in_slope_frame, slope_axes
 from skisnow.track.track import Track
 from tests.coded import raises
+from tests.present import present
 
 from . import metres_per_degree
 
@@ -155,12 +156,10 @@ def test_velocity_and_deviations_turn_too() -> None:
         place_sd=np.array([[0.01, 0.02, 0.05]]),
     )
     turned = in_slope_frame(given, fall_line_azimuth=0.0, slope_angle=ANGLE)
-    assert turned.velocity is not None
-    assert turned.place_sd is not None
-    np.testing.assert_allclose(turned.velocity, [[1.0, 0.0, 0.0]], atol=1e-15)
+    np.testing.assert_allclose(present(turned.velocity), [[1.0, 0.0, 0.0]], atol=1e-15)
     along = math.hypot(0.02 * math.cos(ANGLE), 0.05 * math.sin(ANGLE))
-    np.testing.assert_allclose(turned.place_sd[0, :2], [along, 0.01], rtol=1e-12)
-    assert (turned.place_sd**2).sum() == pytest.approx(0.01**2 + 0.02**2 + 0.05**2)
+    np.testing.assert_allclose(present(turned.place_sd)[0, :2], [along, 0.01], rtol=1e-12)
+    assert (present(turned.place_sd) ** 2).sum() == pytest.approx(0.01**2 + 0.02**2 + 0.05**2)
 
 
 def test_refused() -> None:

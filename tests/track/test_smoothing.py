@@ -17,6 +17,7 @@ from skisnow.track.smoothing import MOST_IN_WINDOW, Resolution, parts, smooth_tr
 from skisnow.track.summary import summary_dict, track_summary
 from skisnow.track.track import Track
 from tests.coded import Coded, coded, raises
+from tests.present import present
 
 from .paths import NOISE, FloatArray, circle, track
 
@@ -231,9 +232,7 @@ def linked_turns(period: float, *, speed: float = 12.0, count: int = 60, rate: f
 
 def estimate(place: FloatArray, *, rate: float = 1.0) -> PathEstimate:
     one = np.zeros(len(place), dtype=np.int64)
-    found = estimate_path(np.arange(float(len(place))) / rate, place, one, one)
-    assert found is not None
-    return found
+    return present(estimate_path(np.arange(float(len(place))) / rate, place, one, one))
 
 
 @pytest.mark.parametrize(("period", "rate", "count"), [(4.0, 1.0, 50), (17.0, 2.0, 100), (4.0, 10.0, 200)])
@@ -241,8 +240,7 @@ def test_linked_turns_at_constant_speed(period: float, rate: float, count: int) 
     """No maximum at an end, and no length below the polyline's."""
     place = linked_turns(period, rate=rate, count=count)
     found = estimate(place, rate=rate)
-    speed = found.max_speed()
-    assert speed is not None
+    speed = present(found.max_speed())
     assert speed.value == pytest.approx(12.0, rel=0.03)
     duration = (len(place) - 1) / rate
     assert found.length(with_heights=False).value == pytest.approx(12.0 * duration, rel=5e-3)
@@ -306,8 +304,7 @@ def test_gap_is_straight_and_a_pause_is_nothing() -> None:
     place[20:, 0] += 600.0
     part = np.repeat([0, 1], 20)
     for segment, expected in ((np.zeros(40, dtype=np.int64), 990.0), (part, 380.0)):
-        found = estimate_path(time, place, part.astype(np.int64), segment.astype(np.int64))
-        assert found is not None
+        found = present(estimate_path(time, place, part.astype(np.int64), segment.astype(np.int64)))
         assert found.length().value == pytest.approx(expected, rel=1e-3)
         assert found.length(0.0, 19.0).value == pytest.approx(190.0, rel=1e-3)
         assert found.arc_length_at(np.array([99.0]))[0] == pytest.approx(expected, rel=1e-3)
@@ -332,7 +329,6 @@ def test_few_points(points: int) -> None:
 def test_any_interval_between_points(interval: float, count: int) -> None:
     made: Track = track(circle(15.0, 8.0, duration=count * interval, interval=interval), interval=interval)
     summary = track_summary(made)
-    assert summary.max_speed is not None
     if interval < 1.0:
         assert summary.max_speed == pytest.approx(8.0, rel=0.01)
         assert summary.distances["places"] == pytest.approx(8.0 * count * interval, rel=0.01)

@@ -27,6 +27,7 @@ import skisnow.web.pages
 from skisnow.campaign.store import Journals, ReplayedCampaign, Store, replay_journal
 from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
+from tests.present import present
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
@@ -76,8 +77,7 @@ class Served:
         command = [sys.executable, "-m", "skisnow", "serve", "--port", str(port), "--store", str(self.store)]
         command += self.further
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        assert self.process.stdout is not None
-        with self.process.stdout as told:
+        with present(self.process.stdout) as told:
             return told.readline().strip()
 
     def _by_fork(self, port: int) -> str:
@@ -95,8 +95,8 @@ class Served:
             return str(hears.recv())
 
     def kill(self) -> None:
-        assert self.process is not None
         self.was_killed = True
+        assert self.process is not None
         self.process.kill()
         self.wait()
 

@@ -51,9 +51,8 @@ def test_cells_are_corrected_before_they_are_read(small: SmallCampaign) -> None:
     assert campaign.penetration.penetration_depth[1] == pytest.approx(2.75e-3)
     assert campaign.penetration.further["remark"][0] == "sun, wind"
     assert campaign.penetration.snow_density[0] == 350.0
-    assert campaign.shear is not None
-    assert campaign.shear.experiment == ("S1", "S9")
-    assert campaign.shear.moment[1] == 11.0
+    assert present(campaign.shear).experiment == ("S1", "S9")
+    assert present(campaign.shear).moment[1] == 11.0
     assert present(campaign.density).snow_density[2] == 320.0
     assert present(campaign.drop_cone).drop_cone_depth[2] == pytest.approx(0.018)
     assert campaign.problems == ()
@@ -271,19 +270,16 @@ def test_all_keys_are_optional(schema: Any) -> None:
 def test_exclusions_replace_the_default() -> None:
     described, found = read('[screening]\nexclude = ["beyond_tool", "hardness_outlier"]')
     assert found == []
-    assert described is not None
-    assert described.excluding == {"beyond_tool", "hardness_outlier", "cancelled", "zero_depth"}
+    assert present(described).excluding == {"beyond_tool", "hardness_outlier", "cancelled", "zero_depth"}
     nothing, _ = read("[screening]\nexclude = []")
-    assert nothing is not None
-    assert nothing.excluding == {"cancelled", "zero_depth"}
+    assert present(nothing).excluding == {"cancelled", "zero_depth"}
 
 
 def test_windows_and_old_macintosh_line_ends() -> None:
     for end in ("\r\n", "\r"):
         described, found = read((SKI + PLATE).replace("\n", end))
         assert found == []
-        assert described is not None
-        assert described.plates == {"b": 0.2}
+        assert present(described).plates == {"b": 0.2}
 
 
 def test_the_schema_is_one_and_takes_the_small(small: SmallCampaign, schema: Any) -> None:

@@ -94,8 +94,7 @@ def test_a_heading_in_another_unit_is_mapped_not_renamed(small: SmallCampaign, h
     assert "'load_N'" in missing.action
     small["campaign.toml"] += f'\n[columns]\n"{heading}" = "load_N"\n'
     read = present(small.read().penetration)
-    assert before is not None
-    assert read.load == pytest.approx(newtons * before.load)
+    assert read.load == pytest.approx(newtons * present(before).load)
 
 
 def test_points_in_a_file_of_commas(small: SmallCampaign) -> None:

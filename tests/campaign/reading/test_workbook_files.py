@@ -79,9 +79,8 @@ def test_sheets_beside_files_and_problems_by_sheet_and_row(small: SmallCampaign)
     assert (problem.code, problem.file, problem.row) == ("not_a_number", PRESSED, 4)
     rows[3][5] = 2.5
     campaign = small.read({"Hang.xlsx": packed(Penetration=rows, Diagramm=[["x"]])})
-    assert campaign.penetration is not None
-    assert campaign.penetration.row.tolist() == [3, 4]
-    assert campaign.penetration.further["time"][0] == "2026-11-23T09:10:00"
+    assert present(campaign.penetration).row.tolist() == [3, 4]
+    assert present(campaign.penetration).further["time"][0] == "2026-11-23T09:10:00"
     (flag,) = quality_flags(campaign)
     assert (flag.code, flag.file) == ("too_few_loads", PRESSED)
     assert campaign.unread_files == (PRESSED.replace("Penetration", "Diagramm"),)

@@ -206,8 +206,7 @@ def test_names_like_formulas_are_exported_as_texts_and_read_as_they_were(store: 
     cells = next(csv.reader(text.splitlines()[1:]))
     assert not any(cell.startswith(("=", "@", "+", "-")) for cell in cells)
     campaign = read_campaign(tmp_path)
-    assert campaign.penetration is not None
-    assert (set(campaign.penetration.experiment), set(campaign.penetration.site)) == ({name}, {site})
+    assert (set(present(campaign.penetration).experiment), set(present(campaign.penetration).site)) == ({name}, {site})
 
 
 EXPORTED_TOML = """name = "Kept"

@@ -107,9 +107,8 @@ def nursery() -> Iterator[Nursery]:
     with subprocess.Popen(
         [sys.executable, "-c", FORKING], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
     ) as process:
-        assert process.stdin is not None
-        yield Nursery(process, process.stdin, present(process.stdout))
-        process.stdin.close()
+        yield Nursery(process, present(process.stdin), present(process.stdout))
+        present(process.stdin).close()
         assert process.wait(timeout=300) == 0
 
 

@@ -13,6 +13,7 @@ from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import text
 from tests.coded import raises
+from tests.present import present
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import Journals, Store, replay_journal, store_place
@@ -111,12 +112,10 @@ def test_two_who_write_at_once_lose_nothing(server: Server) -> None:
         for who in names
     ]
     for writer in writers:
-        assert writer.stdout is not None
-        assert writer.stdout.readline() == "ready\n"
+        assert present(writer.stdout).readline() == "ready\n"
     for writer in writers:
-        assert writer.stdin is not None
-        writer.stdin.write("go\n")
-        writer.stdin.flush()
+        present(writer.stdin).write("go\n")
+        present(writer.stdin).flush()
     assert [writer.communicate(timeout=300)[1] for writer in writers] == ["", ""]
     with Store.open(address, create=False) as store:
         entries = Journals(store).entries(id_)

@@ -10,6 +10,7 @@ from skisnow import SnowProperties, carve
 from skisnow._support.units import MM, N_PER_MM2, N_PER_MM3
 from skisnow.identification import MeasuredGrooves, identify
 from skisnow.scenario import scenario_file
+from tests.present import present
 
 from .kept import Row, interval_row, number
 
@@ -62,13 +63,10 @@ def true_groove(hardness: float, strength: float, changes: dict[str, object]) ->
         scenario.ski, snow, edge_angle=angle, load=load, unloading_ratio=ratio, clamp_length=scenario.clamp_length,
         elements=ELEMENTS,
     )  # fmt: skip
-    assert found.edge_depth is not None
-    assert found.twist is not None
     assert found.turn_radius_chord is not None
-    assert found.side_force_limit is not None
-    deepest = int(np.argmax(found.edge_depth))
-    depth, local = float(found.edge_depth[deepest]), angle + float(found.twist[deepest])
-    holds = mass * scenario.start.speed**2 / (2.0 * found.side_force_limit)
+    deepest = int(np.argmax(present(found.edge_depth)))
+    depth, local = float(present(found.edge_depth)[deepest]), angle + float(present(found.twist)[deepest])
+    holds = mass * scenario.start.speed**2 / (2.0 * present(found.side_force_limit))
     slid = holds > found.turn_radius_chord
     needed = snow.failure_shear_stress * holds / found.turn_radius_chord  # type: ignore[operator]
     radius = holds if slid else found.turn_radius_chord

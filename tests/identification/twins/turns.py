@@ -10,6 +10,7 @@ from skisnow import Run
 from skisnow.comparison import compare_tracks
 from skisnow.identification import Identification, identify
 from skisnow.track.track import Track
+from tests.present import present
 
 from .kept import Row, interval_row, number
 from .truth import FREE, Truth, track_of, true_run, truth_of
@@ -74,9 +75,7 @@ def largest_deviations(found: Identification, run: Run) -> tuple[float, float]:
     computed = CubicSpline(fit.along, fit.fitted[:, :2])(time)
     simulated = track_as(time, np.column_stack([computed, np.full(len(time), np.nan)]))
     held = compare_tracks(simulated, true, from_above=True)
-    assert held.nearest.numbers is not None
-    assert held.time.numbers is not None
-    return held.nearest.numbers.max, held.time.numbers.max
+    return present(held.nearest.numbers).max, present(held.time.numbers).max
 
 
 def track_as(time: np.ndarray, place: np.ndarray) -> Track:

@@ -19,6 +19,7 @@ from skisnow.track.course.gates_table import COLUMNS, gaps_csv, gates_csv, gates
 from skisnow.track.course.passages import BEYOND, STRADDLED, STRADDLED_OUTER, TO_THE_RIGHT, track_point
 from skisnow.track.track import Axes, Track
 from tests.coded import raises
+from tests.present import present
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -125,8 +126,7 @@ def test_what_is_missed_says_by_how_much_and_where() -> None:
     result = passages(WIDE, along_x(y=1.25), {})
     assert outcomes(result) == ["passed", "missed", "passed"]
     assert result.missed == ("2",)
-    fault = result.fault
-    assert fault is not None
+    fault = present(result.fault)
     assert "0.25 m to the left" in fault.words
     assert fault.clearance == pytest.approx(-0.25)
     assert fault.time == pytest.approx(2.5)  # its line was crossed all the same
@@ -169,8 +169,7 @@ def climbing(pause: float) -> MovingPoint:
 def test_a_gate_passed_after_climbing_back_counts_later() -> None:
     result = passages(WIDE, climbing(6.0), {})
     assert result.passages[0].outcome == "passed"
-    assert result.passages[0].time is not None
-    assert result.passages[0].time > 1.7 + 6.0 + 3.0
+    assert present(result.passages[0].time) > 1.7 + 6.0 + 3.0
     assert passages(WIDE, climbing(130.0), {}).passages[0].outcome == "missed"
 
 
@@ -292,8 +291,7 @@ def pair(tmp_path: Path) -> tuple[Path, Path]:
 
 
 def test_gap_and_loss_at_each_gate(pair: tuple[Path, Path]) -> None:
-    gaps = read_gate_gaps(*pair)
-    assert gaps is not None
+    gaps = present(read_gate_gaps(*pair))
     assert [each.gate for each in gaps] == ["1", "2", "3", "4"]
     assert [each.gap for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.1), None]
     assert [each.lost for each in gaps] == [pytest.approx(0.2), None, pytest.approx(-0.3), None]
@@ -306,8 +304,7 @@ def test_gap_and_loss_at_each_gate(pair: tuple[Path, Path]) -> None:
 
 @pytest.mark.usefixtures("undrawn")
 def test_terminal_and_page_tell_the_same(pair: tuple[Path, Path]) -> None:
-    gaps = read_gate_gaps(*pair)
-    assert gaps is not None
+    gaps = present(read_gate_gaps(*pair))
     lines = gaps_text(gaps, ("mine", "theirs")).splitlines()
     assert lines[2].split() == ["1", "1.20", "1.00", "+0.20", "+0.20"]
     assert lines[3].split() == ["2", "2.00", "-", "-", "-"]
@@ -317,8 +314,7 @@ def test_terminal_and_page_tell_the_same(pair: tuple[Path, Path]) -> None:
 
 
 def test_the_figure_has_a_point_for_each_gate_that_both_crossed(pair: tuple[Path, Path]) -> None:
-    gaps = read_gate_gaps(*pair)
-    assert gaps is not None
+    gaps = present(read_gate_gaps(*pair))
     drawing = gate_gaps_drawing(gaps, ("mine", "theirs"))
     above, below = drawing.figure.axes
     drawn = max((line.get_xydata().tolist() for line in above.lines), key=lambda points: points[-1][0])  # type: ignore[union-attr]

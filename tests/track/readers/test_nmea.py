@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from skisnow.track.summary import track_summary
+from tests.present import present
 
 from .. import metres_per_degree
 from .receivers import nav_pvt, sentence, ubx_frame
@@ -51,25 +52,21 @@ def test_one_point_of_all_sentences_of_a_time(tmp_path: Path) -> None:
         north = 0.006 / 60 * metres_per_degree.north(47.23) * (1 + 1500 / 6.37e6)
         np.testing.assert_allclose(track.place[1], [0.0, north, 0.0], atol=5e-5)
         np.testing.assert_allclose(track.speed, [10 * 1852 / 3600] * 2, rtol=1e-12)
-        assert track.velocity is not None
         half, most = 0.5 * track.speed[0], np.sqrt(0.75) * track.speed[0]
-        np.testing.assert_allclose(track.velocity[:, :2], [[half, most], [most, -half]], atol=1e-5)
-        assert np.isnan(track.velocity[:, 2]).all()
-        assert track.place_sd is not None
-        np.testing.assert_array_equal(track.place_sd, [[0.022, 0.011, 0.033], [np.nan] * 3])
+        np.testing.assert_allclose(present(track.velocity)[:, :2], [[half, most], [most, -half]], atol=1e-5)
+        assert np.isnan(present(track.velocity)[:, 2]).all()
+        np.testing.assert_array_equal(present(track.place_sd), [[0.022, 0.011, 0.033], [np.nan] * 3])
 
 
 def test_speed_of_vtg_in_km_per_h(tmp_path: Path) -> None:
     track = read(tmp_path, gga() + sentence("GNVTG,90.0,T,,M,,N,36.0,K,A"), "a.nmea")
     assert track.speed[0] == pytest.approx(10.0)
-    assert track.velocity is not None
-    np.testing.assert_allclose(track.velocity[0, :2], [10.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(present(track.velocity)[0, :2], [10.0, 0.0], atol=1e-12)
 
 
 def test_south_and_west(tmp_path: Path) -> None:
     track = read(tmp_path, sentence("GPGGA,120000,3330.0,S,07030.0,W,1,8,1.0,100.0,M,,M,,"), "a.nmea")
-    assert track.origin is not None
-    assert (track.origin.latitude_deg, track.origin.longitude_deg) == (-33.5, -70.5)
+    assert (present(track.origin).latitude_deg, present(track.origin).longitude_deg) == (-33.5, -70.5)
     assert "mean sea level" in track.frame
 
 
@@ -99,8 +96,7 @@ def test_date_of_zda_comes_later(tmp_path: Path) -> None:
 def test_quality_of_gga_is_the_solution(tmp_path: Path) -> None:
     """Quality 4 is RTK with whole cycles, 5 float, 1 and 2 by the code, 6 dead reckoning."""
     track = read(tmp_path, b"".join(gga(f"15511{i}.00", quality=i) for i in (1, 2, 4, 5, 6)), "a.nmea")
-    assert track.solution is not None
-    assert track.solution.tolist() == ["code", "code", "fixed", "float", ""]
+    assert present(track.solution).tolist() == ["code", "code", "fixed", "float", ""]
     assert track.flagged == {"float_solution": 1, "code_solution": 2}
     assert read(tmp_path, gga(quality=1), "b.nmea").flagged == {}
 
@@ -112,8 +108,7 @@ def test_carrier_phase_of_gns(tmp_path: Path) -> None:
         for i, modes in enumerate(("RR", "RF", "RA", "AN", "NN", "DD"))
     ]
     track = read(tmp_path, b"".join(lines), "a.nmea")
-    assert track.solution is not None
-    assert track.solution.tolist() == ["fixed", "float", "code", "code", "", "code"]
+    assert present(track.solution).tolist() == ["fixed", "float", "code", "code", "", "code"]
 
 
 def test_no_fix(tmp_path: Path) -> None:
@@ -278,8 +273,7 @@ def test_late_accuracy_belongs_to_its_time(tmp_path: Path) -> None:
     data = gga(SECONDS[0]) + b"".join(gga(SECONDS[n + 1]) + gst[n] for n in range(7))
     track = read(tmp_path, data, "a.nmea")
     assert (len(track), track.flagged) == (8, {})
-    assert track.place_sd is not None
-    assert np.isfinite(track.place_sd[:, 0]).tolist() == [True] * 7 + [False]
+    assert np.isfinite(present(track.place_sd)[:, 0]).tolist() == [True] * 7 + [False]
 
 
 @pytest.mark.parametrize("wrong", ["050505", "010180", "060180", "311299"])
@@ -290,7 +284,6 @@ def test_clock_before_the_first_fix_does_not_count(tmp_path: Path, wrong: str, p
     early = b"".join(sentence(f"GPRMC,23595{n}.00,{status},{place},0.0,0.0,{wrong},,,") for n in range(5))
     track = read(tmp_path, early + b"".join(both(SECONDS)), "a.nmea")
     assert (len(track), float(track.time[-1])) == (8, 7.0)
-    assert track.start is not None
     assert track.start == datetime(2022, 12, 27, 15, 51, 10, tzinfo=UTC)
     assert list(track.left_out.values()) == [5]
 
@@ -301,8 +294,7 @@ def test_clock_that_jumps_without_a_fix(tmp_path: Path) -> None:
     track = read(tmp_path, b"".join([*lines[:8], lost, *lines[8:]]), "a.nmea")
     assert (len(track), track.flagged) == (9, {"no_fix": 1})
     assert list(track.left_out.values()) == [1]
-    assert track.start is not None
-    assert track.start.date() == date(2022, 12, 27)
+    assert present(track.start).date() == date(2022, 12, 27)
 
 
 @pytest.mark.parametrize("word", ["nan", "-nan(ind)", "inf", "1.#QNAN", "-1.#IND00"])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow.track.projection import GeodeticPoint
+from tests.present import present
 
 from .. import metres_per_degree
 from .test_table import read, refused
@@ -54,8 +55,7 @@ def test_carrier_phase(tmp_path: Path) -> None:
     """Q: 1 fix, 2 float, 3 SBAS, 4 DGPS, 5 single, 6 PPP."""
     rows = [f"2022/12/27 15:51:1{q}.000 47.0 11.0 1500.0 {q}{TAIL[1:]}" for q in range(1, 7)]
     track = read(tmp_path, "\n".join([*LLH.splitlines()[:3], *rows]), "a.pos")
-    assert track.solution is not None
-    assert track.solution.tolist() == ["fixed", "float", "code", "code", "code", "float"]
+    assert present(track.solution).tolist() == ["fixed", "float", "code", "code", "code", "float"]
     assert track.flagged == {"float_solution": 2, "code_solution": 3}
 
 
@@ -65,12 +65,10 @@ def test_standard_deviation_of_the_speed(tmp_path: Path) -> None:
     lines = LLH.splitlines()
     rows = [f"{lines[3]} 3 -4 0 .03 .04 .5 .02 .1 .1", f"{lines[4]} 0 0 0 .03 .04 .5 -.02 0 0"]
     track = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, *rows]), "a.pos")
-    assert track.speed_sd is not None
     wanted = math.sqrt((0.6 * 0.03) ** 2 + (0.8 * 0.04) ** 2 - 2.0 * 0.48 * 0.02**2)
-    np.testing.assert_allclose(track.speed_sd, [wanted, 0.5], rtol=1e-9)
+    np.testing.assert_allclose(present(track.speed_sd), [wanted, 0.5], rtol=1e-9)
     unknown = read(tmp_path, "\n".join([*lines[:2], lines[2] + names, f"{lines[3]} 3 -4 0 9e9 9e9 9e9 0 0 0"]), "b.pos")
-    assert unknown.speed_sd is not None
-    assert np.isnan(unknown.speed_sd).all()
+    assert np.isnan(present(unknown.speed_sd)).all()
 
 
 def test_velocities(tmp_path: Path) -> None:
@@ -78,8 +76,7 @@ def test_velocities(tmp_path: Path) -> None:
     lines = LLH.splitlines()
     text = "\n".join([*lines[:2], lines[2] + names, *(f"{line} 3 -4 -1.2 .1 .1 .1 0 0 0" for line in lines[3:])])
     track = read(tmp_path, text, "a.pos")
-    assert track.velocity is not None
-    np.testing.assert_allclose(track.velocity, [[-4.0, 3.0, -1.2]] * 2, atol=1e-6)
+    np.testing.assert_allclose(present(track.velocity), [[-4.0, 3.0, -1.2]] * 2, atol=1e-6)
     np.testing.assert_allclose(track.speed, math.sqrt(25 + 1.44), rtol=1e-12)
 
 
@@ -102,9 +99,8 @@ def test_degrees_minutes_seconds(tmp_path: Path) -> None:
     head = COLUMNS.replace("(deg)", "(d'\")")
     row = "2022/12/27 15:51:14.000   -0 30 36.00000  -71 15 18.00000  1500.0  "
     track = read(tmp_path, f"%  JST  {head}\n{row}{TAIL}\n", "a.pos")
-    assert track.origin is not None
-    assert track.origin.latitude_deg == pytest.approx(-0.51, abs=1e-12)
-    assert track.origin.longitude_deg == pytest.approx(-71.255, abs=1e-12)
+    assert present(track.origin).latitude_deg == pytest.approx(-0.51, abs=1e-12)
+    assert present(track.origin).longitude_deg == pytest.approx(-71.255, abs=1e-12)
     assert track.start == datetime(2022, 12, 27, 15, 51, 14, tzinfo=timezone(timedelta(hours=9)))
     assert track.time_scale == "JST"
 
@@ -115,20 +111,16 @@ def test_earth_centred(tmp_path: Path) -> None:
     rows = f"2022/12/27 15:51:14.000 0.0 6378137.0 0.0 {tail}\n2022/12/27 15:51:15.000 -3.0 6378139.0 7.0 {tail}\n"
     track = read(tmp_path, EARTH + rows, "a.pos")
     np.testing.assert_allclose(track.place, np.array([[0.0, 0.0, 0.0], [3.0, 7.0, 2.0]]), atol=1e-7)
-    assert track.place_sd is not None
-    assert track.velocity is not None
-    np.testing.assert_allclose(track.place_sd, [[0.01, 0.03, 0.02]] * 2, rtol=1e-6)
-    np.testing.assert_allclose(track.velocity, [[-1.5, 2.5, -0.5]] * 2, atol=1e-5)
+    np.testing.assert_allclose(present(track.place_sd), [[0.01, 0.03, 0.02]] * 2, rtol=1e-6)
+    np.testing.assert_allclose(present(track.velocity), [[-1.5, 2.5, -0.5]] * 2, atol=1e-5)
 
 
 def test_earth_centred_at_the_date_line(tmp_path: Path) -> None:
     """There east is -Y, north is Z, up is -X."""
     tail = "1 12 0.01 0.02 0.03 0.0 0.0 0.0 0.0 99.9 1.5 -0.5 2.5 .1 .1 .1 0 0 0"
     track = read(tmp_path, f"{EARTH}2022/12/27 15:51:14.000 -6378137.0 0.0 0.0 {tail}\n", "a.pos")
-    assert track.place_sd is not None
-    assert track.velocity is not None
-    np.testing.assert_allclose(track.place_sd, [[0.02, 0.03, 0.01]], rtol=1e-12)
-    np.testing.assert_allclose(track.velocity, [[0.5, 2.5, -1.5]], atol=1e-12)
+    np.testing.assert_allclose(present(track.place_sd), [[0.02, 0.03, 0.01]], rtol=1e-12)
+    np.testing.assert_allclose(present(track.velocity), [[0.5, 2.5, -1.5]], atol=1e-12)
 
 
 def test_covariances_of_earth_centred_places(tmp_path: Path) -> None:
@@ -136,8 +128,7 @@ def test_covariances_of_earth_centred_places(tmp_path: Path) -> None:
     tail = "1 12 0.02 0.02 0.03 -0.01 0.0 0.0 0.0 99.9 0 0 0 .1 .1 .1 0 0 0"
     side = 6378137.0 / math.sqrt(2.0)
     track = read(tmp_path, f"{EARTH}2022/12/27 15:51:14.000 {side} {side} 0.0 {tail}\n", "a.pos")
-    assert track.place_sd is not None
-    np.testing.assert_allclose(track.place_sd[0] ** 2, [4e-4 + 1e-4, 9e-4, 4e-4 - 1e-4], rtol=1e-6)
+    np.testing.assert_allclose(present(track.place_sd)[0] ** 2, [4e-4 + 1e-4, 9e-4, 4e-4 - 1e-4], rtol=1e-6)
 
 
 def test_baseline_without_a_base(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from skisnow._support.errors import FieldDataError, ParameterError
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.read import read_track
 from skisnow.track.track import Track
+from tests.present import present
 
 from .. import metres_per_degree
 
@@ -146,15 +147,13 @@ def test_seconds_and_dates_without_zone(tmp_path: Path) -> None:
     assert (seconds.time_scale, seconds.first_time) == ("local", 1672156274.5)
     dated = read(tmp_path, "time,x_m,y_m\n2022-12-27 15:51:14,1,2\n2022-12-27 15:51:15,1,2\n")
     assert dated.time_scale == "local"
-    assert dated.start is not None
-    assert dated.start.tzinfo is None
+    assert present(dated.start).tzinfo is None
 
 
 def test_uncertainties_and_odometer(tmp_path: Path) -> None:
     head = "time_s,x_m,y_m,x_sd_m,y_sd_m,speed_sd_m_per_s,dist_m"
     track = read(tmp_path, f"{head}\n0,0,0,0.02,0.03,0.1,4\n1,1,0,0.02,,0.1,5\n")
-    assert track.place_sd is not None
-    np.testing.assert_array_equal(track.place_sd, [[0.02, 0.03, np.nan], [0.02, np.nan, np.nan]])
+    np.testing.assert_array_equal(present(track.place_sd), [[0.02, 0.03, np.nan], [0.02, np.nan, np.nan]])
     np.testing.assert_array_equal(track.speed_sd, [0.1, 0.1])
     np.testing.assert_array_equal(track.odometer, [4.0, 5.0])
     assert "out_of_range" in refused(tmp_path, f"{head}\n0,0,0,-0.02,0.03,0.1,4\n")
@@ -283,8 +282,7 @@ def test_dates_that_run_backwards_are_reported_as_dates(tmp_path: Path) -> None:
 
 def test_letters_of_hemispheres(tmp_path: Path) -> None:
     track = read(tmp_path, "time,Latitude,N/S,Longitude,E/W,State\n0,46,S,70.5,W,N\n1,46,N,70.5,e,S\n")
-    assert track.origin is not None
-    assert (track.origin.latitude_deg, track.origin.longitude_deg) == (-46.0, -70.5)
+    assert (present(track.origin).latitude_deg, present(track.origin).longitude_deg) == (-46.0, -70.5)
     east = 6.389e6 * np.cos(np.radians(46.0)) * np.sin(np.radians(2 * 70.5))
     assert track.place[1, 0] == pytest.approx(east, rel=1e-3)
     assert track.further_columns == ("State",)
@@ -339,8 +337,7 @@ def test_a_real_day() -> None:
     assert track.flagged == {"repeated_time": 13}
     assert track.further_columns == ("lap",)
     np.testing.assert_array_equal(track.speed, [float(row["speed_mps"]) for row in rows])
-    assert track.odometer is not None
-    assert track.odometer[-1] == float(rows[-1]["dist_m"])
+    assert present(track.odometer)[-1] == float(rows[-1]["dist_m"])
     # the sum of steps by the lengths of a degree at the resort; 1e-3 of some 14 km for the latitude's change
     steps = np.diff([[float(row["lon"]), float(row["lat"])] for row in rows], axis=0)
     lengths = np.hypot(steps[:, 0] * metres_per_degree.east(45.9), steps[:, 1] * metres_per_degree.north(45.9))

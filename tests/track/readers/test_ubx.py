@@ -12,6 +12,7 @@ from pyubx2 import calc_checksum
 
 from skisnow.track.projection import GeodeticPoint
 from skisnow.track.readers.ubx import SYNC, _Checksums
+from tests.present import present
 
 from .. import metres_per_degree
 from .receivers import FIT_EPOCH, TIMER_START, TIMER_STOP, fit_file, nav_cov, nav_hpposllh, nav_pvt, sentence, ubx_frame
@@ -28,8 +29,7 @@ def test_messages(tmp_path: Path) -> None:
         assert track.time_scale == "UTC"
         np.testing.assert_allclose(track.time, [0.0, 0.1], atol=1e-6)
         np.testing.assert_allclose(track.speed, [5.0, 5.0], rtol=1e-12)
-        assert track.velocity is not None
-        np.testing.assert_allclose(track.velocity, [[-4.0, 3.0, -1.2]] * 2, atol=2e-5)
+        np.testing.assert_allclose(present(track.velocity), [[-4.0, 3.0, -1.2]] * 2, atol=2e-5)
         assert track.origin is not None
         assert track.origin.latitude_deg == pytest.approx(47.2345678, abs=1e-12)
         assert track.origin.longitude_deg == pytest.approx(11.1234567, abs=1e-12)
@@ -44,20 +44,17 @@ def test_velocity_about_an_origin_far_away(tmp_path: Path) -> None:
     """Meridians converge by Δλ sin φ: seen from 1° further west, north at the point leans 0.734° to the west."""
     origin = GeodeticPoint(47.2345678, 10.1234567, height=1500.0)
     track = read(tmp_path, nav_pvt(velocity=(5000, 0, 0)), "a.ubx", origin=origin)
-    assert track.velocity is not None
-    lean = math.degrees(math.atan2(-track.velocity[0, 0], track.velocity[0, 1]))
+    lean = math.degrees(math.atan2(-present(track.velocity)[0, 0], present(track.velocity)[0, 1]))
     assert lean == pytest.approx(math.sin(math.radians(47.2345678)), abs=1e-3)
 
 
 def test_accuracies(tmp_path: Path) -> None:
     track = read(tmp_path, nav_pvt(accuracies=(50, 80, 30)), "a.ubx")
-    assert track.place_sd is not None
-    east, north, up = track.place_sd[0]
+    east, north, up = present(track.place_sd)[0]
     assert math.hypot(east, north) == pytest.approx(0.050)
     assert east == north
     assert up == pytest.approx(0.080)
-    assert track.speed_sd is not None
-    np.testing.assert_allclose(track.speed_sd, [0.030])
+    np.testing.assert_allclose(present(track.speed_sd), [0.030])
 
 
 def test_high_precision_places(tmp_path: Path) -> None:
@@ -81,8 +78,7 @@ def test_high_precision_places(tmp_path: Path) -> None:
 
 def test_a_high_precision_place_that_is_not_valid_does_not_count(tmp_path: Path) -> None:
     track = read(tmp_path, nav_pvt() + nav_hpposllh(invalid=1), "a.ubx")
-    assert track.origin is not None
-    assert track.origin.height == 1500.123
+    assert present(track.origin).height == 1500.123
     invalid = read(tmp_path, nav_pvt() + nav_pvt(second=15, invalid_place=1), "b.ubx")
     assert list(invalid.left_out.values()) == [1]
 
@@ -92,36 +88,28 @@ def test_covariances(tmp_path: Path) -> None:
     place, velocity = (4e-4, 1e-4, 0.0, 9e-4, 0.0, 25e-4), (4e-4, 1e-4, 7e-4, 1e-4, 7e-4, 1.0)
     data = nav_pvt(velocity=(3000, -4000, 0)) + nav_hpposllh() + nav_cov(place, velocity)
     track = read(tmp_path, data, "a.ubx")
-    assert track.place_sd is not None
-    np.testing.assert_allclose(track.place_sd, [[0.03, 0.02, 0.05]], rtol=1e-6)  # of 32 bit
-    assert track.speed_sd is not None
+    np.testing.assert_allclose(present(track.place_sd), [[0.03, 0.02, 0.05]], rtol=1e-6)  # of 32 bit
     wanted = math.sqrt(0.36 * 4e-4 + 0.64 * 1e-4 - 2.0 * 0.48 * 1e-4)
-    assert track.speed_sd[0] == pytest.approx(wanted, rel=1e-6)
+    assert present(track.speed_sd)[0] == pytest.approx(wanted, rel=1e-6)
     steep = read(tmp_path, nav_pvt(velocity=(3000, 0, 4000)) + nav_cov(place, velocity), "b.ubx")
-    assert steep.speed_sd is not None
-    assert steep.speed_sd[0] == pytest.approx(math.sqrt(0.36 * 4e-4 + 0.64 + 2.0 * 0.48 * 7e-4), rel=1e-6)
+    assert present(steep.speed_sd)[0] == pytest.approx(math.sqrt(0.36 * 4e-4 + 0.64 + 2.0 * 0.48 * 7e-4), rel=1e-6)
 
 
 def test_covariances_that_are_not_valid_do_not_count(tmp_path: Path) -> None:
     wide = (1.0, 0.0, 0.0, 1.0, 0.0, 1.0)
     far = read(tmp_path, nav_pvt() + nav_cov((math.inf,) * 6, (math.nan,) * 6), "b.ubx")
-    assert far.place_sd is not None
-    assert far.speed_sd is not None
-    assert (far.place_sd[0, 2], far.speed_sd[0]) == pytest.approx((0.080, 0.030))
+    assert (present(far.place_sd)[0, 2], present(far.speed_sd)[0]) == pytest.approx((0.080, 0.030))
     for valid, place_sd, speed_sd in (((0, 1), 0.080, 1.0), ((1, 0), 1.0, 0.030), ((0, 0), 0.080, 0.030)):
         track = read(tmp_path, nav_pvt() + nav_cov(wide, wide, valid=valid), "a.ubx")
-        assert track.place_sd is not None
-        assert track.speed_sd is not None
-        assert track.place_sd[0, 2] == pytest.approx(place_sd)
-        assert track.speed_sd[0] == pytest.approx(speed_sd)
+        assert present(track.place_sd)[0, 2] == pytest.approx(place_sd)
+        assert present(track.speed_sd)[0] == pytest.approx(speed_sd)
 
 
 def test_carrier_phase(tmp_path: Path) -> None:
     """Bits 6 and 7 of the flags: 0 none, 1 float, 2 fixed."""
     data = b"".join(nav_pvt(second=10 + i, carrier=carrier) for i, carrier in enumerate((2, 1, 0)))
     track = read(tmp_path, data + nav_pvt(second=13, fix=0, carrier=2) + nav_pvt(second=14, carrier=2), "a.ubx")
-    assert track.solution is not None
-    assert track.solution.tolist() == ["fixed", "float", "code", "", "fixed"]
+    assert present(track.solution).tolist() == ["fixed", "float", "code", "", "fixed"]
     assert track.flagged == {"no_fix": 1, "float_solution": 1, "code_solution": 1}
     assert track.usable.tolist() == [True, True, True, False, True]
     assert read(tmp_path, nav_pvt(), "b.ubx").flagged == {}
@@ -206,8 +194,7 @@ def test_records(tmp_path: Path) -> None:
         np.testing.assert_array_equal(track.odometer, [np.nan, 7.25, 21.75])
         north = 1000 * 180 / 2**31 * metres_per_degree.north(47.0) * (1 + 1500 / 6.37e6)
         np.testing.assert_allclose(track.place[2, :2], [0.0, north], atol=1e-5)
-        assert track.origin is not None
-        assert track.origin.height == 1500.0
+        assert present(track.origin).height == 1500.0
         assert track.flagged == {"no_fix": 1, "missing_height": 1}
 
 
@@ -218,15 +205,13 @@ def test_enhanced_fields(tmp_path: Path, plain: dict[str, int]) -> None:
     record = place | plain | {"enhanced_altitude": (1500 + 500) * 5, "enhanced_speed": 7250}
     track = read(tmp_path, fit_file([record]), "a.fit")
     assert track.speed.tolist() == [7.25]
-    assert track.origin is not None
-    assert track.origin.height == 1500.0
+    assert present(track.origin).height == 1500.0
 
 
 def test_negative_latitudes(tmp_path: Path) -> None:
     track = read(tmp_path, fit_file([RECORDS[0] | {"position_lat": -LAT, "position_long": -LON}]), "a.fit")
-    assert track.origin is not None
-    assert track.origin.latitude_deg == pytest.approx(-47.0, abs=1e-7)
-    assert track.origin.longitude_deg == pytest.approx(-11.0, abs=1e-7)
+    assert present(track.origin).latitude_deg == pytest.approx(-47.0, abs=1e-7)
+    assert present(track.origin).longitude_deg == pytest.approx(-11.0, abs=1e-7)
 
 
 def test_records_without_a_date_are_counted(tmp_path: Path) -> None:
@@ -240,8 +225,7 @@ def test_accuracy_in_whole_metres(tmp_path: Path) -> None:
     records = [RECORDS[0] | {"gps_accuracy": 3}, RECORDS[1] | {"gps_accuracy": 0}, RECORDS[2]]
     track = read(tmp_path, fit_file(records), "a.fit")
     each = 3.0 / np.sqrt(2.0)
-    assert track.place_sd is not None
-    np.testing.assert_allclose(track.place_sd, [[each, each, np.nan], [np.nan] * 3, [np.nan] * 3], rtol=1e-12)
+    np.testing.assert_allclose(present(track.place_sd), [[each, each, np.nan], [np.nan] * 3, [np.nan] * 3], rtol=1e-12)
     assert read(tmp_path, fit_file(RECORDS), "b.fit").place_sd is None
 
 

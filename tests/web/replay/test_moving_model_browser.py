@@ -10,6 +10,7 @@ import pytest
 
 from skisnow._support.units import DEGREE
 from skisnow.replay import Replay, moving_replay_model, replay_of_run
+from tests.present import present
 
 from ...replay.test_moving_model import SKIS, by_hand, to_run
 from ...report.runs import circle_run
@@ -88,10 +89,8 @@ def page(drawing_chromium: Any, replay: Replay) -> Iterator[Any]:
 
 def three() -> bytes:
     """A module with three.js and its GLTFLoader, of the NiceGUI that is installed."""
-    found = importlib.util.find_spec("nicegui")
-    assert found is not None  # or there would be no fixture `chromium`
-    assert found.origin is not None
-    module = Path(found.origin).parent / "elements" / "scene" / "dist" / "index.js"
+    found = present(importlib.util.find_spec("nicegui"))
+    module = Path(present(found.origin)).parent / "elements" / "scene" / "dist" / "index.js"
     if not module.is_file() or b"GLTFLoader" not in module.read_bytes():
         pytest.skip("this NiceGUI brings no GLTFLoader along")
     return module.read_bytes()
