@@ -1,7 +1,5 @@
 """Laws that nobody but these tests knows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Skis and snows that exact answers know, and what an equilibrium says of the boot."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

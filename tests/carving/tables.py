@@ -1,7 +1,5 @@
 """Tables and figure of docs/validation/simulated-turn.md: python -m tests.carving.tables (needs Exudyn)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Forces, moments and bending computed again from what `carve` returns."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any, cast, get_args

@@ -1,7 +1,5 @@
 """What becomes of a question whose equilibrium the core does not find."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """What physics asks whatever the numbers: units, mirror, continuity."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 R is written here once more, in NumPy's complex numbers: R(x + i h v) = R(x) + i h R_x v without rounding for a tiny h.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

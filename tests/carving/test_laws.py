@@ -1,7 +1,5 @@
 """Laws of the snow given to `carve`: the core's own through the door, exact cases, what is refused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Elastic against hypoplastic snow: the published contrast (doi 10.1111/sms.12035), and what memory must do."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """What the mesh does to the answer: elements 40 … 640, and a ski without a shovel."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Questions about a ski in snow: what is missing, said twice or not meant, and numbers that look like a slip."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

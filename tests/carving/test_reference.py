@@ -3,8 +3,6 @@
 With 320 elements: what the default 160 add is in `test_mesh.py`.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

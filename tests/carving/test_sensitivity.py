@@ -1,7 +1,5 @@
 """Derivatives of a carve against differences of refined equilibria, at points that were drawn beforehand."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import dataclass, fields, replace

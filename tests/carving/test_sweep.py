@@ -1,7 +1,5 @@
 """Every ski, snow, angle and load has a named outcome, and the outcome is the right one."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections import Counter

@@ -1,7 +1,5 @@
 """Runners and poses that several tests share."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 

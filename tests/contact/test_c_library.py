@@ -1,7 +1,5 @@
 """The contact from C: the example, compiled, gives the bits of Python; errors are codes and words."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import os

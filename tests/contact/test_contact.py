@@ -1,7 +1,5 @@
 """What a contact promises whatever the numbers: runners, states, surfaces, laws, bits, older tracks."""
 
-from __future__ import annotations
-
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A runner in snow, and its glide friction, against closed forms."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, Final
 

@@ -1,7 +1,5 @@
 """Edges as they are ground, and the edge of a bent ski, against closed forms and quadrature."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Penetration laws in Python: the core's own law again, and laws of which the force is known."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

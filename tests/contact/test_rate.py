@@ -1,7 +1,5 @@
 """Snow that takes time against closed forms: a dashpot beside the spring, a Kelvin element in series with it."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

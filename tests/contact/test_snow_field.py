@@ -1,7 +1,5 @@
 """Snow, runners and laws as the core takes them, and what is refused."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, cast
 

@@ -1,7 +1,5 @@
 """Stages of the contact against differences, and the whole against a plain implementation."""
 
-from __future__ import annotations
-
 import platform
 import warnings
 from dataclasses import fields

@@ -1,7 +1,5 @@
 """States of a contact as bytes: another contact goes on with the same bits; what is damaged or foreign is refused."""
 
-from __future__ import annotations
-
 import copy
 import ctypes
 import pickle

@@ -1,7 +1,5 @@
 """A nearly level base holds with both edges: shear of a roll and of a slide, limits of the force, mirror image."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

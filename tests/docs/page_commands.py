@@ -1,7 +1,5 @@
 """Commands and programs that a page shows, in the order of the page."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from dataclasses import dataclass

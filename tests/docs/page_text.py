@@ -1,7 +1,5 @@
 """Text of a page of the docs with the tables of keys that it includes."""
 
-from __future__ import annotations
-
 import importlib
 import re
 from pathlib import Path

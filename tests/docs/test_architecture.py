@@ -1,7 +1,5 @@
 """The page on the house names files that are there, and its picture shows the packages as they stand."""
 
-from __future__ import annotations
-
 import re
 import runpy
 from pathlib import Path

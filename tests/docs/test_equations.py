@@ -1,7 +1,5 @@
 """Every equation of the pages is shown as it is written: two independent converters see the same parts."""
 
-from __future__ import annotations
-
 import re
 import runpy
 import unicodedata

@@ -1,7 +1,5 @@
 """The notebooks run, and their pages show what they print today."""
 
-from __future__ import annotations
-
 import importlib
 import json
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Numbers of the pages come from commands: they are those that the commands print today."""
 
-from __future__ import annotations
-
 import importlib
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """The commands of all pages run as printed, from an empty folder."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

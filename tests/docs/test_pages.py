@@ -1,7 +1,5 @@
 """Pages stay short and name what there is, their pictures exist and say in words what they show."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import re

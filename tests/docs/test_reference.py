@@ -1,7 +1,5 @@
 """Docstrings of every public name: the page of the Python interface is made from them."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 import inspect

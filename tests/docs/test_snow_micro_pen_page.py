@@ -1,7 +1,5 @@
 """The tables of the method's page are what the program prints today."""
 
-from __future__ import annotations
-
 import importlib
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The section about many computers: its job script and its files are such as they are taken."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Verdicts on two skis and on two runs, with numbers worked out by hand."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

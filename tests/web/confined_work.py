@@ -1,7 +1,5 @@
 """Work for a process of its own: a module that is imported quickly there."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import time

@@ -1,7 +1,5 @@
 """A lab that is served as a person would, and a browser that drives it."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import multiprocessing
@@ -14,7 +12,7 @@ import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 from urllib.parse import urlsplit
 
 import pytest
@@ -29,8 +27,7 @@ from skisnow.campaign.store.engine import writing
 from skisnow.campaign.store.schema import metadata
 from tests.present import present
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator, Page
+from .browser_types import Browser, Locator, Page
 
 # without windows it takes a quarter of the computing that the whole browser takes
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium-headless-shell", "chromium", "chromium-browser"))), None)
@@ -67,7 +64,7 @@ class Served:
         """The folder of its skis and runs."""
         return self.store.parent / "lab"
 
-    def start(self) -> Served:
+    def start(self) -> Self:
         port = (urlsplit(self.address).port if self.address else None) or 0
         self.address = self._by_command(port) if self.as_command else self._by_fork(port)
         assert self.address.startswith("http://")
@@ -108,7 +105,7 @@ class Served:
             self.process.join(300)
             assert self.process.exitcode is not None
 
-    def again(self) -> Served:
+    def again(self) -> Self:
         self.kill()
         return self.start()
 

@@ -1,7 +1,5 @@
 """Names of fields for screen readers, contrast, and pages that fit a telephone."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import json
@@ -11,7 +9,6 @@ import subprocess
 import sys
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -21,15 +18,13 @@ from skisnow.web.lab_skis import LabSkis
 from skisnow.web.pages import PAGES
 
 from ..report.runs import circle_run
+from .browser_types import Page
 from .conftest import Served, follow, ready, settled
 from .replay.test_lab_page import kept
 from .test_confined import TURNS
 from .test_day import create, enter_series
 from .test_kept import imported
 from .test_typing import NAMELESS
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 if importlib.util.find_spec("axe_playwright_python") is None:
     pytest.skip("axe-core is not installed: pip install axe-playwright-python", allow_module_level=True)

@@ -1,13 +1,10 @@
 """Confined work, its values, and a lab that is killed."""
 
-from __future__ import annotations
-
 import math
 import os
 import sys
 import threading
 from pathlib import Path
-from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -24,12 +21,10 @@ from skisnow.web.widgets import _short
 from skisnow.web.words import typed_number
 from tests.coded import raises
 
+from .browser_types import Page
 from .confined_work import dies, is_wrong, other_process, refuse, takes_memory, takes_time
 from .conftest import Served, entered, fill
 from .test_day import create
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 
 def test_the_answer_and_the_errors_come_back() -> None:

@@ -1,13 +1,11 @@
 """A campaign's day as a person does it, from the first field to the replay; the command line gives the same numbers."""
 
-from __future__ import annotations
-
 import io
 import json
 import tomllib
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +16,8 @@ from skisnow.campaign.store import Journals, Store
 from skisnow.campaign.store.replayed import Description, description_text
 from skisnow.cli import main
 
+from .browser_types import Download, Locator, Page
 from .conftest import Served, downloaded_results, entered, fill, follow, has_text, killed_and_started_again, ready
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Download, Locator, Page
 
 SERIES = {
     "1": ("30", ("1.5", "22.5", "2.6", "3.0")),  # the second one is a typing error for 2.15

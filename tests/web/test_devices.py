@@ -1,25 +1,18 @@
 """What only a browser does: a camera's picture is made small, a position needs consent, a wide preview is not cut."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
 
 from skisnow import samples
-from skisnow.campaign.store import attachments_of
+from skisnow.campaign.store import ReplayedTest, attachments_of
 from skisnow.campaign.store.attachments import photo_of
 
+from .browser_types import Page
 from .conftest import Served, entered, ready
 from .test_day import create, enter_series
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
-
-    from skisnow.campaign.store import ReplayedTest
 
 TABLE = "penetration.csv"
 

@@ -1,15 +1,11 @@
 """The script of the documentation's pages, in a browser: blocks of code can be copied and scrolled by key."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+from .browser_types import Browser, Page
 
 SCRIPT = (Path(__file__).resolve().parents[2] / "docs" / "_static" / "skisnow.js").read_text(encoding="utf-8")
 BLOCKS = {

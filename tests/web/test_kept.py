@@ -1,17 +1,12 @@
 """A campaign that was imported is corrected: with reasons, undo and history; its files stay, its export says all."""
 
-from __future__ import annotations
-
 import io
 import zipfile
-from typing import TYPE_CHECKING
 
 import pytest
 
+from .browser_types import Page
 from .conftest import Served, follow, ready
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 FILES = {
     "campaign.toml": """name = "From <a> drawer"

@@ -1,10 +1,8 @@
 """Languages of the lab, and reports on small screens."""
 
-from __future__ import annotations
-
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import pytest
 from PIL import Image
@@ -18,11 +16,9 @@ from skisnow.report import write_report
 from skisnow.report.run.folder import write_run
 
 from ..report.runs import circle_run
+from .browser_types import Page
 from .conftest import Served
 from .shown_texts import shown_texts
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 DATA: Final = {
     "read once more after waiting", "measured, entered in the lab", "the edited ski", "as in the scenario",

@@ -1,7 +1,5 @@
 """The lab as a command, on this machine and on a server."""
 
-from __future__ import annotations
-
 import csv
 import http.client
 import io
@@ -15,7 +13,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
@@ -26,11 +23,9 @@ from skisnow.cli import main
 from tests.present import present
 
 from ..campaign.store.postgresql_server import Server, run, started, why_there_is_none
+from .browser_types import Page
 from .conftest import Served, killed_and_started_again
 from .test_day import PLATE, SERIES, TOOL, VALUES, enter_series
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 
 @pytest.fixture(scope="module")

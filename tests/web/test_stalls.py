@@ -1,7 +1,5 @@
 """One side stands still, or the lab is killed, or the page is loaded again, while a hand types on: nothing is lost."""
 
-from __future__ import annotations
-
 import http.client
 import json
 import os
@@ -10,18 +8,15 @@ import time
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
 
 from tests.key_names import SNOW_DENSITY
 
+from .browser_types import Page
 from .conftest import Served, entered, fill, has_text, ready
 from .test_typing import begun, depths
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 if not hasattr(signal, "SIGSTOP"):
     pytest.skip("no process can be stopped here", allow_module_level=True)

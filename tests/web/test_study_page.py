@@ -1,13 +1,10 @@
 """A study is requested on its page, shown, taken away as files, and gives the table of the command."""
 
-from __future__ import annotations
-
 import io
 import json
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 from fastapi import FastAPI
@@ -16,11 +13,9 @@ from skisnow.studies import read_study, run_study
 from skisnow.web.replay_addresses import RunFolders, add_addresses
 
 from ..track.course.test_passages import folder_of
+from .browser_types import Page
 from .conftest import PATIENCE_MS, Served, fill, killed_and_started_again, ready
 from .replay.test_addresses import Client
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 LONG_MS = 4 * PATIENCE_MS
 FIRST, SECOND = "First input", "Second input"

@@ -1,12 +1,10 @@
 """The page that designs a ski, in a browser."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -19,10 +17,8 @@ from skisnow.report.formatting import significant
 from skisnow.web.carved_turn import PANELS, RATIOS, SLIDERS
 from skisnow.web.widgets import STYLES
 
+from .browser_types import Page
 from .conftest import Served, ready
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
 
 SNOW = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
 """That of the first sliders."""

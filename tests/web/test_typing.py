@@ -1,19 +1,15 @@
 """A series that is entered: typed, and entered with its next one."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import pytest
 
 from skisnow.campaign.store import Journals, Store
 from skisnow.campaign.store.replayed import Description, description_text
 
+from .browser_types import Locator, Page, WebSocketRoute
 from .conftest import Served, entered, fill, has_text, ready
 from .test_day import create, enter_series, next_series
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Locator, Page, WebSocketRoute
 
 LOADS = (20.0, 40.0, 60.0)
 TOOL: dict[str, str | float] = {"name": "ski piece", "shape": "ski", "length_mm": 200.0, "width_mm": 62.0}
