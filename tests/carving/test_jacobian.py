@@ -13,7 +13,7 @@ import pytest
 
 from skisnow.carving.solve import Conditions, _core_ski, solved
 from skisnow.compiled import core
-from skisnow.ski import read_ski
+from skisnow.ski import read_ski, ski_names
 from skisnow.ski.beam import CLAMP_LENGTH, ClampedSki, clamped
 from skisnow.ski.checks import EdgeShape
 
@@ -151,7 +151,7 @@ def test_the_matrix_is_the_derivative(angle: float, hardness: float, ratio: floa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["slalom", "giant-slalom", "carver"])
+@pytest.mark.parametrize("name", ski_names())
 def test_the_matrix_of_every_ski_is_the_derivative(name: str) -> None:
     for angle, hardness, ratio, bevel in itertools.product(
         (5.0, 25.0, 45.0, 65.0), (0.01e9, 0.21e9, 2e9), (1.0, 10.0, 1000.0), (0.0, 1.0)
@@ -161,7 +161,7 @@ def test_the_matrix_of_every_ski_is_the_derivative(name: str) -> None:
 
 def require_derivative(name: str, angle: float, hardness: float, ratio: float, bevel: float, radius: float) -> None:
     ski = replace(read_ski(name), base_bevel=math.radians(bevel), edge_radius=radius * 1e-3, side_edge=1.5)
-    model = clamped(ski, CLAMP_LENGTH, 160)
+    model = clamped(ski, min(CLAMP_LENGTH, 0.5 * ski.length), 160)  # the tool is 0.2 m long
     given = conditions(angle=angle, hardness=hardness, ratio=ratio, edges=ski.edge_shape)
     found = solved(model, given)
     assert found.converged
@@ -189,7 +189,6 @@ def require_derivative(name: str, angle: float, hardness: float, ratio: float, b
     deflection, slope, twist = (np.abs(v[0][row::3]).max() for row in range(3))
     for row, size in enumerate((deflection, slope, twist)):
         assert np.abs(back - v[0])[row::3].max() < 1e-9 * size, row
-    # depth and slope of the boot move the ski as its deflections and slopes do
-    assert np.abs(back_border - v[1])[0] < 1e-9 * deflection
-    assert np.abs(back_border - v[1])[1] < 1e-9 * slope
-    assert np.abs(back_border - v[1])[2] < 1e-9 * abs(border[2])
+    # depth and slope of the boot move the ski as its deflections and slopes do; a rigid ski has only them
+    sizes = np.maximum([deflection, slope, abs(border[2])], np.abs(v[1]))
+    assert np.all(np.abs(back_border - v[1]) < 1e-9 * sizes)

@@ -43,8 +43,8 @@ def drawn(random: np.random.Generator) -> tuple[Ski, SnowProperties, dict[str, A
     keys["boot_position_mm"] = random.uniform(-30.0, 30.0)
     keys["base_bevel_deg"] = float(random.choice([0.0, random.uniform(0.3, 1.5)]))
     keys |= {
-        "side_edge_deg": random.uniform(85.0, 90.0),
-        "edge_radius_mm": random.choice([0.0, random.uniform(0.05, 0.5)]),
+        "side_edge_deg": random.uniform(86.5, 88.5),
+        "edge_radius_mm": random.choice([0.0, random.uniform(0.05, 0.45)]),
     }
     for key in ("EI_N_m2", "GJ_N_m2"):
         keys[key] = [each * random.uniform(0.7, 1.4) for each in keys[key]]

@@ -120,20 +120,24 @@ def test_the_worst_of_three_snows(tmp_path: Path) -> None:
 
 
 def test_most_starts_reach_an_optimum_at_a_kink() -> None:
-    """The best ski for the worst of three snows is at a kink, where a line search can divide its steps for ever."""
+    """The best ski for the worst of three snows is at a kink.
+
+    A line search that creeps up to it took 297 equilibria from one start. A search that ended after two idle trials
+    left half of these starts 1.3 % above the optimum.
+    """
     snows = [{**RACE, "H_V_N_per_mm3": each, "edge_angle_deg": 45} for each in (0.08, 0.21, 0.55)]
     task = TWELVE | {
         "variables": {"sidecut_mm": [-10, 10], "waist_width_mm": [64, 74], "EI_factor": [0.7, 1.6],
                       "EI_N_m2[2]": [180, 330], "EI_N_m2[4]": [180, 330]},
         "conditions": snows,
         "goals": [{"output": "turn_radius_boot_m", "target": 12.0, "over": "worst"}],
-        "starts": 8, "seed": 2,
+        "starts": 8, "seed": 1,
     }  # fmt: skip
     search = Search(Evaluator(design_task(task)))
     best, *others = searched_starts(search, begins_of(search.evaluator))
-    assert best.result == pytest.approx(0.0143525, rel=1e-2)
-    assert max(each.equilibria for each in others) < 200
-    assert np.median([each.result for each in others]) < 1.02 * best.result
+    assert best.result == pytest.approx(0.0143525, rel=1e-3)
+    assert max(each.equilibria for each in others) < 130
+    assert np.median([each.result for each in others]) < 1.005 * best.result
 
 
 @pytest.mark.parametrize("seed", [1, 2])
