@@ -12,7 +12,7 @@ from scipy.integrate import solve_bvp
 from skisnow._support.errors import ParameterError
 from skisnow.carving.edge_line import circle_radius
 from skisnow.carving.equilibrium import GrooveForm, MomentBalance, carve
-from skisnow.carving.result import Equilibrium, _warnings
+from skisnow.carving.result import Equilibrium, _warnings_of_line
 from skisnow.ski import Ski, read_ski
 from tests.coded import raises
 
@@ -243,7 +243,7 @@ def test_a_moment_balance_that_is_none() -> None:
 )
 def test_beyond_small_deflections_the_answer_says_so(slope: float, twist: float, told: list[str]) -> None:
     line = SimpleNamespace(greatest_slope=lambda: slope, twist=np.array([0.1, twist]))
-    said = _warnings(cast("Any", line))
+    said = _warnings_of_line(cast("Any", line))
     assert [each for each, start in zip(said, told, strict=True) if not each.startswith(start)] == []
 
 

@@ -100,11 +100,11 @@ class CsvText:
         Raises UnreadableTextError: a quote is never closed, so that all further lines would be one cell; or a cell or
             row is too long.
         """
-        for lines, rows in self._records(most_lines):
+        for lines, rows in self._read_blocks(most_lines):
             _require_size(lines, rows)
             yield lines, rows
 
-    def _records(self, most_lines: int | None) -> Iterator[Records]:
+    def _read_blocks(self, most_lines: int | None) -> Iterator[Records]:
         stream = io.TextIOWrapper(io.BytesIO(self.data), encoding=self.codec, newline="")
         skipped = len(stream.readline()[:1]) if self.separator_line else 0
         reader = csv.reader(chain(stream, (_END,)), delimiter=self.separator, skipinitialspace=True)

@@ -85,14 +85,14 @@ class FieldDataError(SkisnowError):
 
     def __init__(self, problems: Sequence[object], *, code: str = "") -> None:
         self.problems = tuple(problems)
-        super().__init__(joined(self._first(self.problems), "\n"), code=code)
+        super().__init__(joined(self._shown_problems(self.problems), "\n"), code=code)
 
     @property
     def sentences(self) -> list[Any]:
         """The first problems without their codes, for a page."""
-        return self._first([getattr(problem, "sentence", problem) for problem in self.problems])
+        return self._shown_problems([getattr(problem, "sentence", problem) for problem in self.problems])
 
-    def _first(self, problems: Sequence[object]) -> list[object]:
+    def _shown_problems(self, problems: Sequence[object]) -> list[object]:
         more = len(problems) - self.SHOWN
         rest = [count_message("… and {count} more problem", "… and {count} more problems", count=more)]
         return [*problems[: self.SHOWN], *(rest if more > 0 else [])]

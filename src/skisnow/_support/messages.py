@@ -77,7 +77,7 @@ class Message(str):
         """The message in a language, with its numbers and dates as written there."""
         if language == ENGLISH:
             return super().__str__()
-        return _fill(self.template, self.plural, self.fields, language)
+        return _translate_and_fill(self.template, self.plural, self.fields, language)
 
     def __str__(self) -> str:
         return self.text(current_language())
@@ -139,7 +139,7 @@ def local_number(text: str) -> str:
 
 def _message(template: str, plural: str | None, fields: dict[str, Any]) -> Message:
     fields = {name: _plain(value) for name, value in fields.items()}
-    message = str.__new__(Message, _fill(template, plural, fields, ENGLISH))
+    message = str.__new__(Message, _translate_and_fill(template, plural, fields, ENGLISH))
     message.template, message.plural, message.fields = template, plural, fields
     return message
 
@@ -150,16 +150,16 @@ class _Printed(str):
     printed: str
 
     def __new__(cls, value: object) -> _Printed:
-        return _printed(str(value), repr(value))
+        return _make_printed(str(value), repr(value))
 
     def __repr__(self) -> str:
         return self.printed
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _printed, (str(self), self.printed)
+        return _make_printed, (str(self), self.printed)
 
 
-def _printed(text: str, printed: str) -> _Printed:
+def _make_printed(text: str, printed: str) -> _Printed:
     result = str.__new__(_Printed, text)
     result.printed = printed
     return result
@@ -179,7 +179,7 @@ def _plain(value: Any) -> Any:
     return value if plain or callable(getattr(type(value), "text", None)) else _Printed(value)
 
 
-def _fill(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
+def _translate_and_fill(template: str, plural: str | None, fields: dict[str, Any], language: str) -> str:
     words = translations(language)
     if plural is not None:
         template = words.ngettext(template, plural, fields["count"])
@@ -206,14 +206,14 @@ class LocalFormatter(Formatter):
         if isinstance(value, bool):
             return format(str(value), format_spec)
         if isinstance(value, Real):
-            return self._number(value, format_spec)
+            return self._format_number(value, format_spec)
         if isinstance(value, date) and not format_spec:
-            return self._date(value)
+            return self._format_date(value)
         if isinstance(value, list | tuple | set | frozenset | dict):
-            return self._several(value, format_spec)
+            return self._format_list(value, format_spec)
         return format(value if isinstance(value, str) or format_spec else str(value), format_spec)
 
-    def _number(self, value: Any, spec: str) -> str:
+    def _format_number(self, value: Any, spec: str) -> str:
         text = format(value, spec or ("" if isinstance(value, int) else ".12g"))
         if text.startswith("-") and ("+" in spec or spec[:1] == "-" or self._language != ENGLISH):
             text = f"−{text[1:]}"
@@ -221,13 +221,13 @@ class LocalFormatter(Formatter):
             return text
         return text.translate({ord("."): self._sign, ord(","): ".", ord("%"): "\N{NO-BREAK SPACE}%"})
 
-    def _several(self, values: Any, spec: str) -> str:
+    def _format_list(self, values: Any, spec: str) -> str:
         items = [self.format_field(value, spec) for value in values]
         numbers = all(isinstance(value, Real) for value in values)
         text = ("; " if numbers and any("," in item for item in items) else ", ").join(items)
         return f"[{text}]" if numbers and isinstance(values, tuple) else text
 
-    def _date(self, value: date) -> str:
+    def _format_date(self, value: date) -> str:
         month = f" {_MONTHS[value.month - 1]} " if self._language == ENGLISH else f". {value.month}. "
         return f"{value.day}{month}{value.year}" + (f", {value:%H:%M}" if isinstance(value, datetime) else "")
 

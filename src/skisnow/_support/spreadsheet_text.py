@@ -134,19 +134,19 @@ def decimal_mark(groups: Iterable[Iterable[str]], *, separator: str) -> str:
     """
     for cells in groups:
         written = list(cells)
-        points, commas = _count(written, "."), _count(written, ",")
+        points, commas = _count_numbers_with(written, "."), _count_numbers_with(written, ",")
         if points or commas:
             tie_is_comma = separator != ","
             return "," if commas > points or (commas == points and tie_is_comma) else "."
     return "."
 
 
-def _count(cells: Iterable[str], mark: str) -> int:
+def _count_numbers_with(cells: Iterable[str], mark: str) -> int:
     return sum(mark in cell and is_number(cell.strip(), mark) for cell in cells)
 
 
 def with_decimal_point(cell: str) -> str:
-    """A number with a decimal point instead of a comma; a number that has a point is invalid: it may be a thousand.
+    """The number with a point for its decimal comma; a cell with a point is made invalid, because 1.500 may be 1500.
 
     >>> with_decimal_point("1,5"), with_decimal_point("1.500,5")
     ('1.5', '1·500.5')
@@ -261,14 +261,14 @@ def csv_rows(
         if separator != ",":
             every = list(lines)
             mark, lines = decimal_mark([chain.from_iterable(every[1:])], separator=separator), iter(every)
-        yield from _rows(path, lines, columns, further, action, mark)
+        yield from _parse_rows(path, lines, columns, further, action, mark)
     except csv.Error as error:
         raise ParameterError("{path} is not CSV text ({error}). {action}").tag(
             "not_csv", path=path, error=error, action=action
         ) from error
 
 
-def _rows(
+def _parse_rows(
     path: Path, lines: Iterator[list[str]], columns: Sequence[str], further: Sequence[str], action: Message, mark: str
 ) -> Iterator[CsvRow]:
     head = column_names(next(lines, []), (*columns, *further))

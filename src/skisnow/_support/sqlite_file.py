@@ -36,7 +36,7 @@ def connect(place: Path | None, *, mode: Mode = "rwc", timeout_s: float = 0.0) -
     Raises sqlite3.Error: the file cannot be opened; much damage shows only when it is read.
     """
     return sqlite3.connect(
-        ":memory:" if place is None else _address(place, mode),
+        ":memory:" if place is None else _sqlite_uri(place, mode),
         uri=place is not None,
         timeout=timeout_s,
         isolation_level=None,
@@ -44,7 +44,7 @@ def connect(place: Path | None, *, mode: Mode = "rwc", timeout_s: float = 0.0) -
     )
 
 
-def _address(place: Path, mode: Mode) -> str:
+def _sqlite_uri(place: Path, mode: Mode) -> str:
     name = quote(os.fsencode(place.absolute().as_posix()))
     return f"file://{'' if name.startswith('/') else '/'}{name}?mode={mode}"
 

@@ -58,7 +58,7 @@ def staged(folder: Path, *, last: str) -> Iterator[Stage]:
     stage = Stage(hidden / _FILES)
     try:
         yield stage
-        _require_own(folder, last, [*stage.stale, *_files(stage.path)])
+        _require_own(folder, last, [*stage.stale, *_list_files(stage.path)])
         write_file(hidden / _PLAN, "\n".join((last, *stage.stale)))
         try:
             _carry_out(hidden)
@@ -120,7 +120,7 @@ def _carry_out(hidden: Path) -> None:
         _require_inside((last, *stale))
     except ValueError as error:
         raise OSError(f"the plan of a killed process is damaged; remove {hidden} and write again") from error
-    new = _files(stage)
+    new = _list_files(stage)
     if not (hidden / _CLEARED).exists():
         for name in (Path(last), *map(Path, stale), *new):
             (folder / name).unlink(missing_ok=True)
@@ -132,7 +132,7 @@ def _carry_out(hidden: Path) -> None:
     (hidden / _PLAN).unlink()
 
 
-def _files(stage: Path) -> list[Path]:
+def _list_files(stage: Path) -> list[Path]:
     return sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
 
 

@@ -92,7 +92,7 @@ def unit_of_name(name: str) -> Unit:
     >>> unit_of_name("snow.H_V_N_per_mm3"), unit_of_name("friction.mu_0").symbol
     (Unit(symbol='N/mm³', size=1000000000.0), '')
     """
-    return _BY_ENDING.get(_ending(name), _NONE)
+    return _BY_ENDING.get(_unit_ending(name), _NONE)
 
 
 def without_unit(name: str) -> str:
@@ -101,12 +101,12 @@ def without_unit(name: str) -> str:
     >>> without_unit("start.speed_m_per_s"), without_unit("friction.mu_0")
     ('start.speed', 'friction.mu_0')
     """
-    ending = _ending(name)
+    ending = _unit_ending(name)
     return name.removesuffix(f"_{ending}") if ending else name
 
 
 @cache
-def _ending(name: str) -> str:
+def _unit_ending(name: str) -> str:
     name = name.partition("[")[0]  # unit of each item of a list
     return next((ending for ending in _BY_ENDING if name.endswith(f"_{ending}")), "")
 
@@ -172,10 +172,12 @@ class Shown:
         kind = type(self).__name__
         head = f"<{kind} {title}" if title else f"<{kind}"
         if not rows:
-            return f"{_clip(head)}>"
-        few = _limit(rows)
+            return f"{_clip_line(head)}>"
+        few = _limit_rows(rows)
         width = max(len(name) for name, _ in few)
-        return "\n".join([_clip(head), *(_clip(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
+        return (
+            "\n".join([_clip_line(head), *(_clip_line(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
+        )
 
     def _repr_html_(self) -> str:
         """The same as a table with a small figure, which a notebook shows."""
@@ -186,7 +188,7 @@ class Shown:
         cells = "".join(
             f'<tr><th scope="row" style="text-align:left">{escape(name)}</th>'
             f'<td style="text-align:left">{escape(text)}</td></tr>'
-            for name, text in _limit(rows)
+            for name, text in _limit_rows(rows)
         )
         figure = self._notebook_figure()
         drawn = "" if figure is None else figure.svg()
@@ -242,7 +244,7 @@ def ends(values: Any, unit: str = "", *, factor: float = 1.0) -> str:
 def field_facts(thing: Any, units: dict[str, str], *, title: str = "") -> Facts:
     """One row for each field of a dataclass: an array by its size and ends, in the unit given, all else in short."""
     shown = [field.name for field in fields(thing) if field.repr]
-    rows = [(name, _short(getattr(thing, name), units.get(name, ""))) for name in shown]
+    rows = [(name, _short_text(getattr(thing, name), units.get(name, ""))) for name in shown]
     return Facts(title, tuple(rows))
 
 
@@ -260,7 +262,7 @@ def name_with_values(thing: object) -> str:
     return name
 
 
-def _short(value: Any, unit: str) -> str:
+def _short_text(value: Any, unit: str) -> str:
     if hasattr(value, "dtype") and hasattr(value, "shape"):  # an array, without loading NumPy
         size = " × ".join(map(str, value.shape))
         return f"{size}: {ends(value, unit)}" if value.dtype.kind in "fiu" and value.size else size
@@ -274,14 +276,14 @@ def _short(value: Any, unit: str) -> str:
     return text if len(text) <= 60 else f"{text[:59]}…"
 
 
-def _limit(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+def _limit_rows(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
     if len(rows) <= MOST_ROWS:
         return rows
     rest = ", ".join(name for name, _ in rows[MOST_ROWS - 1 :])
     return (*rows[: MOST_ROWS - 1], ("also", rest))
 
 
-def _clip(line: str) -> str:
+def _clip_line(line: str) -> str:
     plain = " ".join(line.split("\n"))
     return plain if len(plain) <= _WIDEST else f"{plain[: _WIDEST - 1]}…"
 
@@ -317,7 +319,7 @@ class NotebookFigure(NamedTuple):
         if self.equal:
             scale[:] = scale.min()
         drawn = "".join(
-            self._drawn((line - low) * scale, _COLOURS[place % len(_COLOURS)]) for place, line in enumerate(lines)
+            self._svg_of_line((line - low) * scale, _COLOURS[place % len(_COLOURS)]) for place, line in enumerate(lines)
         )
         right = WIDTH - 10
         texts = [
@@ -337,7 +339,7 @@ class NotebookFigure(NamedTuple):
             f"{drawn}{words}{turned}{escape(self.y_label)}</text></svg>"
         )
 
-    def _drawn(self, line: FloatArray, colour: str) -> str:
+    def _svg_of_line(self, line: FloatArray, colour: str) -> str:
         step = max(1, -(-len(line) // MOST_POINTS))
         places = [(LEFT + x, HEIGHT - BELOW - y) for x, y in line[::step].tolist()]
         if self.points:

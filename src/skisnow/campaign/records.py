@@ -259,7 +259,7 @@ class DensitySamples(Shown):
 
     def site_means(self) -> dict[str, float]:
         """Mean density of each site's samples that were not cancelled (kg/m³)."""
-        return _means(self.site, self.snow_density, self.cancelled)
+        return _means_by_key(self.site, self.snow_density, self.cancelled)
 
     @property
     def in_profile(self) -> BoolArray:
@@ -289,15 +289,15 @@ class DropConeTests(Shown):
         tests = list(zip(self.site, self.test, strict=True))
         gone = {test for test, why in zip(tests, self.cancelled, strict=True) if why}
         cancelled = tuple("cancelled" if test in gone else "" for test in tests)
-        means = _means(tests, self.drop_cone_depth, cancelled)
-        return _means([site for site, _ in means], np.array(list(means.values())), ("",) * len(means))
+        means = _means_by_key(tests, self.drop_cone_depth, cancelled)
+        return _means_by_key([site for site, _ in means], np.array(list(means.values())), ("",) * len(means))
 
 
 def _name_list(names: Sequence[str]) -> str:
     return ", ".join(dict.fromkeys(names))
 
 
-def _means(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) -> dict[Key, float]:
+def _means_by_key(keys: Sequence[Key], values: FloatArray, cancelled: Sequence[str]) -> dict[Key, float]:
     collected: dict[Key, list[float]] = {}
     for key, value, why in zip(keys, values.tolist(), cancelled, strict=True):
         if not why:

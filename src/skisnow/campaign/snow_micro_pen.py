@@ -172,13 +172,13 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
             "at least {header_bytes} bytes, the header of a SnowMicroPen recording", header_bytes=HEADER_BYTES
         )
         _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
-    header = {key: _value(data, offset, form) for key, offset, form in _FIELDS}
+    header = {key: _unpack_value(data, offset, form) for key, offset, form in _FIELDS}
     _check(name, header, len(data))
     counts = np.frombuffer(data, dtype=">i2", count=header["samples"], offset=HEADER_BYTES)
-    return _profile(name, header, counts.astype(np.float64))
+    return _make_profile(name, header, counts.astype(np.float64))
 
 
-def _value(data: bytes, offset: int, form: str) -> Any:
+def _unpack_value(data: bytes, offset: int, form: str) -> Any:
     values = struct.unpack_from(f">{form}", data, offset)
     return values[0] if len(values) == 1 else values
 
@@ -216,9 +216,9 @@ def _check(file: str, header: dict[str, Any], size: int) -> None:
         _refuse(file, f"{size} bytes", allowed, "The file is cut off; copy it from the instrument again.")
 
 
-def _profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
+def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
     distance = header["sample_distance_mm"] * MM
-    latitude, longitude = _position(header)
+    latitude, longitude = _position_or_none(header)
     return SnowMicroPenProfile(
         file=file,
         name=_text(header["name"]),
@@ -229,11 +229,11 @@ def _profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicro
         force_per_count=header["force_per_count"],
         force_offset=header["force_offset"],
         announced_samples=header["announced_samples"],
-        clock=_clock(header["clock"]),
+        clock=_recording_time(header["clock"]),
         date_in_file_name=_date_in(file),
         latitude_deg=latitude,
         longitude_deg=longitude,
-        height=_height(header["height_cm"]),
+        height=_height_or_none(header["height_cm"]),
         dilution_of_precision=header["dilution_of_precision"],
         satellites=header["satellites"],
         fix_mode=header["fix_mode"],
@@ -253,7 +253,7 @@ def _text(raw: bytes) -> str:
     return raw.split(b"\0", 1)[0].decode("latin-1").strip()
 
 
-def _clock(fields: tuple[int, ...]) -> datetime | None:
+def _recording_time(fields: tuple[int, ...]) -> datetime | None:
     year, month, day, hour, minute, second = fields
     try:
         return datetime(year, month, day, hour, minute, second, tzinfo=UTC)
@@ -270,7 +270,7 @@ def _date_in(name: str) -> date | None:
     return None
 
 
-def _position(header: dict[str, Any]) -> tuple[float, float] | tuple[None, None]:
+def _position_or_none(header: dict[str, Any]) -> tuple[float, float] | tuple[None, None]:
     latitude, longitude = header["latitude_deg"], header["longitude_deg"]
     signs = {ord("N"): 1.0, ord("E"): 1.0, ord("S"): -1.0, ord("W"): -1.0}
     north, east = header["hemisphere"].upper()
@@ -281,5 +281,5 @@ def _position(header: dict[str, Any]) -> tuple[float, float] | tuple[None, None]
     return signs[north] * abs(latitude), signs[east] * abs(longitude)
 
 
-def _height(centimetres: float) -> float | None:
+def _height_or_none(centimetres: float) -> float | None:
     return None if centimetres == _NO_HEIGHT_CM or not np.isfinite(centimetres) else centimetres * CM

@@ -167,7 +167,7 @@ def read_density_layers(path: Path) -> DensityLayers:
     """
     path = Path(path)
     files = RawFiles(FilesOfFolder(path.parent))
-    table = _read(path.name, files)
+    table = _read_layers(path.name, files)
     if table is not None and not table.absent:
         files.problems.extend(_layers_upside_down(path.name, table))
     errors = [problem for problem in files.problems if problem.severity == "error"]
@@ -186,8 +186,8 @@ def read_density_layers(path: Path) -> DensityLayers:
     )
 
 
-def _read(name: str, files: RawFiles) -> Table | None:
-    form = _form(name)
+def _read_layers(name: str, files: RawFiles) -> Table | None:
+    form = _layers_form(name)
     text = csv_text_of(files, form)
     if name in files.absent:
         action = Message("Check the file's name and folder.")
@@ -195,7 +195,7 @@ def _read(name: str, files: RawFiles) -> Table | None:
     return None if text is None else read_table(form, text, corrections={}, files=files)
 
 
-def _form(file: str) -> TableForm:
+def _layers_form(file: str) -> TableForm:
     return TableForm(
         file=file,
         key="ID",

@@ -49,10 +49,10 @@ class Template:
         """Pairs of column and explanation."""
         for name in self.example:
             quantity = self.numbers.get(name)
-            yield name, WORDS.get(name, "") if quantity is None else f"{quantity.meaning}; {_unit(quantity)}"
+            yield name, WORDS.get(name, "") if quantity is None else f"{quantity.meaning}; {_allowed_in_unit(quantity)}"
 
 
-def _unit(quantity: Quantity) -> str:
+def _allowed_in_unit(quantity: Quantity) -> str:
     return f"{allowed_words(quantity)} in {quantity.unit}"
 
 
@@ -107,7 +107,7 @@ def keys_with_values(name: str) -> Iterator[tuple[str, str, Quantity]]:
 
 def campaign_toml(name: str) -> str:
     """The text of campaign.toml."""
-    keys = "".join(_line(*entry) for entry in keys_with_values(name))
+    keys = "".join(_toml_line(*entry) for entry in keys_with_values(name))
     tables = "".join(
         f"# {template.form.file}\n" + "".join(f"#   {column}: {words}\n" for column, words in template.explanations())
         for template in TEMPLATES
@@ -132,7 +132,7 @@ length_mm = {PLATE_LENGTH_MM:g}
 {tables}"""
 
 
-def _line(key: str, cell: str, quantity: Quantity) -> str:
+def _toml_line(key: str, cell: str, quantity: Quantity) -> str:
     about = f"# {quantity.meaning}{f' ({quantity.unit})' if quantity.unit else ''}\n"
     if quantity.kind == "text":
         return f'{about}{key} = "{cell}"\n'
@@ -151,24 +151,25 @@ def workbook_bytes(name: str) -> bytes:
     book = Workbook()
     book.remove(book.active)
     described = [
-        (key, _cell(value), quantity.unit, quantity.meaning) for key, value, quantity in keys_with_values(name)
+        (key, _number_or_text(value), quantity.unit, quantity.meaning)
+        for key, value, quantity in keys_with_values(name)
     ]
-    _fill(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, _OBSERVERS])
-    _fill(
+    _fill_sheet(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, _OBSERVERS])
+    _fill_sheet(
         book.create_sheet(TOOLS),
         ("name", "shape", "length_mm", "width_mm", "diameter_mm", "radius_mm"),
         [(TOOL, "ski", LENGTH_MM, WIDTH_MM)],
     )
-    _fill(book.create_sheet(PLATES), ("name", "length_mm"), [(PLATE, PLATE_LENGTH_MM)])
+    _fill_sheet(book.create_sheet(PLATES), ("name", "length_mm"), [(PLATE, PLATE_LENGTH_MM)])
     for template in TEMPLATES:
         sheet = book.create_sheet(template.form.file.removesuffix(".csv"))
-        _fill(
+        _fill_sheet(
             sheet,
             tuple(template.example),
             [tuple(template.example.values())],
             notes=dict(template.explanations()),
         )
-    _fill(book.create_sheet(COLUMNS), ("heading", "column", "table"), [])
+    _fill_sheet(book.create_sheet(COLUMNS), ("heading", "column", "table"), [])
     stream = io.BytesIO()
     book.save(stream)
     return stream.getvalue()
@@ -177,14 +178,14 @@ def workbook_bytes(name: str) -> bytes:
 _OBSERVERS: Final = ("observers", "", "", "who; several are parted by semicolons")
 
 
-def _cell(text: str) -> str | float:
+def _number_or_text(text: str) -> str | float:
     try:
         return float(text)
     except ValueError:
         return text
 
 
-def _fill(
+def _fill_sheet(
     sheet: Any, header: Sequence[str], rows: Iterable[Sequence[str | float]], *, notes: dict[str, str] | None = None
 ) -> None:
     from openpyxl.comments import Comment
@@ -234,7 +235,7 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
             "{folder} already contains a campaign ({there}); nothing was written. Choose another folder."
         ).tag("holds_campaign_already", folder=folder, there=list(there))
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
-    contents = {WORKBOOK: workbook_bytes(name)} if xlsx else _files(name, tables=not there)
+    contents = {WORKBOOK: workbook_bytes(name)} if xlsx else _template_files(name, tables=not there)
     prepare_folder(folder)
     with staged(folder, last=next(iter(contents))) as stage:
         for file, content in contents.items():
@@ -242,11 +243,11 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
     return tuple(folder / file for file in contents)
 
 
-def _files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:
-    written = {template.form.file: _csv(template) for template in TEMPLATES} if tables else {}
+def _template_files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:
+    written = {template.form.file: _template_csv(template) for template in TEMPLATES} if tables else {}
     return {CAMPAIGN_FILE: campaign_toml(name)} | written
 
 
-def _csv(template: Template) -> str:
+def _template_csv(template: Template) -> str:
     cells = [f"{cell:g}" if isinstance(cell, float) else cell for cell in template.example.values()]
     return csv_text([template.example, cells])

@@ -60,7 +60,7 @@ def answered(question: CarveQuestion, *, sources: Sources | None = None) -> Carv
     snow = asked_snow(question, sources)
     require_clamp(ski, question.clamp_length_m)
     edge_angle = question.edge_angle_deg * CARVE_KEYS["edge_angle_deg"].factor
-    equilibrium = _equilibrium(question, ski, snow, edge_angle)
+    equilibrium = _solve_equilibrium(question, ski, snow, edge_angle)
     _, outside = with_range_warnings(lambda: _warn_outside_ranges(snow, edge_angle, at_rest=question.at_rest))
     return CarveAnswer(
         question, ski, snow, equilibrium, (*warned, *implausible_values(question), *outside, *equilibrium.warnings)
@@ -81,7 +81,7 @@ def asked_snow(question: CarveQuestion, sources: Sources) -> SnowProperties:
     return with_stress(snow, question.S_f_N_per_mm2)
 
 
-def _equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_angle: float) -> Equilibrium:
+def _solve_equilibrium(question: CarveQuestion, ski: Ski, snow: SnowProperties, edge_angle: float) -> Equilibrium:
     stiffness = question.footprint_stiffness_N_per_mm2
     footprint = None if stiffness is None else stiffness * CARVE_KEYS["footprint_stiffness_N_per_mm2"].factor
     shared: dict[str, Any] = {"edge_angle": edge_angle, "load": question.load_N, "moment": question.moment_Nm}
@@ -184,12 +184,12 @@ def equilibrium_dict(equilibrium: Equilibrium) -> dict[str, Any]:
     """An equilibrium under the keys of the contract; None where a number does not exist."""
     return {
         **scalars_dict(equilibrium),
-        "station_m": _numbers(equilibrium.station, 1.0),
-        "edge_depth_mm": _numbers(equilibrium.edge_depth, MM),
-        "force_per_length_N_per_m": _numbers(equilibrium.force_per_length, 1.0),
-        "bending_mm": _numbers(equilibrium.bending, MM),
-        "twist_deg": _numbers(equilibrium.twist, DEGREE),
-        "edge_line_mm": _numbers(equilibrium.edge_line, MM),
+        "station_m": _json_numbers(equilibrium.station, 1.0),
+        "edge_depth_mm": _json_numbers(equilibrium.edge_depth, MM),
+        "force_per_length_N_per_m": _json_numbers(equilibrium.force_per_length, 1.0),
+        "bending_mm": _json_numbers(equilibrium.bending, MM),
+        "twist_deg": _json_numbers(equilibrium.twist, DEGREE),
+        "edge_line_mm": _json_numbers(equilibrium.edge_line, MM),
     }
 
 
@@ -235,7 +235,7 @@ def _in_unit(stated: float | None, value: float | None, unit: float) -> float | 
     return stated if stated is not None or value is None else value / unit
 
 
-def _numbers(values: FloatArray | None, unit: float) -> list[float | None] | None:
+def _json_numbers(values: FloatArray | None, unit: float) -> list[float | None] | None:
     if values is None:
         return None
     numbers: list[float | None] = (values / unit).tolist()

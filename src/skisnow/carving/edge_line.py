@@ -48,24 +48,24 @@ class EdgeLine:
         self.station = model.stations.station
 
     @functools.cached_property
-    def _bent(self) -> tuple[FloatArray, FloatArray]:
+    def _deflection_and_twist(self) -> tuple[FloatArray, FloatArray]:
         return beam_at_stations(self._model, self._u)
 
     @functools.cached_property
     def deflection(self) -> FloatArray:
         """Deflection at the stations (m)."""
-        return self._bent[0]
+        return self._deflection_and_twist[0]
 
     @functools.cached_property
     def twist(self) -> FloatArray:
         """Twist at the stations (rad)."""
-        return self._bent[1]
+        return self._deflection_and_twist[1]
 
     @functools.cached_property
     def position(self) -> FloatArray:
         """Position of the edge at the stations (m)."""
         stations = self._model.stations
-        return self.across(stations.width, stations.base_height, *self._bent)
+        return self.across(stations.width, stations.base_height, *self._deflection_and_twist)
 
     def at(self, station: npt.ArrayLike) -> FloatArray:
         """Position (m) of the edge at stations (m)."""
@@ -159,9 +159,9 @@ class EdgeLine:
     def contact_ends(self, depth: FloatArray) -> tuple[float, float]:
         """Stations (m) of both ends of the contact, front first: where the edge depth passes zero, or tip and tail."""
         below = np.flatnonzero(depth > 0.0)
-        return self._end(depth, int(below[0]), -1), self._end(depth, int(below[-1]), 1)
+        return self._contact_end(depth, int(below[0]), -1), self._contact_end(depth, int(below[-1]), 1)
 
-    def _end(self, depth: FloatArray, last: int, outwards: int) -> float:
+    def _contact_end(self, depth: FloatArray, last: int, outwards: int) -> float:
         beyond = last + outwards
         if not 0 <= beyond < len(depth):
             return float(self._model.ski.station[0 if outwards < 0 else -1])

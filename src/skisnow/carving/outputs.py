@@ -196,21 +196,21 @@ def _contact_length(at: At) -> OutputGrowth | None:
     return OutputGrowth(value=front.value - rear.value, depth=depth, place=place)
 
 
-def _largest(values: FloatArray) -> FloatArray:
+def _mask_of_largest(values: FloatArray) -> FloatArray:
     return np.asarray(np.eye(1, len(values), int(np.argmax(values)))[0])
 
 
-def _depth(at: At) -> OutputGrowth | None:
+def _largest_depth(at: At) -> OutputGrowth | None:
     depth = at.solution.edge_depth
-    return OutputGrowth(value=float(depth.max()), depth=_largest(depth))
+    return OutputGrowth(value=float(depth.max()), depth=_mask_of_largest(depth))
 
 
-def _force(at: At) -> OutputGrowth | None:
+def _largest_force(at: At) -> OutputGrowth | None:
     force = at.solution.force_per_length
-    return OutputGrowth(value=float(force.max()), force=_largest(force))
+    return OutputGrowth(value=float(force.max()), force=_mask_of_largest(force))
 
 
-def _deflection(at: At) -> OutputGrowth | None:
+def _deflection_at_boot(at: At) -> OutputGrowth | None:
     x = np.array([BOOT_REACH])
     by = np.array([[0.0], [0.0], [1.0], [0.0]])
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
@@ -238,10 +238,10 @@ OUTPUTS: Final[dict[str, tuple[Callable[[At], OutputGrowth | None], float, str]]
     "turn_radius_boot_m": (_radius_at_boot, 1.0, "circle through the edge at the boot and 0.4 m before and behind"),
     "turn_radius_chord_m": (_radius_of_chord, 1.0, "circle through the edge at the boot and both ends of the contact"),
     "turn_radius_median_m": (_radius_median, 1.0, "median over the contact of circles through 0.2 m of the edge"),
-    "edge_depth_mm": (_depth, MM, "greatest depth of the edge"),
+    "edge_depth_mm": (_largest_depth, MM, "greatest depth of the edge"),
     "grip_utilisation": (_grip_utilisation, 1.0, "side force over its limit"),
-    "deflection_mm": (_deflection, MM, "deflection of the base 0.4 m before the boot"),
-    "force_per_length_N_per_m": (_force, 1.0, "greatest force per length along the edge"),
+    "deflection_mm": (_deflection_at_boot, MM, "deflection of the base 0.4 m before the boot"),
+    "force_per_length_N_per_m": (_largest_force, 1.0, "greatest force per length along the edge"),
     "contact_length_m": (_contact_length, 1.0, "between the ends of the contact, if it reaches neither tip nor tail"),
 }
 """By name: computation, unit, definition."""

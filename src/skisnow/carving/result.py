@@ -270,7 +270,7 @@ def equilibrium_of(
     weight, depth, force = model.stations.weight, solution.edge_depth, solution.force_per_length
     below = depth > 0.0
     limit = _side_force_limit(conditions, snow, solution, weight, conditions.edge_angle + line.twist)
-    holds = _holds(conditions, limit)
+    holds = _edge_holds(conditions, limit)
     outcome = "slips" if not holds else "bridges" if _bridges(station, below) else "equilibrium"
     ends = line.contact_ends(depth)
     of_force = float(weight @ (force * station))
@@ -304,7 +304,7 @@ def equilibrium_of(
         edge_line=line.position,
         residual_force=float(weight @ force) - conditions.load,
         residual_moment=conditions.pitch_of_force * of_force + conditions.pitch_of_shear * of_shear - conditions.moment,
-        warnings=(*note, *_warnings(line)),
+        warnings=(*note, *_warnings_of_line(line)),
         iterations=solution.iterations,
         request=None
         if elements is None
@@ -323,7 +323,7 @@ def _side_force_limit(
     return None if stress is None else stress * float(weight @ np.maximum(depth, 0.0))
 
 
-def _holds(conditions: Conditions, limit: float | None) -> bool:
+def _edge_holds(conditions: Conditions, limit: float | None) -> bool:
     if conditions.side_force == 0.0 or limit is None:
         return conditions.side_force == 0.0
     # a pressure along the base's normal holds a ski that does not twist with nothing to spare
@@ -353,7 +353,7 @@ def _depth_ratio(station: FloatArray, weight: FloatArray, depth: FloatArray) -> 
     return mean_behind / mean_before
 
 
-def _warnings(line: EdgeLine) -> tuple[str, ...]:
+def _warnings_of_line(line: EdgeLine) -> tuple[str, ...]:
     warnings = []
     slope, twist = line.greatest_slope(), float(np.max(np.abs(line.twist)))
     if slope > LARGE_SLOPE:

@@ -92,7 +92,7 @@ def solved(
         border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
         from_there = (near.u, border)
     laws = None if conditions.laws is None else conditions.laws.compiled
-    result = core.find_carve(_core_ski(model), _numbers(conditions), offset, from_there, laws)
+    result = core.find_carve(_core_ski(model), _core_conditions(conditions), offset, from_there, laws)
     converged, iterations, u, (depth, slope, stress), edge_depth, force = result
     return Solution(converged, iterations, u, depth, slope, stress, edge_depth, force)
 
@@ -112,10 +112,10 @@ def refined(
         Where across the groove is kept (m from the edge, rising from 0); None: where `solved` keeps it.
     """
     border = np.array([near.boot_depth, near.boot_slope, near.shear_stress])
-    return core.CarvePoint(_core_ski(model), _numbers(conditions), near.u, border, places)
+    return core.CarvePoint(_core_ski(model), _core_conditions(conditions), near.u, border, places)
 
 
-def _numbers(conditions: Conditions) -> core.CarveConditions:
+def _core_conditions(conditions: Conditions) -> core.CarveConditions:
     # numbers of NumPy, too, which the core does not know
     numbers: list[Any] = [number.item() if isinstance(number, np.generic) else number for number in conditions[:-1]]
     return core.CarveConditions(*numbers)
@@ -161,7 +161,7 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
     ski, node = model.ski, model.node
     dof = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])
     free = dof[:, 0] >= 0
-    front, rear = (_CONFORMING_SHARE * end for end in _ends(ski))
+    front, rear = (_CONFORMING_SHARE * end for end in _contact_span(ski))
     inside = np.clip(node, rear, front)
     width, height = ski.tables_at(
         np.concatenate([inside + _NEAR, inside - _NEAR, inside, [0.0]]), "width", "base_height"
@@ -178,6 +178,6 @@ def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
     return bent(width / 2.0), bent(height)
 
 
-def _ends(ski: Ski) -> tuple[float, float]:
+def _contact_span(ski: Ski) -> tuple[float, float]:
     front, rear = ski.contact_points
     return min(front, float(ski.station[0])), max(rear, float(ski.station[-1]))

@@ -27,8 +27,8 @@ def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
 
 def check(options: argparse.Namespace) -> int:
     """Print the problems; 1 if any is an error."""
-    problems, notes = _problems(options.campaign)
-    errors, warnings, flags = (_count(problems, severity) for severity in ("error", "warning", "flag"))
+    problems, notes = _find_problems(options.campaign)
+    errors, warnings, flags = (_count_of_severity(problems, severity) for severity in ("error", "warning", "flag"))
     if options.json:
         entries = [problem.as_dict() for problem in problems]
         counts = {"errors": errors, "warnings": warnings, "flags": flags}
@@ -40,12 +40,12 @@ def check(options: argparse.Namespace) -> int:
             print(line)
         for note in notes:
             print(f"note: {note}")
-        warnings = _count([problem for problem in problems if problem.needs_action], "warning")
+        warnings = _count_of_severity([problem for problem in problems if problem.needs_action], "warning")
         print(f"errors: {errors}, warnings: {warnings}, flags: {flags}")
     return 1 if errors else 0
 
 
-def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
+def _find_problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
     from .._support.errors import FieldDataError
     from ..campaign import Problem, read_campaign
     from ..estimation import campaign_notes, quality_flags
@@ -58,7 +58,7 @@ def _problems(folder: Path) -> tuple[list[Problem], tuple[str, ...]]:
         return [*campaign.problems, *quality_flags(campaign)], campaign_notes(campaign)
 
 
-def _count(problems: list[Problem], severity: str) -> int:
+def _count_of_severity(problems: list[Problem], severity: str) -> int:
     return sum(problem.severity == severity for problem in problems)
 
 
@@ -185,7 +185,7 @@ def import_file(options: argparse.Namespace) -> int:
     if options.file is None or options.out is None:
         raise ParameterError("Name the file and the folder: skisnow import FILE --out DIR.").tag("missing_option")
     asks = not options.yes and sys.stdin.isatty()
-    proposal = _ask_questions(options, _answers(options), asks=asks)
+    proposal = _ask_questions(options, _read_answers(options), asks=asks)
     if proposal.problems:
         raise FieldDataError(proposal.problems)
     print("\n".join(preview_lines(proposal)))
@@ -201,7 +201,7 @@ def import_file(options: argparse.Namespace) -> int:
     return 0
 
 
-def _answers(options: argparse.Namespace) -> Answers:
+def _read_answers(options: argparse.Namespace) -> Answers:
     from ..campaign.importing import Answers, read_template
 
     from_options = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
@@ -216,12 +216,12 @@ def _ask_questions(options: argparse.Namespace, answers: Answers, *, asks: bool)
     proposal = propose(options.file.name, data, answers)
     while asks and proposal.questions:
         question = proposal.questions[0]
-        answers = answers.with_(question.option, question.key, _ask(question))
+        answers = answers.with_(question.option, question.key, _ask_in_terminal(question))
         proposal = propose(options.file.name, data, answers)
     return proposal
 
 
-def _ask(question: Question) -> str:
+def _ask_in_terminal(question: Question) -> str:
     print(question.problem.message)
     if question.choices:
         print(f"  choices: {', '.join(question.choices)}")

@@ -97,7 +97,7 @@ def carve_ski(options: argparse.Namespace) -> int:
     from ..carving.answer import answers_dict
 
     prepare_figure(options.figure)
-    answers = _answers(options)
+    answers = _compute_answers(options)
     _print_warnings(answers)
     result = answers_dict(answers)
     derivatives = [] if options.sensitivity is None else _sensitivities(answers, options.sensitivity)
@@ -145,7 +145,7 @@ def _exit_status(answers: list[CarveAnswer]) -> int:
     return 1 if lost else 0
 
 
-def _answers(options: argparse.Namespace) -> list[CarveAnswer]:
+def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
     with announced("loading"):
         from ..carving.answer import answered
         from ..carving.question import CARVE_KEYS, carve_question
@@ -205,7 +205,7 @@ def design_ski(options: argparse.Namespace) -> int:
         print_json(design.as_dict())
     else:
         with in_language(options.language):
-            print(_summary(design))
+            print(_design_summary(design))
         print("\n".join(f"written: {path}" for path in paths))
     return 0 if design.reached else 1
 
@@ -237,21 +237,26 @@ def _front(options: argparse.Namespace, task: DesignTask) -> int:
     return 0
 
 
-def _summary(design: Design) -> str:
+def _design_summary(design: Design) -> str:
     names = (Message("before"), Message("design"), Message("change %"), Message("rounded"))
     before, after, change, rounded = map(str, names)
     condition, output = str(Message("condition")), str(Message("output"))
     lines = [f"{Message('variable')!s:24} {after:>12}"]
-    lines += [f"{name:24} {_number(value, '12.6g')}" for name, value in design.values.items()]
+    lines += [f"{name:24} {_number_text(value, '12.6g')}" for name, value in design.values.items()]
     lines += ["", f"{condition:>9}  {output:26} {before:>11} {after:>11} {change:>10} {rounded:>11}"]
     for row in design.rows:
-        numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "10.3g"), _number(row.rounded))
+        numbers = (
+            _number_text(row.before),
+            _number_text(row.after),
+            _number_text(row.change_percent, "10.3g"),
+            _number_text(row.rounded),
+        )
         lines.append("{:9}  {:26} {} {} {} {}".format(row.condition, row.output, *numbers))
     lines += ["", str(Message("local optima, with the share of starts that reached them, and their objective:"))]
-    lines += [f"  {optimum.share:5.0%}  {_number(optimum.result, '.6g')}" for optimum in design.optima]
+    lines += [f"  {optimum.share:5.0%}  {_number_text(optimum.result, '.6g')}" for optimum in design.optima]
     lines += ["", *map(str, design.remarks), str(Message("equilibria: {count}", count=design.equilibria))]
     return "\n".join(lines)
 
 
-def _number(value: float | None, form: str = "11.6g") -> str:
+def _number_text(value: float | None, form: str = "11.6g") -> str:
     return " " * int(form.partition(".")[0]) if value is None else local_number(f"{value:{form}}")

@@ -142,7 +142,7 @@ def _run_race(options: argparse.Namespace) -> _RaceResult:
         scenario, variants = _scenario_and_variants(options)
         snow = scenario.contact.snow
         snows = drawn_for_race(snow, options.snows, spread=options.snow_spread, seed=options.seed)
-        begin = _start(options, scenario)
+        begin = _read_start_line(options, scenario)
     prepare_output(options.out)
     computing: dict[str, Any] = {"workers": options.workers, "executor": scheduler_of(options)}
     with Progress() as progress:
@@ -176,7 +176,7 @@ def _scenario_and_variants(options: argparse.Namespace) -> tuple[Scenario, dict[
     return scenario_input.scenario, variants
 
 
-def _start(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None:
+def _read_start_line(options: argparse.Namespace, scenario: Scenario) -> RacingLine | None:
     from ..racing import read_line
     from ..racing.line import course_of
 

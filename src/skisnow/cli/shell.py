@@ -155,7 +155,7 @@ def manual_page(parser: argparse.ArgumentParser, version: str) -> str:
         ".SH SYNOPSIS",
         *_synopsis(parser),
         ".SH COMMANDS",
-        *(line for name, command in _commands(parser) for line in _command(command, _help_of(parser, name))),
+        *(line for name, command in _commands(parser) for line in _manual_of_command(command, _help_of(parser, name))),
         ".SH EXIT STATUS",
         "0: done. 1: the data or the machine refused, with a sentence on standard error. 2: wrong words. 70: an error",
         "that was not foreseen. 130: interrupted.",
@@ -178,7 +178,7 @@ def _help_of(parser: argparse.ArgumentParser, name: str) -> str:
     )
 
 
-def _command(parser: argparse.ArgumentParser, about: str) -> Iterator[str]:
+def _manual_of_command(parser: argparse.ArgumentParser, about: str) -> Iterator[str]:
     yield f".SS {_text(parser.prog)}"
     yield from _synopsis(parser)
     yield ".PP"
@@ -189,7 +189,7 @@ def _command(parser: argparse.ArgumentParser, about: str) -> Iterator[str]:
             yield f".B {_text(_names_of_argument(action))}"
             yield _text(_help_text(action.help or "", parser, action)) or "\\&"
     for inner, command in _commands(parser):
-        yield from _command(command, _help_of(parser, inner))
+        yield from _manual_of_command(command, _help_of(parser, inner))
 
 
 def _synopsis(parser: argparse.ArgumentParser) -> Iterator[str]:

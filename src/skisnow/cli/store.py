@@ -82,20 +82,27 @@ def run(args: argparse.Namespace) -> int:
     """Run the subcommand; returns 1 if verify found damage, else 0."""
     from ..campaign.store import Store
 
-    act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify, "sync": _sync}
+    act = {
+        "add": _add_campaign,
+        "list": _list_campaigns,
+        "show": _show_campaign,
+        "export": _export_campaign,
+        "verify": _verify_store,
+        "sync": _sync_stores,
+    }
     with Store.open(args.store, create=args.action in ("add", "sync")) as store:
         answer, text, code = act[args.action](store, args)
     print(json.dumps(answer, indent=2, allow_nan=False) if args.json else text)
     return code
 
 
-def _add(store: Store, args: argparse.Namespace) -> Answer:
+def _add_campaign(store: Store, args: argparse.Namespace) -> Answer:
     with _percent_printed("keeping") as progress:
         added = store.add(args.folder, progress=progress)
     if added.check_failure is not None:
         print(f"The campaign is kept but could not be checked: {added.check_failure}", file=sys.stderr)
     did = "was in the store already" if added.already_stored else "is kept"
-    text = f"{added.id}  {added.name}: {_amount(added.n_files, added.n_bytes)}, {did}"
+    text = f"{added.id}  {added.name}: {_size_text(added.n_files, added.n_bytes)}, {did}"
     if added.n_repaired:
         text += f"; damaged files made whole: {added.n_repaired}"
     if added.n_errors is not None:
@@ -104,28 +111,28 @@ def _add(store: Store, args: argparse.Namespace) -> Answer:
     return asdict(added), text, 0
 
 
-def _list(store: Store, _: argparse.Namespace) -> Answer:
+def _list_campaigns(store: Store, _: argparse.Namespace) -> Answer:
     from ..campaign.store import Journals
 
     stored, entered = store.list(), Journals(store).list()
-    lines = [*map(_line, stored), *map(_entered_line, entered)] or ["The store holds no campaign."]
+    lines = [*map(_campaign_line, stored), *map(_entered_line, entered)] or ["The store holds no campaign."]
     answer: Json = {"campaigns": list(map(_as_json, stored)), "lab_campaigns": list(map(asdict, entered))}
     return answer, "\n".join(lines), 0
 
 
-def _show(store: Store, args: argparse.Namespace) -> Answer:
+def _show_campaign(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import JournalHead, entered_files, find_campaign
 
     campaign = find_campaign(store, args.id)
     if isinstance(campaign, JournalHead):
         first, as_json, files = _entered_line(campaign), asdict(campaign), entered_files(store, campaign.id)
     else:
-        first, as_json, files = _line(campaign), _as_json(campaign), campaign.files
+        first, as_json, files = _campaign_line(campaign), _as_json(campaign), campaign.files
     lines = [first, *(f"{file.sha256}  {file.size:>12}  {file.path}" for file in files)]
     return {**as_json, "files": list(map(asdict, files))}, "\n".join(lines), 0
 
 
-def _export(store: Store, args: argparse.Namespace) -> Answer:
+def _export_campaign(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
 
     campaign = find_campaign(store, args.id)
@@ -137,7 +144,7 @@ def _export(store: Store, args: argparse.Namespace) -> Answer:
         else:
             exported = export_corrected(store, args.id, args.out, progress=progress)
     stored, n = exported.stored, exported.n_corrections
-    text = f"{stored.id}  {stored.name}: {_amount(stored.n_files, stored.n_bytes)}, exported to {args.out}"
+    text = f"{stored.id}  {stored.name}: {_size_text(stored.n_files, stored.n_bytes)}, exported to {args.out}"
     text += f"\ncells corrected since, in corrections.csv: {n}" if n else ""
     return {**_as_json(stored), "n_corrections": n, "out": str(args.out)}, text, 0
 
@@ -153,21 +160,21 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
     return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
 
 
-def _verify(store: Store, _: argparse.Namespace) -> Answer:
+def _verify_store(store: Store, _: argparse.Namespace) -> Answer:
     with _percent_printed("verifying") as progress:
         findings = store.verify(progress=progress)
     lines = [str(finding) for finding in findings] or ["All is sound."]
     return {"findings": [asdict(finding) for finding in findings]}, "\n".join(lines), 1 if findings else 0
 
 
-def _sync(store: Store, args: argparse.Namespace) -> Answer:
+def _sync_stores(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import Store, sync
 
     with Store.open(_group_place(args.group)) as group, _percent_printed("synchronising") as progress:
         done = sync(store, group, keep=dict(args.keep), who=args.who, progress=progress)
     lines = [
-        f"given: {_amounts(done.n_campaigns_given, done.n_entries_given)}; "
-        f"taken: {_amounts(done.n_campaigns_taken, done.n_entries_taken)}",
+        f"given: {_counts_text(done.n_campaigns_given, done.n_entries_given)}; "
+        f"taken: {_counts_text(done.n_campaigns_taken, done.n_entries_taken)}",
         *([f"conflicts settled: {done.n_settled}"] if done.n_settled else []),
         *done.same_names,
         *(f"left where it is: {problem}" for problem in done.problems),
@@ -197,7 +204,7 @@ def _parse_choice(text: str) -> tuple[str, Side]:
     return id_, side  # type: ignore[return-value]
 
 
-def _amounts(n_campaigns: int, n_entries: int) -> str:
+def _counts_text(n_campaigns: int, n_entries: int) -> str:
     campaigns = f"{n_campaigns} stored campaign{'' if n_campaigns == 1 else 's'}"
     return f"{campaigns}, {n_entries} entr{'y' if n_entries == 1 else 'ies'}"
 
@@ -212,13 +219,13 @@ def _entered_line(head: JournalHead) -> str:
     return f"{head.id}  {begun} UTC  {head.name or '(no name)'}: {n} lab entr{'y' if n == 1 else 'ies'}"
 
 
-def _line(stored: StoredCampaign) -> str:
+def _campaign_line(stored: StoredCampaign) -> str:
     checked = "not checked" if stored.n_errors is None else f"errors {stored.n_errors}, warnings {stored.n_warnings}"
-    amount = _amount(stored.n_files, stored.n_bytes)
+    amount = _size_text(stored.n_files, stored.n_bytes)
     return f"{stored.id}  {stored.added_at:%Y-%m-%d %H:%M} UTC  {stored.name}: {amount}, {checked}"
 
 
-def _amount(n_files: int, n_bytes: int) -> str:
+def _size_text(n_files: int, n_bytes: int) -> str:
     return f"{n_files} file{'' if n_files == 1 else 's'}, {n_bytes} bytes"
 
 

@@ -65,7 +65,7 @@ def summarise(options: argparse.Namespace) -> int:
         options.parser.error("--discipline needs --course: name the file of the gates")
     if options.out is not None:
         prepare_output(options.out)
-    course = None if options.course is None else _course(options)
+    course = None if options.course is None else _read_course(options)
     with announced(f"reading {options.file}"):
         from ..track.read import read_track
 
@@ -104,7 +104,7 @@ def summarise(options: argparse.Namespace) -> int:
     return 0
 
 
-def _course(options: argparse.Namespace) -> Course:
+def _read_course(options: argparse.Namespace) -> Course:
     from ..track.course import course_warnings, read_course
 
     course = read_course(options.course, discipline=options.discipline)
@@ -185,7 +185,7 @@ def compare(options: argparse.Namespace) -> int:
         )
     if options.out is not None:
         prepare_output(options.out)
-    comparison, verdict = _compare(options)
+    comparison, verdict = _compare_tracks(options)
     from ..comparison import comparison_dict
     from ..track.course.gates_table import gap_rows, read_gate_gaps
 
@@ -205,11 +205,11 @@ def compare(options: argparse.Namespace) -> int:
 
             print(f"\n{gaps_text(gaps, comparison.names)}", flush=True)
     if options.out is not None:
-        _write(options.out, comparison, answer, verdict, options.language, gaps)
+        _write_comparison(options.out, comparison, answer, verdict, options.language, gaps)
     return 0
 
 
-def _compare(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
+def _compare_tracks(options: argparse.Namespace) -> tuple[Comparison, Message | None]:
     from ..comparison.alignment import require_offsets
 
     fit = _estimated_offsets(options)
@@ -254,7 +254,7 @@ def _in_slope(track: Track, options: argparse.Namespace, slope_angle: float | No
     )
 
 
-def _write(
+def _write_comparison(
     folder: Path,
     comparison: Comparison,
     answer: dict[str, Any],

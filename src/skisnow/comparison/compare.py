@@ -175,16 +175,16 @@ def _compare_lines(lines: tuple[Polyline, Polyline], clock: Clock, names: tuple[
         measured=measured,
         names=names,
         seen=seen,
-        nearest=_distances(
+        nearest=_make_distances(
             "nearest", apart, "all of the measured track lies ahead of the simulated one's ends: nothing is beside it"
         ),
-        arc_length=_distances("arc_length", arc_length_offsets(simulated, measured), "neither has a length"),
+        arc_length=_make_distances("arc_length", arc_length_offsets(simulated, measured), "neither has a length"),
         time=_at_equal_time(simulated, measured, clock),
         largest_from_simulated=None if back is None else back.max,
     )
 
 
-def _distances(name: str, apart: OffsetSeries | None, otherwise: str, *, origin: str = "") -> Distances:
+def _make_distances(name: str, apart: OffsetSeries | None, otherwise: str, *, origin: str = "") -> Distances:
     numbers = None if apart is None else distance_statistics(apart)
     definition = DEFINITIONS[name].format(origin=origin)
     return Distances(definition, apart, numbers, None if numbers else otherwise)
@@ -193,12 +193,12 @@ def _distances(name: str, apart: OffsetSeries | None, otherwise: str, *, origin:
 def _at_equal_time(simulated: Polyline, measured: Polyline, clock: Clock) -> Distances:
     reason = clock.reason or missing_time_reason(simulated, "simulated") or missing_time_reason(measured, "measured")
     if reason:
-        return _distances("time", None, reason, origin=clock.origin)
+        return _make_distances("time", None, reason, origin=clock.origin)
     apart = time_offsets(simulated, measured, later=clock.ahead)
     if apart is None:
         begins = measured.time[0] + clock.ahead - simulated.time[0]
         reason = f"they are not on their way at one time (the measured one begins {begins:.6g} s later); {FIRST_POINTS}"
-    return _distances("time", apart, reason or "the measured track stands still while both are on their way",
+    return _make_distances("time", apart, reason or "the measured track stands still while both are on their way",
                       origin=clock.origin)  # fmt: skip
 
 

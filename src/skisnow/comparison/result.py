@@ -194,10 +194,10 @@ def comparison_dict(comparison: Comparison) -> Json:
 
 
 def _distances_dict(comparison: Comparison) -> Json:
-    return {kind: _distances(getattr(comparison, kind), comparison.measured.length) for kind in KINDS}
+    return {kind: _distances_json(getattr(comparison, kind), comparison.measured.length) for kind in KINDS}
 
 
-def _distances(distances: Distances, length: float) -> Json:
+def _distances_json(distances: Distances, length: float) -> Json:
     numbers = distances.numbers
     metres = {
         "max_m": None if numbers is None else numbers.max,

@@ -284,10 +284,10 @@ def analyse(
     require_range("n_resamples", n_resamples, FEWEST_RESAMPLES)
     require_range("difference", difference, 0.0, np.inf, above=True, below=True)
     read = campaign if isinstance(campaign, Campaign) else read_campaign(campaign, progress=progress)
-    return _analysis(read, geometry, seed, n_resamples, difference, progress)
+    return _make_analysis(read, geometry, seed, n_resamples, difference, progress)
 
 
-def _analysis(
+def _make_analysis(
     campaign: Campaign,
     geometry: GeometryForm,
     seed: int,
@@ -296,13 +296,13 @@ def _analysis(
     progress: Callable[[str], None] | None,
 ) -> Analysis:
     rng = np.random.default_rng(seed)
-    penetration = _penetration(campaign, geometry, rng, n_resamples, progress)
-    shear = _shear(campaign)
+    penetration = _analyse_penetration(campaign, geometry, rng, n_resamples, progress)
+    shear = _analyse_shear(campaign)
     recordings = campaign.snow_micro_pen
     if recordings is not None:
-        _report(progress, f"{len(recordings)} recordings of the SnowMicroPen")
+        _report_progress(progress, f"{len(recordings)} recordings of the SnowMicroPen")
     pen = None if recordings is None else evaluate_recordings(recordings)
-    observations = _observations(campaign, penetration, shear, pen)
+    observations = _observations_by_source(campaign, penetration, shear, pen)
     pressed, sheared = observations["penetration"].known(HARDNESS_KEY), observations["shear"].known(STRESS_KEY)
     own_hardness, own_stress = own_mean(*pressed, geometric=True), own_mean(*sheared, geometric=False)
     screened = (kind.screened if kind else None for kind in (penetration, shear))
@@ -333,7 +333,7 @@ def _analysis(
     )
 
 
-def _penetration(
+def _analyse_penetration(
     campaign: Campaign,
     geometry: GeometryForm,
     rng: np.random.Generator,
@@ -344,7 +344,7 @@ def _penetration(
         return None
     readings = readings_of(campaign.penetration, campaign.tools, geometry=geometry)
     uncertainty = reading_uncertainty(campaign)
-    _report(progress, f"hardness of {readings.n_series} penetration experiments")
+    _report_progress(progress, f"hardness of {readings.n_series} penetration experiments")
     screened = screened_penetration(campaign, geometry=geometry)
     estimates = screened.estimates
     if estimates is None:
@@ -380,7 +380,7 @@ def _with_models(
     """Add the results over all used readings: model tables, the selected model, the factor b."""
     included, model, hardnesses = of_series.screened.used, of_series.model, of_series.hardness
     used = of_series.readings.of(included)
-    _report(progress, f"model table over {used.n} readings")
+    _report_progress(progress, f"model table over {used.n} readings")
     by_last = {symbol: H.value[included] for symbol, H in hardnesses.items()}
     fits = fit_models(used, by_last)
     intervals = bootstrap_intervals(used, by_last, rng, n_resamples=n_resamples, progress=progress)
@@ -398,7 +398,7 @@ def _with_models(
     )
 
 
-def _shear(campaign: Campaign) -> ShearAnalysis | None:
+def _analyse_shear(campaign: Campaign) -> ShearAnalysis | None:
     if campaign.shear is None:
         return None
     screened, displacement = screened_shear(campaign), shear_displacement(campaign, campaign.shear)
@@ -406,7 +406,7 @@ def _shear(campaign: Campaign) -> ShearAnalysis | None:
     return ShearAnalysis(screened, shear_stress(campaign, campaign.shear), displacement, by_site)
 
 
-def _observations(
+def _observations_by_source(
     campaign: Campaign,
     penetration: PenetrationAnalysis | None,
     shear: ShearAnalysis | None,
@@ -432,6 +432,6 @@ def _angle_term(penetration: PenetrationAnalysis | None) -> tuple[CampaignMean, 
     return CampaignMean(fit.b0, low0, high0, nan, nan), CampaignMean(fit.b1, low1, high1, nan, nan)
 
 
-def _report(progress: Callable[[str], None] | None, text: str) -> None:
+def _report_progress(progress: Callable[[str], None] | None, text: str) -> None:
     if progress:
         progress(text)

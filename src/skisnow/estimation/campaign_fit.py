@@ -154,8 +154,8 @@ class SeriesFit:
                 line = self._linearise()
                 if round_:
                     scatter_moved = self._scatter_step(line, self._n_seen - determined)
-                    line = line._replace(weight=self._weight(line.slope))
-                reduced = self._reduce(line)
+                    line = line._replace(weight=self._reading_weights(line.slope))
+                reduced = self._eliminate_hardness(line)
                 posterior, spreads_moved = self._spread_rounds(reduced)
                 step = reduced.rh - reduced.hg * (posterior.g - self._g) - reduced.hd * (posterior.d - self._d)
                 step = np.clip(step / reduced.hh, -0.5, 0.5)
@@ -167,7 +167,7 @@ class SeriesFit:
                 moved = np.abs(np.where(self._counts > 0, np.nan_to_num(step), 0.0)).max(initial=0.0)
                 if moved < _HARDNESS_SETTLED and spreads_moved < _SPREADS_SETTLED and scatter_moved < _SCATTER_SETTLED:
                     break
-            return self._fitted(line, reduced, posterior, self._n_seen - determined, step)
+            return self._fitted_series(line, reduced, posterior, self._n_seen - determined, step)
 
     def _total(self, values: FloatArray) -> FloatArray:
         """Sum a quantity of the counted series over each group."""
@@ -188,9 +188,9 @@ class SeriesFit:
         volume = np.exp((self._largest - self._h)[series] + self._g[series] * self._share)
         depth = readings.depth_at_volume(volume)
         slope = volume / readings.area_at_depth(depth)
-        return _Line(slope, readings.penetration_depth - depth - self._d[series], self._weight(slope))
+        return _Line(slope, readings.penetration_depth - depth - self._d[series], self._reading_weights(slope))
 
-    def _weight(self, slope: FloatArray) -> FloatArray:
+    def _reading_weights(self, slope: FloatArray) -> FloatArray:
         load2 = self._g[self._readings.series] ** 2 * self._load2
         return self._seen / (self._depth2 + slope**2 * (load2 + self._per_reading(self._spreads.scatter2)))
 
@@ -207,7 +207,7 @@ class SeriesFit:
         self._spreads = self._spreads._replace(scatter2=moved)
         return float(np.abs(moved / scatter2 - 1.0).max())
 
-    def _reduce(self, line: _Line) -> _Reduced:
+    def _eliminate_hardness(self, line: _Line) -> _Reduced:
         sums, share = self._readings.sums, self._share
         by_slope = line.weight * line.slope
         by_slope2 = by_slope * line.slope
@@ -256,7 +256,7 @@ class SeriesFit:
             layering2=np.maximum(layering2 / (priors.layering_series + m), _LEAST_LAYERING2),
         )
 
-    def _fitted(
+    def _fitted_series(
         self, line: _Line, reduced: _Reduced, posterior: _Posterior, free: FloatArray, step: FloatArray
     ) -> FittedSeries:
         a, b = reduced.hg / reduced.hh, reduced.hd / reduced.hh

@@ -233,7 +233,7 @@ def _model_fit(
         rmse=_root_mean(sse, n),
         rmse_dof=_root_mean(sse, n - n_parameters),
         rmse_free=_root_mean(max(free, 0.0), n - m),
-        at_bound=_bounds(model, basis, bound),
+        at_bound=_coefficients_at_bound(model, basis, bound),
         sse=sse,
     )
 
@@ -242,7 +242,7 @@ def _root_mean(sse: float, count: int) -> float:
     return float(np.sqrt(sse / count)) if count > 0 else float("nan")
 
 
-def _bounds(model: Model, basis: EndBasis, bound: BoolArray) -> tuple[str, ...]:
+def _coefficients_at_bound(model: Model, basis: EndBasis, bound: BoolArray) -> tuple[str, ...]:
     names: list[str] = []
     for term, name, start in ((model.a, "a", 0), (model.b, "b", 2)):
         if term == "constant" or (term == "linear" and basis.flat):

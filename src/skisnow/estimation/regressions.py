@@ -57,14 +57,14 @@ def penetration_observations(
     if pen is not None:
         own[PEN_FORCE_KEY] = pen.at(tests.site, tests.spot, pen.mean_force)
         own[PEN_DENSITY_KEY] = pen.at(tests.site, tests.spot, pen.snow_density)
-    return _observations(campaign, tests, own, used)
+    return _make_observations(campaign, tests, own, used)
 
 
 def shear_observations(campaign: Campaign, stress: FloatArray, used: BoolArray) -> Observations:
     """The used shear experiments; ``stress`` is S_f of all of them in N/m²."""
     if campaign.shear is None:
         return _no_observations(STRESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
-    return _observations(campaign, campaign.shear, {STRESS_KEY: stress / N_PER_MM2}, used)
+    return _make_observations(campaign, campaign.shear, {STRESS_KEY: stress / N_PER_MM2}, used)
 
 
 def spot_observations(penetration: Observations, shear: Observations) -> Observations:
@@ -82,7 +82,7 @@ def spot_observations(penetration: Observations, shear: Observations) -> Observa
     )
 
 
-def _observations(
+def _make_observations(
     campaign: Campaign, tests: PenetrationTests | ShearTests, own: dict[str, FloatArray], used: BoolArray
 ) -> Observations:
     density = campaign.density.site_means() if campaign.density else {}
@@ -199,8 +199,8 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
             mine = site_of == index
             n_values = len(np.unique(x[mine]))
             if mine.sum() >= FEWEST_TESTS and n_values >= FEWEST_ANGLES:
-                rows.append(Regression(plan, name, int(mine.sum()), n_values, _fit(y[mine], x[mine]), None))
-        fit = _fit(y, x)
+                rows.append(Regression(plan, name, int(mine.sum()), n_values, _fit_line(y[mine], x[mine]), None))
+        fit = _fit_line(y, x)
         by_site = None
         if fit is not None and len(np.unique(site_of)) > 1:
             by_site = cluster_intervals(y, x, site_of).intervals
@@ -208,7 +208,7 @@ def regressions(observations: Mapping[Source, Observations]) -> tuple[Regression
     return tuple(rows)
 
 
-def _fit(response: FloatArray, predictor: FloatArray) -> LinearFit | None:
+def _fit_line(response: FloatArray, predictor: FloatArray) -> LinearFit | None:
     if len(response) < 2:
         return None
     try:

@@ -274,10 +274,10 @@ def selected_model(penetration: PenetrationAnalysis) -> Json | None:
         return None
     best = min(penetration.table.fits, key=lambda fit: fit.rmse)
     chosen = penetration.selected
-    return {"id": chosen.model.id, "reason": _reason(chosen, best)}
+    return {"id": chosen.model.id, "reason": _reason_for_choice(chosen, best)}
 
 
-def _reason(chosen: ModelFit, best: ModelFit) -> Message:
+def _reason_for_choice(chosen: ModelFit, best: ModelFit) -> Message:
     if chosen.model == best.model:
         return Message(
             "The smallest rmse of the nine candidate models, {rmse:.4g} N; no model with fewer fitted parameters "

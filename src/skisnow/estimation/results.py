@@ -66,14 +66,14 @@ def results_dict(analysis: Analysis) -> Json:
     """
     results = {
         "schema_version": SCHEMA_VERSION,
-        "campaign": _campaign(analysis),
-        "penetration": _penetration(analysis),
-        "shear": _shear(analysis),
-        "regressions": [_regression(regression) for regression in analysis.regressions],
+        "campaign": _campaign_json(analysis),
+        "penetration": _penetration_json(analysis),
+        "shear": _shear_json(analysis),
+        "regressions": [_regression_json(regression) for regression in analysis.regressions],
         "site_means": [_site_mean(row) for row in analysis.site_means],
         "group_comparisons": [asdict(row) | {"interval": row.interval.tolist()} for row in analysis.group_comparisons],
         "comparisons": [row.as_dict() for row in analysis.comparisons],
-        "provenance": _provenance(analysis),
+        "provenance": _provenance_json(analysis),
     }
     if analysis.snow_micro_pen is not None:
         results["snow_micro_pen"] = snow_micro_pen_results(analysis.snow_micro_pen)
@@ -101,11 +101,11 @@ def _published_relations(analysis: Analysis) -> Iterator[Json]:
                 densities.setdefault((site, relation), []).append(density)
     for (site, source), values in sorted(densities.items()):
         if values:
-            resistance = _mean(resistances.get(site, ())) if source != "density.csv" else nan
-            yield {"site": site, "source": source, "n": len(values), **_by_relations(_mean(values), resistance)}
+            resistance = _finite_mean(resistances.get(site, ())) if source != "density.csv" else nan
+            yield {"site": site, "source": source, "n": len(values), **_by_relations(_finite_mean(values), resistance)}
 
 
-def _mean(values: Sequence[float]) -> float:
+def _finite_mean(values: Sequence[float]) -> float:
     finite = [value for value in values if isfinite(value)]
     return fsum(finite) / len(finite) if finite else nan
 
@@ -127,7 +127,7 @@ def _by_relations(density: float, resistance: float) -> Json:
     }
 
 
-def _campaign(analysis: Analysis) -> Json:
+def _campaign_json(analysis: Analysis) -> Json:
     campaign = analysis.campaign
     return {
         "name": campaign.name,
@@ -147,7 +147,7 @@ def _campaign(analysis: Analysis) -> Json:
     }
 
 
-def _penetration(analysis: Analysis) -> Json:
+def _penetration_json(analysis: Analysis) -> Json:
     estimates, tests = analysis.penetration, analysis.campaign.penetration
     if estimates is None or tests is None:
         return {
@@ -171,7 +171,7 @@ def _penetration(analysis: Analysis) -> Json:
         "warnings": list(estimates.warnings),
         "volume_factor": _volume_factor(estimates.volume_factor),
         "campaign_model": campaign_model_results(estimates.model, estimates.unloading),
-        "seating": _seating(tests.experiment, estimates),
+        "seating": _seating_json(tests.experiment, estimates),
         "errors_in_depth": {
             "models": model_rows(estimates.errors_in_depth),
             "experiments": _fitted_hardness(tests.experiment, estimates),
@@ -205,7 +205,7 @@ def _site_unloading(row: SiteUnloading) -> Json:
     }
 
 
-def _seating(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:
+def _seating_json(experiment: tuple[str, ...], penetration: PenetrationAnalysis) -> list[Json]:
     return column_rows(
         {
             "experiment": list(experiment),
@@ -248,7 +248,7 @@ def _fitted_hardness(experiment: tuple[str, ...], penetration: PenetrationAnalys
     )
 
 
-def _shear(analysis: Analysis) -> Json:
+def _shear_json(analysis: Analysis) -> Json:
     shear: ShearAnalysis | None = analysis.shear
     tests = analysis.campaign.shear
     if shear is None or tests is None:
@@ -267,7 +267,7 @@ def _shear(analysis: Analysis) -> Json:
     }
 
 
-def _regression(regression: Regression) -> Json:
+def _regression_json(regression: Regression) -> Json:
     fit = regression.fit
     numbers: Json = dict.fromkeys(("b", "interval", "rmse", "rmse_dof", "r2", "F", "p"))
     if fit is not None:
@@ -306,7 +306,7 @@ def _site_mean(row: SiteMean) -> Json:
     }
 
 
-def _provenance(analysis: Analysis) -> Json:
+def _provenance_json(analysis: Analysis) -> Json:
     packages = ("skisnow", "numpy", "scipy")
     return {
         "files": dict(sorted(analysis.campaign.file_hashes.items())),
@@ -328,16 +328,16 @@ def results_json(results: dict[str, Any]) -> bytes:
 
 def results_pieces(results: dict[str, Any]) -> Iterator[bytes]:
     """Pieces of results.json, for a file that is written without the whole text in memory."""
-    yield from _pieces(results, 0)
+    yield from _json_pieces(results, 0)
     yield b"\n"
 
 
-def _pieces(value: Any, depth: int) -> Iterator[bytes]:
+def _json_pieces(value: Any, depth: int) -> Iterator[bytes]:
     pad = b"\n" + b" " * (depth + 1)
     if isinstance(value, dict) and value and depth < 3:
         for index, (key, item) in enumerate(value.items()):
             yield (b"," if index else b"{") + pad + orjson.dumps(key) + b": "
-            yield from _pieces(item, depth + 1)
+            yield from _json_pieces(item, depth + 1)
         yield b"\n" + b" " * depth + b"}"
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         text = orjson.dumps(value)

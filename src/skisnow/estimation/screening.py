@@ -58,14 +58,14 @@ def screened_penetration(campaign: Campaign, *, geometry: GeometryForm) -> Scree
     flags = dict(screen_penetration(campaign, geometry=geometry))
     readings = readings_of(tests, campaign.tools, geometry=geometry)
     H_V = hardness_at_largest_load(readings, DEFINITIONS["H_V"])
-    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    used = _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
     flags["layered"] = layered(readings, np.where(used, H_V, np.nan), reading_uncertainty(campaign))
-    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    used = _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
     flags["hardness_outlier"] = hardness_outliers(H_V, used, tests.site)
-    used = _used(flags, campaign, len(tests)) & np.isfinite(H_V)
+    used = _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V)
     estimates = series_estimates(campaign, tests, readings, counts=used, not_falling=flags[NOT_FALLING])
     flags["rebound_unresolved"] = estimates.unloading.is_unresolved
-    return Screened(flags, _used(flags, campaign, len(tests)) & np.isfinite(H_V), estimates)
+    return Screened(flags, _mask_of_used(flags, campaign, len(tests)) & np.isfinite(H_V), estimates)
 
 
 def screened_shear(campaign: Campaign) -> Screened:
@@ -75,7 +75,7 @@ def screened_shear(campaign: Campaign) -> Screened:
         return Screened({}, np.zeros(0, dtype=bool))
     flags = dict(screen_shear(campaign))
     defined = np.isfinite(shear_stress(campaign, tests).value)
-    return Screened(flags, _used(flags, campaign, len(tests)) & defined)
+    return Screened(flags, _mask_of_used(flags, campaign, len(tests)) & defined)
 
 
 def hardness_outliers(hardness: FloatArray, used: BoolArray, site: Sequence[str]) -> BoolArray:
@@ -124,7 +124,7 @@ def quality_flags(
     ]
 
 
-def _used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
+def _mask_of_used(flags: Mapping[str, BoolArray], campaign: Campaign, count: int) -> BoolArray:
     excluded = np.zeros(count, dtype=bool)
     for code, mask in flags.items():
         if code in campaign.excluding:

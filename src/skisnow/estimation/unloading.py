@@ -180,7 +180,7 @@ class _Branch(NamedTuple):
 def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[FloatArray, ...]:
     """Rebound ratio s, its error, half of its 95 % interval, s of a gauge step, by series; r, its freedom by group."""
     series, group = branch.series, model.group[chosen]
-    law = _law(
+    law = _linearise_unloading(
         branch, np.minimum(model.offset[chosen], _LARGEST_SHARE * branch.penetration_depth[branch.largest]), model
     )
     scatter2, freedom = _scatter(branch, law, model, group, model.counts[chosen])
@@ -204,7 +204,7 @@ def _fit(branch: Readings, model: CampaignModel, chosen: BoolArray) -> tuple[Flo
     return s, error, half, step / np.maximum.reduceat(law.g, branch.first[:-1]), np.sqrt(scatter2), freedom
 
 
-def _law(branch: Readings, offset: FloatArray, model: CampaignModel) -> _Branch:
+def _linearise_unloading(branch: Readings, offset: FloatArray, model: CampaignModel) -> _Branch:
     top, series, uncertainty = branch.largest[branch.series], branch.series, model.uncertainty
     deepest = (branch.penetration_depth - offset[series])[top]
     share = branch.load / branch.load[top]

@@ -159,7 +159,7 @@ def interpolate_patches(values: FloatArray, u: FloatArray, v: FloatArray) -> Pat
             total += over_x.value[i] * over_y.slope[j] * rise_y
         return total
 
-    x, y = _hermite(along), _hermite(across)
+    x, y = _hermite_weights(along), _hermite_weights(across)
     return Patched(both(x, y), both(_hermite_slope(along), y), both(x, _hermite_slope(across)))
 
 
@@ -187,7 +187,7 @@ def _slope(values: FloatArray, row: IntArray, column: IntArray, axis: int) -> Fl
     return np.where(at == 0, first, np.where(at == count - 1, last, inside))
 
 
-def _hermite(f: FloatArray) -> _Weights:
+def _hermite_weights(f: FloatArray) -> _Weights:
     e = 1.0 - f
     return _Weights((e * e * (1.0 + 2.0 * f), f * f * (3.0 - 2.0 * f)), (f * e * e, -f * f * e))
 

@@ -26,7 +26,7 @@ LIKELY_LENGTH_MM: Final = (2.0, 5000.0)
 """Lengths of tools beyond it are hardly in mm."""
 
 
-def _length(name: str, meaning: str) -> Quantity:
+def _length_quantity(name: str, meaning: str) -> Quantity:
     return Quantity(name, meaning, lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
 
 
@@ -96,7 +96,7 @@ class SkiPiece(Tool):
     length: Annotated[
         float, Quantity("length_mm", "length along the edge"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]
-    width: Annotated[float, _length("width_mm", "width of the base")]
+    width: Annotated[float, _length_quantity("width_mm", "width of the base")]
 
     def __post_init__(self) -> None:
         require_declared(self)
@@ -147,7 +147,7 @@ class PlainWedge(Tool):
     length: Annotated[
         float, Quantity("length_mm", "length along the edge"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]
-    width: Annotated[float, _length("width_mm", "width of the base")]
+    width: Annotated[float, _length_quantity("width_mm", "width of the base")]
 
     def __post_init__(self) -> None:
         require_declared(self)
@@ -188,22 +188,22 @@ class Disc(Tool):
     157.08
     """
 
-    diameter: Annotated[float, _length("diameter_mm", "diameter")]
+    diameter: Annotated[float, _length_quantity("diameter_mm", "diameter")]
 
     def __post_init__(self) -> None:
         require_declared(self)
 
     @property
-    def _face(self) -> float:
+    def _face_area(self) -> float:
         return float(np.pi * self.diameter**2 / 4.0)
 
     def contact_area(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.contact_area`."""
-        return np.full(np.shape(penetration_depth), self._face)
+        return np.full(np.shape(penetration_depth), self._face_area)
 
     def displaced_volume(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.displaced_volume`."""
-        return self._face * np.asarray(penetration_depth, float)
+        return self._face_area * np.asarray(penetration_depth, float)
 
     def area_growth(self, penetration_depth: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.area_growth`."""
@@ -211,7 +211,7 @@ class Disc(Tool):
 
     def depth_at_volume(self, displaced_volume: npt.ArrayLike, edge_angle: npt.ArrayLike) -> FloatArray:  # noqa: ARG002
         """See `Tool.depth_at_volume`."""
-        return np.asarray(displaced_volume, float) / self._face
+        return np.asarray(displaced_volume, float) / self._face_area
 
     def maximum_depth(self, edge_angle: npt.ArrayLike) -> FloatArray:
         """See `Tool.maximum_depth`: the diameter."""
@@ -230,7 +230,7 @@ class LyingCylinder(Tool):
     392.699
     """
 
-    radius: Annotated[float, _length("radius_mm", "radius")]
+    radius: Annotated[float, _length_quantity("radius_mm", "radius")]
     width: Annotated[
         float, Quantity("width_mm", "length along the axis"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
     ]

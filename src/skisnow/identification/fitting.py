@@ -143,8 +143,8 @@ def identify(
     rows = KeptRows.opened(checkpoint, identity) if checkpoint else KeptRows()
     counted = _ProgressCounter(progress or (lambda *_: None))
     with Simulations(simulate, rows, workers, counted, executor) as simulations:
-        observations = _observations(
-            scenario_file, measurements, simulations, clock_is_free=_clock(scenario_input, clock_is_free)
+        observations = _make_observations(
+            scenario_file, measurements, simulations, clock_is_free=_is_clock_free(scenario_input, clock_is_free)
         )
         _require_used(keys, observations)
         request = SearchRequest(
@@ -159,7 +159,7 @@ def identify(
             warnings=(*measurements.warnings, *_unused_warnings(keys, tables)),
             methods=measurements.methods,
         )
-        result = _search(parameters, observations, request)
+        result = _search_parameters(parameters, observations, request)
         return replace(
             result,
             data=measurements.descriptions,
@@ -182,7 +182,7 @@ def _named_keys(free: str | Sequence[str], tables: Iterable[str]) -> tuple[str, 
     return keys
 
 
-def _search(
+def _search_parameters(
     parameters: tuple[Parameter, ...], observations: tuple[Observations, ...], request: SearchRequest
 ) -> Identification:
     problem = unweighted_problem(parameters, observations)
@@ -194,7 +194,7 @@ def _search(
     return solve(problem, request)
 
 
-def _observations(
+def _make_observations(
     scenario: ScenarioFile, read: IdentificationData, simulations: Simulations, *, clock_is_free: bool
 ) -> tuple[Observations, ...]:
     observationss: list[Observations] = []
@@ -209,7 +209,7 @@ def _observations(
     return tuple(observationss)
 
 
-def _clock(scenario_input: ScenarioInput, chosen: bool | None) -> bool:
+def _is_clock_free(scenario_input: ScenarioInput, chosen: bool | None) -> bool:
     return scenario_input.identify.get("clock", "start") == "free" if chosen is None else chosen
 
 

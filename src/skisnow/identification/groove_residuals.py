@@ -100,11 +100,11 @@ class GrooveResiduals:
     @property
     def series(self) -> tuple[int, ...]:
         """Number of depths, widths and radii that are used."""
-        return tuple(int(np.sum(use)) for _, _, use in self._columns())
+        return tuple(int(np.sum(use)) for _, _, use in self._measured_columns())
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of depths, widths, radii."""
-        return [self._residual(values) for values in many]
+        return [self._residuals_of(values) for values in many]
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """The three quantities, place by place."""
@@ -112,7 +112,7 @@ class GrooveResiduals:
         if groove is None:
             return ()
         computed = np.tile(
-            [groove.depth / MM, groove.width / MM, self._radius(values, groove)], (len(self.measured), 1)
+            [groove.depth / MM, groove.width / MM, self._turn_radius(values, groove)], (len(self.measured), 1)
         )
         measured = np.column_stack([self.measured.depth / MM, self.measured.width / MM, self.measured.turn_radius])
         sd = np.column_stack([self.measured.depth_sd / MM, self.measured.width_sd / MM, self.measured.turn_radius_sd])
@@ -135,7 +135,7 @@ class GrooveResiduals:
         of = {**self.scenario.values, **values}
         number = tuple(float(of[key]) for key in USED_KEYS if key not in (STRENGTH_KEY, "start.speed_m_per_s"))
         if number not in self._cache:
-            self._cache[number] = _groove(self.scenario, of)
+            self._cache[number] = _compute_groove(self.scenario, of)
         return self._cache[number]
 
     def demand(self, values: Values, turn_radius: float) -> float:
@@ -143,7 +143,7 @@ class GrooveResiduals:
         of = {**self.scenario.values, **values}
         side = math.copysign(1.0, float(of["sledge.edge_angle_deg"]))
         pull = _downhill_pull(self.scenario, of) * math.sin(float(of["start.heading_deg"]) * DEGREE) * side
-        return _mass(self.scenario, of) * (float(of["start.speed_m_per_s"]) ** 2 / turn_radius + pull)
+        return _total_mass(self.scenario, of) * (float(of["start.speed_m_per_s"]) ** 2 / turn_radius + pull)
 
     def required_strength(self, values: Values, turn_radius: float) -> float | None:
         """Smallest S_f (N/mm²) that holds the skis on that radius; None without an equilibrium."""
@@ -165,7 +165,7 @@ class GrooveResiduals:
         use = np.isfinite(self.measured.turn_radius)
         return float(np.sum(self.measured.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
 
-    def _columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
+    def _measured_columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
         grooves = self.measured
         return [
             (grooves.depth, grooves.depth_sd, np.isfinite(grooves.depth)),
@@ -173,23 +173,24 @@ class GrooveResiduals:
             (grooves.turn_radius, grooves.turn_radius_sd, np.isfinite(grooves.turn_radius)),
         ]
 
-    def _residual(self, values: Values) -> FloatArray | None:
+    def _residuals_of(self, values: Values) -> FloatArray | None:
         groove = self.groove(values)
         if groove is None:
             return None
-        computed = (groove.depth, groove.width, self._radius(values, groove))
+        computed = (groove.depth, groove.width, self._turn_radius(values, groove))
         parts = [
-            (one - measured[use]) / sd[use] for one, (measured, sd, use) in zip(computed, self._columns(), strict=True)
+            (one - measured[use]) / sd[use]
+            for one, (measured, sd, use) in zip(computed, self._measured_columns(), strict=True)
         ]
         return np.concatenate(parts)
 
-    def _radius(self, values: Values, groove: Groove) -> float:
+    def _turn_radius(self, values: Values, groove: Groove) -> float:
         if not self.slides:
             return groove.turn_radius
         of = {**self.scenario.values, **values}
         grip = 2.0 * float(of[STRENGTH_KEY]) * N_PER_MM2 * groove.grip_area
         left = grip - self.demand(values, math.inf)
-        mass, speed = _mass(self.scenario, of), float(of["start.speed_m_per_s"])
+        mass, speed = _total_mass(self.scenario, of), float(of["start.speed_m_per_s"])
         return min(mass * speed**2 / left, STRAIGHTEST) if left > 0.0 else STRAIGHTEST
 
 
@@ -205,7 +206,7 @@ def require_groove_stays(scenario: ScenarioFile) -> None:
         ).tag("flat_ski")
 
 
-def _mass(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
+def _total_mass(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
     return float(values["sledge.mass_kg"]) + 2.0 * scenario.scenario.ski.mass
 
 
@@ -223,9 +224,9 @@ def _downhill_pull(scenario: ScenarioFile, values: Mapping[str, Any]) -> float:
     return float(values["slope.gravity_m_per_s2"]) * math.sin(_inclination(scenario, values))
 
 
-def _groove(scenario: ScenarioFile, values: Mapping[str, Any]) -> Groove | None:
+def _compute_groove(scenario: ScenarioFile, values: Mapping[str, Any]) -> Groove | None:
     gravity = float(values["slope.gravity_m_per_s2"])
-    load = 0.5 * _mass(scenario, values) * gravity * math.cos(_inclination(scenario, values))
+    load = 0.5 * _total_mass(scenario, values) * gravity * math.cos(_inclination(scenario, values))
     angle = abs(float(values["sledge.edge_angle_deg"])) * DEGREE
     ratio = float(values["snow.unloading_ratio"])
     snow = SnowProperties(float(values[HARDNESS_KEY]) * N_PER_MM3, 1.0 * N_PER_MM2, source="looked for")

@@ -87,10 +87,10 @@ class PhotoCellTimes:
     @property
     def points(self) -> int:
         """Number of passages, without those at the start of a clock that starts there."""
-        return sum(len(run.station) for run in self.cells.runs) - self._trivial
+        return sum(len(run.station) for run in self.cells.runs) - self._count_of_start_cells
 
     @property
-    def _trivial(self) -> int:
+    def _count_of_start_cells(self) -> int:
         return 0 if self.clock_is_free else sum(float(run.station[0]) == 0.0 for run in self.cells.runs)
 
     @property
@@ -106,14 +106,14 @@ class PhotoCellTimes:
     @property
     def series(self) -> tuple[int, ...]:
         """Passages of each run."""
-        return tuple(len(self._informative(run)[0]) for run in self.cells.runs)
+        return tuple(len(self._cells_after_start(run)[0]) for run in self.cells.runs)
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of every passage, run after run, for each set of values; never None."""
         residuals: list[list[FloatArray]] = [[] for _ in many]
         for run in self.cells.runs:
-            station, time, sd = self._informative(run)
-            for parts, late in zip(residuals, self._times(run, station, many) - time, strict=True):
+            station, time, sd = self._cells_after_start(run)
+            for parts, late in zip(residuals, self._passage_times(run, station, many) - time, strict=True):
                 parts.append(self._without_offset(late, sd) / sd)
         return [np.concatenate(parts) for parts in residuals]
 
@@ -121,8 +121,8 @@ class PhotoCellTimes:
         """Times over the distance."""
         fits = []
         for run in self.cells.runs:
-            station, time, sd = self._informative(run)
-            late = self._times(run, station, [values])[0] - time
+            station, time, sd = self._cells_after_start(run)
+            late = self._passage_times(run, station, [values])[0] - time
             fitted = time + self._without_offset(late, sd)
             columns = (values[:, None] for values in (time, fitted, sd))
             measured, computed, spread = columns
@@ -141,7 +141,7 @@ class PhotoCellTimes:
         heading = self.scenario.scenario.start.heading / DEGREE
         return (f"the scenario's heading of {heading:g}° plays no part: photo cells stand down the fall line",)
 
-    def _informative(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _cells_after_start(self, run: PhotoCellRun) -> tuple[FloatArray, FloatArray, FloatArray]:
         sd = run.time_sd if run.time_sd is not None else np.full(len(run.time), NOMINAL_SD)
         first = int(not self.clock_is_free and run.station[0] == 0.0)
         return run.station[first:], run.time[first:], sd[first:]
@@ -152,11 +152,11 @@ class PhotoCellTimes:
         weight = sd**-2.0
         return np.asarray(late - np.sum(weight * late) / np.sum(weight))
 
-    def _times(self, run: PhotoCellRun, station: FloatArray, many: Sequence[Values]) -> FloatArray:
+    def _passage_times(self, run: PhotoCellRun, station: FloatArray, many: Sequence[Values]) -> FloatArray:
         fixed = {**self.scenario.values, **self.starts.get(run.name, {})}
         sets = [{**fixed, **run_values(values, run.name)} for values in many]
         descriptions = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
-        return passage_times(self._line_of(sets), self._glide(sets), station, max(descriptions, 1e-3))
+        return passage_times(self._line_of(sets), self._make_glide(sets), station, max(descriptions, 1e-3))
 
     def _line_of(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
         if not isinstance(self.scenario.scenario.slope, Plane):
@@ -164,7 +164,7 @@ class PhotoCellTimes:
         angle = np.array([values["slope.angle_deg"] for values in sets]) * DEGREE
         return planes(angle)
 
-    def _glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
+    def _make_glide(self, sets: Sequence[Mapping[str, Any]]) -> Glide:
         def column(key: str) -> FloatArray:
             return np.array([float(values[key]) for values in sets])
 

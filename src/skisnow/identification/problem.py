@@ -65,7 +65,7 @@ class Problem:
         """
         many = [self.values(place) for place in places]
         parts = [observation.residuals(many, final=final) for observation in self.observations]
-        return [self._one([part[i] for part in parts], many[i]) for i in range(len(many))]
+        return [self._weighted_residuals([part[i] for part in parts], many[i]) for i in range(len(many))]
 
     def values(self, place: FloatArray) -> dict[str, float]:
         """Parameters by key."""
@@ -90,7 +90,7 @@ class Problem:
         ]
         return np.concatenate([*ratios, np.ones(self.priors)])
 
-    def _one(self, parts: Sequence[FloatArray | None], values: Values) -> FloatArray | None:
+    def _weighted_residuals(self, parts: Sequence[FloatArray | None], values: Values) -> FloatArray | None:
         pieces = []
         for part, noise in zip(parts, self.noise, strict=True):
             if part is None or not np.all(np.isfinite(part)):

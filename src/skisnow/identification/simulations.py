@@ -122,7 +122,7 @@ class RunSimulation:
         from ..simulation.simulated_run import simulate
 
         try:
-            scenario = self._scenario(task)
+            scenario = self._scenario_of_task(task)
             run = simulate(scenario)
         except SkisnowError as error:
             return {"outcome": "error", "reason": str(error)}
@@ -130,7 +130,7 @@ class RunSimulation:
             raise KeyboardInterrupt
         return _row(run, self.times[task.run])
 
-    def _scenario(self, task: RunTask) -> Scenario:
+    def _scenario_of_task(self, task: RunTask) -> Scenario:
         scenario = build_input(self.scenario_input.changed(task.values), sources=self._sources).scenario
         duration = max(float(self.times[task.run][-1]), 1e-3) + _AFTER_THE_LAST
         interval = min(scenario.solver.output_interval, OUTPUT_INTERVAL) if task.final else OUTPUT_INTERVAL
@@ -185,7 +185,7 @@ def grip_limit_sentences(
     Each input is changed separately only if the ends of two runs with all inputs changed are apart by half as much.
     """
     first, other = simulate(perturbed_tasks(task, values, together=True)["all"])
-    if "x_m" not in first or not limit_sentences({NUDGED[0]: 2.0 * _end_distance(first, other)}, _length(first)):
+    if "x_m" not in first or not limit_sentences({NUDGED[0]: 2.0 * _end_distance(first, other)}, _path_length(first)):
         return ()
     (own,) = simulate([task])
     if "x_m" not in own:
@@ -193,10 +193,10 @@ def grip_limit_sentences(
     perturbed = perturbed_tasks(task, values)
     rows = iter(simulate([each for pair in perturbed.values() for each in pair]))
     moves = {key: max(_end_distance(own, next(rows)) for _ in pair) for key, pair in perturbed.items()}
-    return limit_sentences(moves, _length(own))
+    return limit_sentences(moves, _path_length(own))
 
 
-def _length(row: Row) -> float:
+def _path_length(row: Row) -> float:
     return float(np.sum(np.hypot(np.diff(row["x_m"]), np.diff(row["y_m"]))))
 
 

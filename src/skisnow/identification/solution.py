@@ -88,7 +88,7 @@ def build_identification(
     uncertainty = solution.uncertainty()
     interrupted = optimum.state == "interrupted"
     observed = () if interrupted else problem.observations
-    outcome = _outcome(optimum, uncertainty)
+    outcome = _outcome_of(optimum, uncertainty)
     p = len(problem.parameters)
     slope = np.array([parameter.slope(values[parameter.key]) for parameter in problem.parameters])
     with np.errstate(invalid="ignore"):
@@ -149,7 +149,7 @@ def interval_around(parameter: Parameter, place: float, half: float) -> Interval
     return parameter.value(float(ends[0])), parameter.value(float(ends[1]))
 
 
-def _outcome(state: SearchState, spread: Uncertainty | None) -> Outcome:
+def _outcome_of(state: SearchState, spread: Uncertainty | None) -> Outcome:
     if state.state == "interrupted":
         return "interrupted"
     if spread is not None and spread.unknown.any():

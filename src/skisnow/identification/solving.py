@@ -112,7 +112,7 @@ class _Solver:
     methods: list[str] = field(default_factory=list)
 
     def solution(self) -> Solution:
-        best = self._best()
+        best = self._search_best_start()
         if best.state != "interrupted":
             best = self._with_noise(best)
         if best.state != "interrupted" and self._has_tracks:
@@ -123,7 +123,7 @@ class _Solver:
     def _has_tracks(self) -> bool:
         return any(observation.kind == "track" for observation in self.problem.observations)
 
-    def _search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
+    def _make_search(self, problem: Problem, about: str, *, final: bool = False) -> Search:
         residuals, options = partial(problem.residuals, final=final), search_options(problem, self.plan)
         if final:
             options = replace(options, tolerance=_LAST_TOLERANCE)
@@ -135,12 +135,12 @@ class _Solver:
             residuals, *bounds_of(problem.parameters), options, lambda text: self.plan.progress(f"{about}{text}")
         )
 
-    def _best(self) -> SearchState:
+    def _search_best_start(self) -> SearchState:
         best: SearchState | None = None
         for number, start in enumerate(self._run_starts()):
             about = f"start {number + 1} of {self.plan.starts}: " if self.plan.starts > 1 else ""
             try:
-                state = self._search(self.problem, about).run(start)
+                state = self._make_search(self.problem, about).run(start)
             except KeyboardInterrupt:
                 if best is None:
                     raise
@@ -179,7 +179,7 @@ class _Solver:
             if np.allclose(renewed.noise, problem.noise, rtol=_SAME_NOISE):
                 break
             problem = renewed
-            again = self._search(problem, "noise: ").run(state.place)
+            again = self._make_search(problem, "noise: ").run(state.place)
             if again is None or again.state == "interrupted":
                 break
             state = again
@@ -189,7 +189,7 @@ class _Solver:
     def _polish(self, state: SearchState) -> SearchState:
         """Take the last steps with the scenario's solver; search again with it if the fast one is too inaccurate."""
         self.plan.progress("last steps with the scenario's own solver")
-        search = self._search(self.problem, "last steps: ", final=True)
+        search = self._make_search(self.problem, "last steps: ", final=True)
         search.differences = self.problem.residuals
         try:
             polished, apart = search.resume(state)
@@ -199,7 +199,7 @@ class _Solver:
                         "fixed steps of 4 ms were too long for this snow: searched again with the scenario's solver"
                     )
                 )
-                again = self._search(self.problem, "own solver: ", final=True).run(polished.place)
+                again = self._make_search(self.problem, "own solver: ", final=True).run(polished.place)
                 return polished if again is None else again
         except KeyboardInterrupt:
             best = search.best if search.best is not None else state

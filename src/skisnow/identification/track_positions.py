@@ -180,14 +180,14 @@ class TrackPositions:
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:
         """Residuals of the fast runs of a search, or of runs with the scenario's solver."""
-        tasks = [self._tasks(values, final=final) for values in many]
+        tasks = [self._run_tasks(values, final=final) for values in many]
         rows = iter(self.simulate([task for batch in tasks for task in batch]))
-        return [_join([_residual(track, next(rows)) for track in self.tracks]) for _ in many]
+        return [_join_all([_track_residuals(track, next(rows)) for track in self.tracks]) for _ in many]
 
     def fits(self, values: Values) -> tuple[Fit, ...]:
         """Measured and simulated x, y and speed over time."""
         fits = []
-        for track, row in zip(self.tracks, self.simulate(self._tasks(values, final=True)), strict=True):
+        for track, row in zip(self.tracks, self.simulate(self._run_tasks(values, final=True)), strict=True):
             if "x_m" not in row:
                 continue
             fitted = np.column_stack([row["x_m"], row["y_m"], row["speed_m_per_s"]])
@@ -203,7 +203,7 @@ class TrackPositions:
     def warnings(self, values: Values) -> tuple[str, ...]:
         """Warnings: unused points, a run that ends early, outliers, a run near the limit of grip."""
         warnings = []
-        rows = self.simulate(self._tasks(values, final=True))
+        rows = self.simulate(self._run_tasks(values, final=True))
         for track, row in zip(self.tracks, rows, strict=True):
             if track.left_out:
                 warnings.append(f"{track.name}: {track.left_out} points are marked as unusable and were left out")
@@ -219,25 +219,25 @@ class TrackPositions:
         try:
             return [
                 f"{track.name}: {text}"
-                for track, task in zip(self.tracks, self._tasks(values, final=False), strict=True)
+                for track, task in zip(self.tracks, self._run_tasks(values, final=False), strict=True)
                 for text in grip_limit_sentences(task, self.scenario_values, self.simulate)
             ]
         except KeyboardInterrupt:
             return ["whether the run is near the limit of grip was not checked: interrupted"]
 
-    def _tasks(self, values: Values, *, final: bool) -> list[RunTask]:
+    def _run_tasks(self, values: Values, *, final: bool) -> list[RunTask]:
         return [
             RunTask({**self.fixed, **self.starts.get(track.name, {}), **run_values(values, track.name)}, i, final)
             for i, track in enumerate(self.tracks)
         ]
 
 
-def _join(parts: Sequence[FloatArray | None]) -> FloatArray | None:
+def _join_all(parts: Sequence[FloatArray | None]) -> FloatArray | None:
     available = [part for part in parts if part is not None]
     return np.concatenate(available) if len(available) == len(parts) else None
 
 
-def _residual(track: TrackPoints, row: Row) -> FloatArray | None:
+def _track_residuals(track: TrackPoints, row: Row) -> FloatArray | None:
     if "x_m" not in row:
         return None
     place = np.column_stack([row["x_m"], row["y_m"]])
@@ -261,7 +261,7 @@ def _result_warnings(track: TrackPoints, row: Row) -> list[str]:
             f"{track.name}: the simulated run ends early ({row['outcome'].replace('_', ' ')}); "
             f"{len(track.time) - row['reached']} points lie behind its end, where it was taken to go on straight"
         )
-    residual = _residual(track, row)
+    residual = _track_residuals(track, row)
     if residual is not None:
         spread = float(np.median(np.abs(residual))) / _MEDIAN_OF_NORMAL
         far = int(np.sum(np.abs(residual) > _OUTLIER * max(spread, 1e-12)))
@@ -284,10 +284,10 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
         ).tag(
             "other_place",
             name=track.name,
-            distance=_distance(away),
+            distance=_distance_text(away),
             start_x=start[0],
             start_y=start[1],
-            length=_distance(track.length),
+            length=_distance_text(track.length),
         )
     if away > NEAR_START and not start_is_free:
         return (
@@ -297,7 +297,7 @@ def require_near(track: TrackPoints, start: tuple[float, float], *, start_is_fre
     return None
 
 
-def _distance(metres: float) -> Message:
+def _distance_text(metres: float) -> Message:
     far = metres >= 10_000.0
     return (
         Message("{distance:.4g} km", distance=metres / 1000.0) if far else Message("{distance:.3g} m", distance=metres)

@@ -58,112 +58,114 @@ def write_caaml(pit: SnowPit, path: str | Path) -> Path:
 
 def caaml_text(pit: SnowPit) -> str:
     """The text of the file; see `write_caaml`."""
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(_profile(pit)) + "\n"
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + "\n".join(_profile_xml(pit)) + "\n"
 
 
-def _profile(pit: SnowPit) -> Iterator[str]:
+def _profile_xml(pit: SnowPit) -> Iterator[str]:
     own = re.sub(r"[^\w.-]", "_", pit.name) or "pit"
     yield f"<caaml:SnowProfile {_NAMES} gml:id={quoteattr(f'skisnow-{own}')}>"
     if pit.comment:
-        yield _nested("metaData", _text("comment", pit.comment))
-    yield _nested("timeRef/recordTime/TimeInstant", _text("timePosition", _moment(pit.time)))
-    person = _text("name", pit.observer or "unknown")
+        yield _nested("metaData", _element_xml("comment", pit.comment))
+    yield _nested("timeRef/recordTime/TimeInstant", _element_xml("timePosition", _timestamp(pit.time)))
+    person = _element_xml("name", pit.observer or "unknown")
     yield f'<caaml:srcRef><caaml:Person gml:id="observer-{own}">{person}</caaml:Person></caaml:srcRef>'
     yield f'<caaml:locRef gml:id="location-{own}">'
-    yield from _place(pit, own)
+    yield from _place_xml(pit, own)
     yield "</caaml:locRef>"
     yield '<caaml:snowProfileResultsOf><caaml:SnowProfileMeasurements dir="top down">'
-    yield from _measurements(pit)
+    yield from _measurements_xml(pit)
     yield "</caaml:SnowProfileMeasurements></caaml:snowProfileResultsOf>"
-    yield _text("application", "skisnow")
+    yield _element_xml("application", "skisnow")
     yield "</caaml:SnowProfile>"
 
 
-def _place(pit: SnowPit, own: str) -> Iterator[str]:
-    yield _text("name", pit.name)
-    yield _text("obsPointSubType", "snow profile location")
+def _place_xml(pit: SnowPit, own: str) -> Iterator[str]:
+    yield _element_xml("name", pit.name)
+    yield _element_xml("obsPointSubType", "snow profile location")
     if pit.elevation is not None:
-        yield _nested("validElevation/ElevationPosition", _text("position", str(round(pit.elevation))), uom="m")
+        yield _nested("validElevation/ElevationPosition", _element_xml("position", str(round(pit.elevation))), uom="m")
     if pit.aspect:
-        yield _nested("validAspect/AspectPosition", _text("position", pit.aspect))
+        yield _nested("validAspect/AspectPosition", _element_xml("position", pit.aspect))
     if pit.slope_angle_deg is not None:
-        angle = _text("position", str(round(pit.slope_angle_deg)))
+        angle = _element_xml("position", str(round(pit.slope_angle_deg)))
         yield _nested("validSlopeAngle/SlopeAnglePosition", angle, uom="deg")
     if pit.latitude_deg is not None and pit.longitude_deg is not None:
         where = f"{_number(pit.latitude_deg)} {_number(pit.longitude_deg)}"
         point = f'<gml:Point gml:id="point-{own}" srsName="urn:ogc:def:crs:EPSG::4326" srsDimension="2">'
         yield _nested("pointLocation", f"{point}<gml:pos>{where}</gml:pos></gml:Point>")
     if pit.country:
-        yield _text("country", pit.country)
+        yield _element_xml("country", pit.country)
     if pit.region:
-        yield _text("region", pit.region)
+        yield _element_xml("region", pit.region)
 
 
-def _measurements(pit: SnowPit) -> Iterator[str]:
+def _measurements_xml(pit: SnowPit) -> Iterator[str]:
     if pit.air_temperature_C is not None:
-        yield _nested("weatherCond", _text("airTempPres", _number(pit.air_temperature_C), uom="degC"))
+        yield _nested("weatherCond", _element_xml("airTempPres", _number(pit.air_temperature_C), uom="degC"))
     if pit.snow_height is not None:
-        yield _nested("snowPackCond/hS/Components", _cm("height", pit.snow_height))
+        yield _nested("snowPackCond/hS/Components", _centimetres_xml("height", pit.snow_height))
     if pit.layers:
-        yield _nested("stratProfile", "<caaml:stratMetaData/>" + "".join(map(_layer, pit.layers)))
+        yield _nested("stratProfile", "<caaml:stratMetaData/>" + "".join(map(_layer_xml, pit.layers)))
     if pit.temperatures:
-        yield _nested("tempProfile", "<caaml:tempMetaData/>" + "".join(map(_temperature, pit.temperatures)))
+        yield _nested("tempProfile", "<caaml:tempMetaData/>" + "".join(map(_temperature_xml, pit.temperatures)))
     if pit.densities:
-        method = _nested("densityMetaData", _text("methodOfMeas", "other"))
-        yield _nested("densityProfile", method + "".join(map(_density, pit.densities)))
-    yield from map(_forces, pit.forces)
-    yield from _custom(pit)
+        method = _nested("densityMetaData", _element_xml("methodOfMeas", "other"))
+        yield _nested("densityProfile", method + "".join(map(_density_xml, pit.densities)))
+    yield from map(_forces_xml, pit.forces)
+    yield from _custom_data_xml(pit)
 
 
-def _layer(layer: SnowLayer) -> str:
-    parts = [_nested("metaData", _text("comment", layer.comment)) if layer.comment else ""]
+def _layer_xml(layer: SnowLayer) -> str:
+    parts = [_nested("metaData", _element_xml("comment", layer.comment)) if layer.comment else ""]
     parts.append(_extent(layer))
     if layer.grain_form:
-        _require("grain form", layer.grain_form, GRAIN_FORMS)
-        parts.append(_text("grainFormPrimary", layer.grain_form))
+        _require_choice("grain form", layer.grain_form, GRAIN_FORMS)
+        parts.append(_element_xml("grainFormPrimary", layer.grain_form))
     if layer.grain_size is not None:
-        average = _nested("Components", _text("avg", _number(layer.grain_size / MM)))
+        average = _nested("Components", _element_xml("avg", _number(layer.grain_size / MM)))
         parts.append(_nested("grainSize", average, uom="mm"))
     names = ("hardnessTop", "hardnessBottom") if layer.hardness_bottom else ("hardness",)
     for name, hardness in zip(names, (layer.hardness, layer.hardness_bottom), strict=False):
         if hardness:
-            _require("hand hardness", hardness, HAND_HARDNESSES)
-            parts.append(_text(name, hardness, uom=""))
+            _require_choice("hand hardness", hardness, HAND_HARDNESSES)
+            parts.append(_element_xml(name, hardness, uom=""))
     return _nested("Layer", "".join(parts))
 
 
-def _density(sample: LayerDensity) -> str:
-    return _nested("Layer", _extent(sample) + _text("density", _number(sample.snow_density), uom="kgm-3"))
+def _density_xml(sample: LayerDensity) -> str:
+    return _nested("Layer", _extent(sample) + _element_xml("density", _number(sample.snow_density), uom="kgm-3"))
 
 
-def _temperature(observed: DepthTemperature) -> str:
+def _temperature_xml(observed: DepthTemperature) -> str:
     if observed.temperature_C > 0.0:
         raise ParameterError("snow at {temperature_c:g} °C cannot be written: CAAML allows up to 0 °C").tag(
             "cannot_write", temperature_c=observed.temperature_C
         )
-    temperature = _text("snowTemp", _number(observed.temperature_C), uom="degC")
-    return _nested("Obs", _cm("depth", observed.depth) + temperature)
+    temperature = _element_xml("snowTemp", _number(observed.temperature_C), uom="degC")
+    return _nested("Obs", _centimetres_xml("depth", observed.depth) + temperature)
 
 
 def _extent(layer: SnowLayer | LayerDensity) -> str:
     """Depth of the top, and the thickness where it is known."""
-    return _cm("depthTop", layer.top) + ("" if layer.thickness is None else _cm("thickness", layer.thickness))
-
-
-def _forces(profile: ForceProfile) -> str:
-    method = profile.method if profile.method in METHODS else "other"
-    pairs = zip((profile.depth / CM).tolist(), profile.force.tolist(), strict=True)
-    rows = " ".join(f"{_number(depth)},{_number(force)}" for depth, force in pairs)
-    components = _text("depth", "template") + _text("penRes", "template")
-    return _nested(
-        "hardnessProfile",
-        _nested("hardnessMetaData", _text("methodOfMeas", method))
-        + _nested("MeasurementComponents", components, uomDepth="cm", uomHardness="N")
-        + _nested("Measurements", _text("tupleList", rows)),
+    return _centimetres_xml("depthTop", layer.top) + (
+        "" if layer.thickness is None else _centimetres_xml("thickness", layer.thickness)
     )
 
 
-def _custom(pit: SnowPit) -> Iterator[str]:
+def _forces_xml(profile: ForceProfile) -> str:
+    method = profile.method if profile.method in METHODS else "other"
+    pairs = zip((profile.depth / CM).tolist(), profile.force.tolist(), strict=True)
+    rows = " ".join(f"{_number(depth)},{_number(force)}" for depth, force in pairs)
+    components = _element_xml("depth", "template") + _element_xml("penRes", "template")
+    return _nested(
+        "hardnessProfile",
+        _nested("hardnessMetaData", _element_xml("methodOfMeas", method))
+        + _nested("MeasurementComponents", components, uomDepth="cm", uomHardness="N")
+        + _nested("Measurements", _element_xml("tupleList", rows)),
+    )
+
+
+def _custom_data_xml(pit: SnowPit) -> Iterator[str]:
     values = (
         ("snowHardness", "N mm-3", pit.snow_hardness),
         ("failureShearStress", "N mm-2", pit.failure_shear_stress),
@@ -188,7 +190,7 @@ def _nested(path: str, inner: str, **attributes: str) -> str:
     return element
 
 
-def _text(name: str, text: str, *, uom: str | None = None) -> str:
+def _element_xml(name: str, text: str, *, uom: str | None = None) -> str:
     unit = "" if uom is None else f" uom={quoteattr(uom)}"
     return f"<caaml:{name}{unit}>{escape(_printable(text))}</caaml:{name}>"
 
@@ -198,8 +200,8 @@ def _printable(text: str) -> str:
     return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", " ", text)
 
 
-def _cm(name: str, length: float) -> str:
-    return _text(name, _number(length / CM), uom="cm")
+def _centimetres_xml(name: str, length: float) -> str:
+    return _element_xml(name, _number(length / CM), uom="cm")
 
 
 def _number(value: float) -> str:
@@ -207,14 +209,14 @@ def _number(value: float) -> str:
     return f"{value:.12g}"
 
 
-def _require(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
+def _require_choice(what: str, value: str, allowed: frozenset[str] | tuple[str, ...]) -> None:
     if value not in allowed:
         raise ParameterError("{field}: {value!r} cannot be written: CAAML allows {allowed}").tag(
             "cannot_write", field=what, value=value, allowed=sorted(allowed)
         )
 
 
-def _moment(time: str) -> str:
+def _timestamp(time: str) -> str:
     if not _TIME.fullmatch(time):
         problem = (
             Message(

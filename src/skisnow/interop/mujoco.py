@@ -56,7 +56,7 @@ def ski_mjcf(
         _chain(ski, "front", np.linspace(half, tip, front + 1), damping),
         _chain(ski, "rear", np.linspace(-half, tail, segments - front + 1), damping),
     )
-    return f"""<mujoco model="{_quoted(ski.name)}">
+    return f"""<mujoco model="{_quoted_name(ski.name)}">
  <compiler angle="radian" autolimits="true"/>
  <option integrator="implicitfast"/>
  <worldbody>
@@ -65,7 +65,7 @@ def ski_mjcf(
    {"<freejoint/>" if free else ""}
    <site name="boot" size="0.01"/>
    {_inertial(ski, -half, half)}
-   {_box(ski, -half, half)}
+   {_box_xml(ski, -half, half)}
    {"".join(chains)}
   </body>
  </worldbody>
@@ -87,7 +87,7 @@ def write_ski_mjcf(ski: Ski, path: str | Path, *, segments: int = SEGMENTS) -> P
 def rigid_ski_geoms(ski: Ski, *, segments: int = SEGMENTS) -> str:
     """Boxes of an unbent ski around its boot, without mass, to be seen in a body of one's own."""
     places = np.linspace(float(ski.station[0]), float(ski.station[-1]), segments + 1)
-    return "\n".join(_box(ski, near, far) for near, far in pairwise(places.tolist()))
+    return "\n".join(_box_xml(ski, near, far) for near, far in pairwise(places.tolist()))
 
 
 def _chain(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
@@ -109,7 +109,7 @@ def _chain(ski: Ski, name: str, end: FloatArray, damping: float) -> str:
                 f'<joint name="{name} {i} {what}" axis="{axis}" stiffness="{stiffness!r}" '
                 f'damping="{damping * stiffness!r}"/>\n'
             )
-        opened += _inertial(ski, near, far, place) + _box(ski, near, far, place)
+        opened += _inertial(ski, near, far, place) + _box_xml(ski, near, far, place)
     return opened + "</body>" * len(middle)
 
 
@@ -128,7 +128,7 @@ def _inertial(ski: Ski, near: float, far: float, origin: tuple[float, float] = (
     )
 
 
-def _box(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0.0, 0.0)) -> str:
+def _box_xml(ski: Ski, near: float, far: float, origin: tuple[float, float] = (0.0, 0.0)) -> str:
     low, high = sorted((near, far))
     middle = (low + high) / 2.0
     at = ski.at(np.array([low, middle, high]))
@@ -147,7 +147,7 @@ def _points(near: float, far: float) -> FloatArray:
     return np.asarray(near + (np.arange(POINTS) + 0.5) / POINTS * (far - near))
 
 
-def _quoted(name: str) -> str:
+def _quoted_name(name: str) -> str:
     return name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
 
 
@@ -181,7 +181,7 @@ class SnowForces:
             raise ParameterError("SnowForces: RK4 requires forces at times that are not accepted; use Euler").tag(
                 "not_supported"
             )
-        self._sites = [self._site(model, name) for name in sites]
+        self._sites = [self._site_index(model, name) for name in sites]
         self.model, self.contact = model, contact
         self._fresh, self._accepted = contact.state(), None
         self.wrench: FloatArray = np.zeros((len(sites), 6))
@@ -189,7 +189,7 @@ class SnowForces:
 
     _accepted: float | None
 
-    def _site(self, model: Any, name: str) -> int:
+    def _site_index(self, model: Any, name: str) -> int:
         index = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
         if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))

@@ -63,7 +63,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
             "--snow-height-cm"
         ).tag("unknown_name", name=pit.name)
     _require_above_ground(pit, height)
-    tables = {name: (columns, rows) for name, columns, rows in _tables(pit, height) if rows}
+    tables = {name: (columns, rows) for name, columns, rows in _pit_tables(pit, height) if rows}
     if not tables:
         raise ParameterError("{name!r} has no layers, densities or temperatures; nothing was written").tag(
             "no_data", name=pit.name
@@ -71,7 +71,7 @@ def write_snowex_pit(pit: SnowPit, path: str | Path) -> tuple[Path, ...]:
     written = []
     for name, (columns, rows) in tables.items():
         written.append(path.with_name(f"{path.stem}_{name}.csv"))
-        write_file(written[-1], csv_text((*_header(pit), columns, *rows)))
+        write_file(written[-1], csv_text((*_pit_header(pit), columns, *rows)))
     return tuple(written)
 
 
@@ -94,41 +94,44 @@ def write_snowex_force(profile: SnowMicroPenProfile, path: str | Path) -> Path:
     depth, force = (profile.depth / MM).tolist(), profile.force.tolist()
     rows = ((f"{where:.6f}", f"{newtons:.6f}") for where, newtons in zip(depth, force, strict=True))
     head = [("# Name", profile.name), ("# Date", profile.recorded_on.isoformat() if profile.recorded_on else NO_DATA)]
-    head += [("# Latitude", _number(profile.latitude_deg)), ("# Longitude", _number(profile.longitude_deg))]
+    head += [("# Latitude", _number_text(profile.latitude_deg)), ("# Longitude", _number_text(profile.longitude_deg))]
     write_file(path, csv_text((*head, FORCE, *rows)))
     return Path(path)
 
 
-def _header(pit: SnowPit) -> Iterable[Sequence[str]]:
+def _pit_header(pit: SnowPit) -> Iterable[Sequence[str]]:
     yield "# Location", pit.region or NO_DATA
     yield "# Site", pit.name
     yield "# PitID", pit.name
     yield "# Date/Local Time", pit.time or NO_DATA
-    yield "# Latitude", _number(pit.latitude_deg)
-    yield "# Longitude", _number(pit.longitude_deg)
-    yield "# HS (cm)", _cm(pit.snow_height)
+    yield "# Latitude", _number_text(pit.latitude_deg)
+    yield "# Longitude", _number_text(pit.longitude_deg)
+    yield "# HS (cm)", _centimetres(pit.snow_height)
 
 
-def _tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], list[Sequence[str]]]]:
+def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], list[Sequence[str]]]]:
     yield (
         "density",
         DENSITY,
         [
-            (*_limits(height, density.top, density.thickness), f"{density.snow_density:g}", NO_DATA, NO_DATA)
+            (*_top_and_bottom(height, density.top, density.thickness), f"{density.snow_density:g}", NO_DATA, NO_DATA)
             for density in pit.densities
         ],
     )
     yield (
         "temperature",
         TEMPERATURE,
-        [(_cm(height - temperature.depth), f"{temperature.temperature_C:g}") for temperature in pit.temperatures],
+        [
+            (_centimetres(height - temperature.depth), f"{temperature.temperature_C:g}")
+            for temperature in pit.temperatures
+        ],
     )
     yield (
         "stratigraphy",
         STRATIGRAPHY,
         [
             (
-                *_limits(height, layer.top, layer.thickness),
+                *_top_and_bottom(height, layer.top, layer.thickness),
                 NO_DATA if layer.grain_size is None else f"{layer.grain_size / MM:g}",
                 layer.grain_form or NO_DATA,
                 "/".join(filter(None, (layer.hardness, layer.hardness_bottom))) or NO_DATA,
@@ -140,15 +143,15 @@ def _tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], l
     )
 
 
-def _limits(height: float, top: float, thickness: float | None) -> tuple[str, str]:
-    return _cm(height - top), NO_DATA if thickness is None else _cm(height - top - thickness)
+def _top_and_bottom(height: float, top: float, thickness: float | None) -> tuple[str, str]:
+    return _centimetres(height - top), NO_DATA if thickness is None else _centimetres(height - top - thickness)
 
 
-def _cm(length: float | None) -> str:
+def _centimetres(length: float | None) -> str:
     return NO_DATA if length is None else f"{length / CM:.10g}"
 
 
-def _number(value: float | None) -> str:
+def _number_text(value: float | None) -> str:
     return NO_DATA if value is None else f"{value:.10g}"
 
 
@@ -186,7 +189,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
     assumed += [_NO_THICKNESS] if any(density.top and density.thickness is None for density in densities) else []
     return SnowPit(
         name=site,
-        time=min((cell for cell in _cells(campaign, site, "time") if cell[:4].isdigit()), default=""),
+        time=min((cell for cell in _density_cells(campaign, site, "time") if cell[:4].isdigit()), default=""),
         observer=", ".join(campaign.observers),
         comment=". ".join((campaign.name, " ".join(assumed))) if assumed else campaign.name,
         region=campaign.place,
@@ -196,7 +199,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
         air_temperature_C=math.fsum(air) / len(air) if air else _station_air(analysis, site),
         densities=densities,
         temperatures=(DepthTemperature(0.0, math.fsum(temperatures) / len(temperatures)),) if temperatures else (),
-        forces=tuple(_forces(profile, evaluated) for profile, evaluated in profiles),
+        forces=tuple(_mean_forces(profile, evaluated) for profile, evaluated in profiles),
         snow_hardness=_plate_value(analysis, HARDNESS_KEY, site),
         failure_shear_stress=_plate_value(analysis, STRESS_KEY, site),
     )
@@ -217,7 +220,7 @@ def _density_tables(campaign: Campaign) -> Iterator[tuple[tuple[str, ...], Mappi
             yield table.site, table.further
 
 
-def _cells(campaign: Campaign, site: str, column: str) -> Iterator[str]:
+def _density_cells(campaign: Campaign, site: str, column: str) -> Iterator[str]:
     for sites, further in _density_tables(campaign):
         for name, cell in zip(sites, further.get(column, ()), strict=False):
             if name == site and cell:
@@ -233,7 +236,7 @@ def _station_air(analysis: Analysis, site: str) -> float | None:
 
 def _numbers_of_text_column(campaign: Campaign, site: str, column: str) -> list[float]:
     """Numbers of a column that the campaign keeps as text; the reader of the campaign has checked them."""
-    return [float(cell.replace(",", ".")) for cell in _cells(campaign, site, column)]
+    return [float(cell.replace(",", ".")) for cell in _density_cells(campaign, site, column)]
 
 
 def _densities(campaign: Campaign, site: str) -> Iterator[LayerDensity]:
@@ -268,7 +271,7 @@ def _recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenPro
                 yield pen.recordings.profile(index), evaluated
 
 
-def _forces(profile: SnowMicroPenProfile, evaluated: EvaluatedRecording) -> ForceProfile:
+def _mean_forces(profile: SnowMicroPenProfile, evaluated: EvaluatedRecording) -> ForceProfile:
     size = max(round(BLOCK / profile.sample_distance), 1)
     force = profile.force[round(evaluated.surface / profile.sample_distance) :]
     means = force[: len(force) // size * size].reshape(-1, size).mean(axis=1)

@@ -31,7 +31,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "_support.messages:translations": "package data",
     "replay.page:static_text": "package data",
     "report.sheet:render_template": "package data",
-    "interop.fmu.writing:_write": "the library of the package",
+    "interop.fmu.writing:_write_fmu": "the library of the package",
     "interop.fmu.writing:_licence": "package data",
     "interop.opensim.c3d:write_c3d": "the file that it has just written",
     "identification.data:fingerprint": "bytes for a SHA-256",
@@ -46,7 +46,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "campaign.store.folder:read_chunks": "bytes for the store, whatever they say",
     "campaign.store.export:add_corrections": "a file of the campaign that it has just exported",
     "campaign.store.export:_add_attachments": "a file of the campaign that it has just exported",
-    "campaign.store.engine:_damage": "a store that is known to be damaged, for the integrity check",
+    "campaign.store.engine:_find_damage": "a store that is known to be damaged, for the integrity check",
     "studies.writing:_write_database": "the table that it writes",
     "web.lab_skis:LabSkis.texts": "the text of a ski, shown in a field",
     "web.lab_skis:texts_of_ski": "the file that it has just written",
@@ -61,7 +61,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "_support.environment:load_certificate": "a certificate, parsed by OpenSSL",
     "cli.replay:serve_lab": "opens the store as campaign.store.store:Store.open",
     "cli.store:run": "opens the store as campaign.store.store:Store.open",
-    "cli.store:_sync": "opens the store as campaign.store.store:Store.open",
+    "cli.store:_sync_stores": "opens the store as campaign.store.store:Store.open",
 }
 """Why a function needs no reader in the registry."""
 

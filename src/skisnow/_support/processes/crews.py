@@ -101,7 +101,7 @@ class ProcessCrew(Crew):
             context = multiprocessing.get_context("spawn")
             alive, self._leash = context.Pipe(duplex=False)
             self._executor = ProcessPoolExecutor(
-                self._workers, mp_context=context, initializer=_begin, initargs=(self._function, alive)
+                self._workers, mp_context=context, initializer=_prepare_worker, initargs=(self._function, alive)
             )
         with interrupts_ignored():  # a worker that starts inherits this: Ctrl-C is for the parent alone
             return self._executor.submit(_in_worker, points)
@@ -181,8 +181,8 @@ class _Worker:
     function: PointFunction | None = None
 
 
-def _begin(function: PointFunction, alive: Connection) -> None:
-    """Start a worker: it ends with its parent, however that ends."""
+def _prepare_worker(function: PointFunction, alive: Connection) -> None:
+    """Store the function in this worker process, and end the process when its parent ends, however that ends."""
     begin_worker(alive)
     _Worker.function = function
 

@@ -126,7 +126,7 @@ class KeptRows:
 
     def about(self) -> dict[str, str]:
         """Entries of the batch from its start."""
-        entries = dict(self._selected("select name, value from about"))
+        entries = dict(self._run_query("select name, value from about"))
         if entries.pop(_CHECKSUM, None) != _checksum_of(entries):
             raise _damage_error(self.path, "the description of the batch has changed")
         return entries
@@ -149,25 +149,25 @@ class KeptRows:
 
     def __len__(self) -> int:
         """Number of finished rows."""
-        ((count,),) = self._selected("select count(*) from rows")
+        ((count,),) = self._run_query("select count(*) from rows")
         return int(count)
 
     def __contains__(self, number: object) -> bool:
         """True if the row of a point is finished."""
-        return bool(list(self._selected("select 1 from rows where number = ?", number)))
+        return bool(list(self._run_query("select 1 from rows where number = ?", number)))
 
     def numbers(self) -> Iterator[int]:
         """The finished points, in rising order."""
-        return (number for (number,) in self._selected("select number from rows order by number"))
+        return (number for (number,) in self._run_query("select number from rows order by number"))
 
     def row(self, number: int) -> Row:
         """The row of a finished point."""
-        ((_, text),) = self._checked("where number = ?", number)
-        return self._row(text)
+        ((_, text),) = self._select_checked_rows("where number = ?", number)
+        return self._parse_row(text)
 
     def rows(self) -> Iterator[tuple[int, Row]]:
         """Points with their rows, in rising order."""
-        return ((number, self._row(text)) for number, text in self.texts())
+        return ((number, self._parse_row(text)) for number, text in self.texts())
 
     def values(self) -> Iterator[list[Any]]:
         """The values of the columns of every finished point, in rising order."""
@@ -175,10 +175,10 @@ class KeptRows:
 
     def texts(self) -> Iterator[NumberedText]:
         """Points with their rows as they are kept, in rising order."""
-        return self._checked("order by number")
+        return self._select_checked_rows("order by number")
 
-    def _checked(self, which: str, *parameters: object) -> Iterator[NumberedText]:
-        for number, text, checksum in self._selected(f"select number, row, checksum from rows {which}", *parameters):
+    def _select_checked_rows(self, which: str, *parameters: object) -> Iterator[NumberedText]:
+        for number, text, checksum in self._run_query(f"select number, row, checksum from rows {which}", *parameters):
             if not isinstance(text, str) or checksum != _checksum(number, text):
                 raise _damage_error(self.path, f"the row of point {number + 1} has changed")
             yield number, text
@@ -186,13 +186,13 @@ class KeptRows:
     def _named_errors(self) -> AbstractContextManager[None]:
         return _errors(self.path, self._database)
 
-    def _selected(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
+    def _run_query(self, query: str, *parameters: object) -> Iterator[tuple[Any, ...]]:
         with self._named_errors():
             # `yield from` closes the cursor, which fails behind a closed database
             for record in self._database.execute(query, parameters):  # noqa: UP028
                 yield record
 
-    def _row(self, text: str) -> Row:
+    def _parse_row(self, text: str) -> Row:
         row = own_json(text)
         return row if self.columns is None else dict(zip(self.columns, row, strict=True))
 

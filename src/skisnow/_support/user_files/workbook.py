@@ -62,7 +62,7 @@ def workbook_sheets(
             )
         places: dict[str, list[tuple[int, int]]] = {} if fractions is None else fractions
         return {
-            sheet.title: _rows(sheet, places.setdefault(sheet.title, []), like_typed=fractions is None)
+            sheet.title: _read_rows(sheet, places.setdefault(sheet.title, []), like_typed=fractions is None)
             if wanted(sheet.title)
             else None
             for sheet in book.worksheets
@@ -94,10 +94,10 @@ def sheet_layouts(data: bytes) -> dict[str, Layout]:
     with warnings.catch_warnings(), zipfile.ZipFile(io.BytesIO(data)) as archive:
         warnings.simplefilter("ignore")
         book = _call_openpyxl(lambda: load_workbook(io.BytesIO(data), read_only=True, keep_links=False))
-        return {sheet.title: _call_openpyxl(partial(_layout, archive, sheet)) for sheet in book.worksheets}
+        return {sheet.title: _call_openpyxl(partial(_read_layout, archive, sheet)) for sheet in book.worksheets}
 
 
-def _layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
+def _read_layout(archive: zipfile.ZipFile, sheet: Any) -> Layout:
     from openpyxl.utils.cell import range_boundaries
 
     text = archive.read(sheet._worksheet_path)
@@ -154,7 +154,7 @@ def _call_openpyxl(doing: Callable[[], Any]) -> Any:
         ).tag("not_readable") from error
 
 
-def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> Rows:
+def _read_rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> Rows:
     sheet.reset_dimensions()  # the stated size may be wrong
     rows: Rows = []
     typed = {".": 0, ",": 0}
@@ -165,7 +165,7 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
                 raise ContentError("The sheet {sheet!r} has more than {limit} rows. Remove some.").tag(
                     "too_large", limit=MOST_ROWS, sheet=sheet.title
                 )
-            texts = [_text(value) for value in cells]
+            texts = [_cell_text(value) for value in cells]
             for value in cells:
                 if isinstance(value, str) and (fraction := _TYPED_FRACTION.fullmatch(value)):
                     typed[fraction[1]] += 1
@@ -188,15 +188,15 @@ def _rows(sheet: Any, fractions: list[tuple[int, int]], *, like_typed: bool) -> 
     return rows
 
 
-def _text(value: object) -> str:
+def _cell_text(value: object) -> str:
     if value is None or isinstance(value, bool):
         return "" if value is None else str(value).upper()
     if isinstance(value, float):
         return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
-    return _moment(value) if isinstance(value, date | time) else re.sub(r"\s*[\r\n]\s*", " ", str(value)).strip()
+    return _date_text(value) if isinstance(value, date | time) else re.sub(r"\s*[\r\n]\s*", " ", str(value)).strip()
 
 
-def _moment(value: date | time) -> str:
+def _date_text(value: date | time) -> str:
     if isinstance(value, datetime) and value.time() == time():
         return value.date().isoformat()
     if isinstance(value, datetime | time):
@@ -226,7 +226,7 @@ def _require_small(archive: zipfile.ZipFile) -> None:
     unpacked = 0
     for part in archive.infolist():
         looked_at = _Part(part.filename) if part.filename.endswith((".xml", ".rels")) else None
-        pieces: Iterable[bytes] = iter(_pieces(archive, part))
+        pieces: Iterable[bytes] = iter(_read_pieces(archive, part))
         while piece := _call_openpyxl(lambda pieces=pieces: next(pieces, b"")):  # type: ignore[misc]
             unpacked += len(piece)
             if unpacked > MOST_UNPACKED_BYTES:
@@ -240,7 +240,7 @@ def _require_small(archive: zipfile.ZipFile) -> None:
             looked_at.finish()
 
 
-def _pieces(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterable[bytes]:
+def _read_pieces(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Iterable[bytes]:
     with archive.open(part) as content:
         while piece := content.read(_CHUNK):
             yield piece
@@ -253,9 +253,9 @@ class _Part:
         self._name = name
         self._parser = expat.ParserCreate(namespace_separator=" ")
         self._parser.StartDoctypeDeclHandler = self._refuse_document_type
-        self._parser.StartElementHandler = self._begin
-        self._parser.EndElementHandler = self._end
-        self._parser.CharacterDataHandler = self._text
+        self._parser.StartElementHandler = self._on_begin
+        self._parser.EndElementHandler = self._on_end
+        self._parser.CharacterDataHandler = self._on_text
         self._elements = self._depth = 0
         self._cell = ""
         self._is_text = self._is_value = False
@@ -272,7 +272,7 @@ class _Part:
             "The workbook has a document type in its part {part}, which no spreadsheet program writes."
         ).tag("not_readable", part=self._name)
 
-    def _begin(self, name: str, attributes: dict[str, str]) -> None:
+    def _on_begin(self, name: str, attributes: dict[str, str]) -> None:
         self._elements += 1
         self._depth += 1
         if self._elements > MOST_ELEMENTS or self._depth > DEEPEST_ELEMENT:
@@ -288,11 +288,11 @@ class _Part:
             self._in_cell.add(local)
         self._is_value = local == "v"
 
-    def _text(self, text: str) -> None:
+    def _on_text(self, text: str) -> None:
         if self._is_value and text.strip():
             self._in_cell.add("v")
 
-    def _end(self, name: str) -> None:
+    def _on_end(self, name: str) -> None:
         self._depth -= 1
         self._is_value = False
         if name.endswith(" c") and self._in_cell == {"f"}:

@@ -58,7 +58,8 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
         dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
     stated = [
-        _column(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
+        _chosen_column(form, dialogue.answers.of_heading("column", table, heading), heading)
+        for heading in section.headings
     ]
     dialogue.open.extend(_invalid_column_answers(section, form, dialogue))
     dialogue.open.extend(_column_questions(section, form, stated))
@@ -66,7 +67,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
         unit = None
         if column in number_columns(form):
-            unit = _unit(section, form, heading, column, place, dialogue, notes)
+            unit = _choose_unit(section, form, heading, column, place, dialogue, notes)
         elif column in form.further and unit_of_column(column):
             units = _statements(section, heading, column, place, dialogue, table, notes)
             column = column if units == {folded_unit(column)} else heading  # noqa: PLW2901
@@ -74,7 +75,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     return choices
 
 
-def _column(form: TableForm, answer: str, heading: str) -> str:
+def _chosen_column(form: TableForm, answer: str, heading: str) -> str:
     return answer if answer in form.known or answer == NONE else stated_column(form, heading)
 
 
@@ -128,7 +129,7 @@ def _statements(
     }
 
 
-def _unit(
+def _choose_unit(
     section: Section, form: TableForm, heading: str, column: str, place: int, dialogue: Dialogue, notes: Sequence[Note]
 ) -> UnitConversion | None:
     table = form.file.removesuffix(".csv")

@@ -62,12 +62,12 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     sheets = read_sheets(name, data)
     sections = {sheet.name: find_sections(sheet, answers.table, ignored) for sheet in sheets}
     dialogue = Dialogue(answers)
-    kinds = [(section, _kind(section, dialogue)) for on_sheet in sections.values() for section in on_sheet]
+    kinds = [(section, _choose_table_form(section, dialogue)) for on_sheet in sections.values() for section in on_sheet]
     forms = [(section, form) for section, form in kinds if form is not None]
     notes = _notes(sheets, [section for section, _ in kinds], ignored)
     if not kinds:
         dialogue.open.append(_no_table(name))
-    tables = [_table(section, form, dialogue, ignored, notes) for section, form in forms]
+    tables = [_import_table(section, form, dialogue, ignored, notes) for section, form in forms]
     qualifying = {(section.sheet.name, section.header) for section, _ in forms if section.qualified()}
     dialogue.open.extend(
         ask("ignore", f"{note.sheet}!{note.row}", note.sheet, row=note.row, value=note.text)
@@ -88,7 +88,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
 
 
-def _kind(section: Section, dialogue: Dialogue) -> TableForm | None:
+def _choose_table_form(section: Section, dialogue: Dialogue) -> TableForm | None:
     form = table_of(section, dialogue.answers)
     if form is None:
         value = ", ".join(section.headings)
@@ -124,7 +124,7 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
     return tuple(notes)
 
 
-def _table(
+def _import_table(
     section: Section, form: TableForm, dialogue: Dialogue, ignored: Ignored, notes: Sequence[Note]
 ) -> ImportedTable:
     own = [note for note in notes if _concerns(note, section.sheet.name, {section.sheet.name})]
@@ -181,7 +181,7 @@ def _with_names(
     for table in tables:
         sheet = table.section.sheet.name
         own = _notes_above(table, tables, notes)
-        site = "" if any("site" in row.cells for row in table.rows) else _site(sheet, table, dialogue, own)
+        site = "" if any("site" in row.cells for row in table.rows) else _choose_site(sheet, table, dialogue, own)
         days = stated_days(note for note in notes if _concerns(note, sheet, with_tables))
         added = {"site": site} | ({"time": days.pop()} if len(days) == 1 else {})
         rows = []
@@ -206,7 +206,7 @@ def _notes_above(table: ImportedTable, tables: Sequence[ImportedTable], notes: S
     return near if stated_sites(section.sheet.name, near) else own
 
 
-def _site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Sequence[Note]) -> str:
+def _choose_site(sheet: str, table: ImportedTable, dialogue: Dialogue, notes: Sequence[Note]) -> str:
     for key in (table.section.key, sheet):
         if key in dialogue.answers.site:
             return dialogue.answers.site[key]

@@ -86,7 +86,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
             continue
         taken, below = below, set()
         groups = [group for group in _table_groups(sheet, row, ignored) if not taken & set(group)]
-        single = [group for group in groups if answer or _is_header(_texts(sheet, row, group))]
+        single = [group for group in groups if answer or _is_header(_row_texts(sheet, row, group))]
         two_rows = () if answer else _two_row_headings(sheet, row, groups, ignored)
         pairs = [pair for pair in two_rows if not taken & set(pair)]
         heads += [(row, group, 1) for group in single if not any(set(group) & set(pair) for pair in pairs)]
@@ -94,7 +94,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
         below.update(column for group in pairs for column in group)
     sections: list[Section] = []
     for row in dict.fromkeys(row for row, _, _ in heads):
-        on_row = [_section(sheet, row, group, count, heads, ignored) for at, group, count in heads if at == row]
+        on_row = [_make_section(sheet, row, group, count, heads, ignored) for at, group, count in heads if at == row]
         filled = [section for section in on_row if any(_is_filled(section, at) for at in _data_range(section))]
         sections += _split_series(filled, ignored)
     return sections
@@ -109,11 +109,11 @@ def _two_row_headings(sheet: Sheet, row: int, groups: Sequence[range], ignored: 
         column
         for at, on_row in ((row, groups), (row + 1, lower))
         for group in on_row
-        if _is_header(_texts(sheet, at, group))
+        if _is_header(_row_texts(sheet, at, group))
         for column in group
     }
     for group in _groups(sheet, (row, row + 1), ignored):
-        top, below = _texts(sheet, row, group), [sheet.cell(row + 1, column) for column in group]
+        top, below = _row_texts(sheet, row, group), [sheet.cell(row + 1, column) for column in group]
         hyphens = any(text.endswith("-") and _is_part(part) for text, part in zip(top, below, strict=True))
         both = any(top) and any(map(_is_part, below)) and not alone & set(group)
         if (hyphens or both) and not any(map(is_plain_number, (*top, *below))):
@@ -176,7 +176,7 @@ def _table_groups(sheet: Sheet, row: int, ignored: Ignored) -> list[range]:
     if not headed:
         return groups
     whole = range(headed[0], headed[-1] + 1)
-    words = {heading_words(text) for text in _texts(sheet, row, whole) if text}
+    words = {heading_words(text) for text in _row_texts(sheet, row, whole) if text}
     is_one = (
         len(headed) < len(whole)
         and len(words) == len(headed)
@@ -190,13 +190,13 @@ def _table_groups(sheet: Sheet, row: int, ignored: Ignored) -> list[range]:
 
 def _is_complete(sheet: Sheet, row: int, columns: range) -> bool:
     """True if headings state or are likely to state all required columns of a table that no note can replace."""
-    texts = [text for text in _texts(sheet, row, columns) if text]
+    texts = [text for text in _row_texts(sheet, row, columns) if text]
     return any(
         set(form.required) - set(FROM_NOTES) <= set(likely_columns(form, texts).values()) for form in KINDS.values()
     )
 
 
-def _texts(sheet: Sheet, row: int, columns: range) -> list[str]:
+def _row_texts(sheet: Sheet, row: int, columns: range) -> list[str]:
     return [sheet.cell(row, column, filled=True) for column in columns]
 
 
@@ -217,7 +217,7 @@ def likely_columns(form: TableForm, headings: Sequence[str]) -> dict[str, str]:
     return columns_by_synonym(form, headings) | stated
 
 
-def _section(
+def _make_section(
     sheet: Sheet,
     row: int,
     columns: range,
@@ -226,7 +226,7 @@ def _section(
     ignored: Ignored,
 ) -> Section:
     later = [other for other, group, _ in heads if other > row and set(group) & set(columns)]
-    top = _texts(sheet, row, columns)
+    top = _row_texts(sheet, row, columns)
     below = [sheet.cell(row + 1, column) for column in columns]
     headings, start = tuple(top), row + 1
     units: tuple[str, ...] = ()
@@ -315,11 +315,13 @@ def _repeated_parts(section: Section) -> list[Section]:
 
 
 def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
-    """Series with a column for each text above them, at the right of the sheet."""
+    """Series side by side, with one more column for each title above them, added at the right of the sheet."""
     first = series[0]
     sheet, row = first.sheet, first.header
     while (
-        row and not ignored.row(sheet.name, row - 1) and all(len(_filled(sheet, row - 1, p.own)) == 1 for p in series)
+        row
+        and not ignored.row(sheet.name, row - 1)
+        and all(len(_filled_columns(sheet, row - 1, p.own)) == 1 for p in series)
     ):
         row -= 1
     titles = [title for at in range(row, first.header) for title in _titles(series, at)]
@@ -333,7 +335,7 @@ def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
     for part in series:
         places = tuple(range(left, left + len(titles)))
         left += len(titles)
-        for at in (at for at in range(part.start, part.end) if _filled(sheet, at, part.own)):
+        for at in (at for at in range(part.start, part.end) if _filled_columns(sheet, at, part.own)):
             for place, title in zip(places, titles, strict=True):
                 value, source = title.values[part.own]
                 rows[at][place] = filled[at][place] = value
@@ -346,7 +348,7 @@ def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
     return [replace(part, sheet=after) for part in named]
 
 
-def _filled(sheet: Sheet, row: int, columns: range) -> list[int]:
+def _filled_columns(sheet: Sheet, row: int, columns: range) -> list[int]:
     return [column for column in columns if sheet.cell(row, column)]
 
 
@@ -362,7 +364,7 @@ class _Title:
 def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
     """Columns of a row above series: a label at its left names them, or words before the values do."""
     sheet = series[0].sheet
-    places = [_filled(sheet, row, part.own)[0] for part in series]
+    places = [_filled_columns(sheet, row, part.own)[0] for part in series]
     label = next((text for column in range(series[0].own.start)[::-1] if (text := sheet.cell(row, column))), "")
     texts = [sheet.cell(row, place) for place in places]
     parts = [[text] if label else re.split(r"[,;|]\s+", text) for text in texts]

@@ -118,9 +118,9 @@ def _csv_rows(name: str, data: bytes, count: Callable[[Sequence[str]], int]) -> 
         named = named_separator(text.text[:1000])
         separators = [named] if named in SEPARATOR_NAMES else list(SEPARATOR_NAMES)
         texts = [CsvText(data, text.codec, text.foreign_encoding, mark, named is not None) for mark in separators]
-        begins = [max(map(count, _records(text, most=_HEADING_ROWS)), default=0) for text in texts]
+        begins = [max(map(count, _read_rows(text, most=_HEADING_ROWS)), default=0) for text in texts]
         best = texts[begins.index(max(begins))]
-        return _records(best), best.separator
+        return _read_rows(best), best.separator
     except UnreadableTextError as failure:
         raise ParameterError("{file}: allowed: {allowed}. {action}").tag(
             "unreadable_file", file=name, allowed=failure.allowed, action=failure.action
@@ -131,7 +131,7 @@ def _count_headings(cells: Sequence[str]) -> int:
     return max(sum(bool(stated_column(form, cell.strip())) for cell in cells) for form in TABLES)
 
 
-def _records(text: CsvText, *, most: int | None = None) -> Rows:
+def _read_rows(text: CsvText, *, most: int | None = None) -> Rows:
     rows: Rows = []
     blank: list[str] = []  # shared by all blank lines
     for lines, records in text.records(most):
@@ -150,7 +150,7 @@ FROM_NOTES: Final = ("site", "tool", "plate")
 
 
 def is_plain_number(text: str) -> bool:
-    """True for a number with a decimal point or comma, or a day."""
+    """True for a number with a decimal point or comma, and for a date or time in digits."""
     plain = text.strip()
     return is_number(plain, ".") or is_number(plain, ",") or bool(re.fullmatch(r"[\d.,:/\- ]*\d[\d.,:/\- T]*", plain))
 

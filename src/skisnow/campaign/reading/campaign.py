@@ -103,7 +103,7 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
     FieldDataError
         As `read_campaign`.
     """
-    return _require_valid(_read(FilesInMemory(files, others), None))
+    return _require_valid(_read_contents(FilesInMemory(files, others), None))
 
 
 def campaign_of_cells(
@@ -157,7 +157,7 @@ def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
 def _require_valid(contents: _Contents) -> Campaign:
     if contents.described is None or any(problem.severity == "error" for problem in contents.problems):
         raise FieldDataError(contents.problems)
-    return _campaign(contents, contents.described)
+    return _build_campaign(contents, contents.described)
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +178,9 @@ class _Contents:
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
     if folder.is_file() and is_workbook(folder.name):
-        return _read(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
+        return _read_contents(
+            FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress
+        )
     if not folder.is_dir():
         action = Message(
             "Name the folder of campaign.toml and the tables, or a workbook (.xlsx) that contains all of them."
@@ -191,16 +193,16 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
             "unreadable_file", str(folder), value=value, allowed=Message("a folder that exists"), action=action
         )
         return _Contents(folder, None, {}, {}, (nowhere,))
-    return _read(FilesOfFolder(folder), progress)
+    return _read_contents(FilesOfFolder(folder), progress)
 
 
-def _read(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+def _read_contents(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
     campaign = unfolded(campaign_files)
     files = RawFiles(campaign, problems=campaign.problems)
     described, headings, corrections = read_description(files)
     tables: dict[str, Table] = {}
     for form in TABLES:
-        table = _table(files, form, corrections.get(form.file, {}), headings, progress)
+        table = _read_campaign_table(files, form, corrections.get(form.file, {}), headings, progress)
         if table is not None:
             tables[form.file] = table
             files.problems.extend(check_rows(table, described))
@@ -292,7 +294,7 @@ def read_description(files: RawFiles) -> tuple[CampaignFile | None, Headings, Ma
     """Read campaign.toml, its mapping of headings, and corrections.csv by file; problems are added to `files`."""
     described = _read_campaign_toml(files)
     headings = described.headings if described is not None else Headings()
-    table = _table(files, CORRECTIONS, {}, headings, None)
+    table = _read_campaign_table(files, CORRECTIONS, {}, headings, None)
     return described, headings, {} if table is None or table.absent else corrections_by_file(table, files.problems)
 
 
@@ -322,7 +324,7 @@ def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
     return read_campaign_file(decoded.text, files.problems)
 
 
-def _table(
+def _read_campaign_table(
     files: RawFiles,
     form: TableForm,
     corrections: RowCorrections,
@@ -357,7 +359,7 @@ _SAME: Final = {field.name for field in fields(CampaignFile)} & {field.name for 
 """Fields of a campaign that campaign.toml states as they are."""
 
 
-def _campaign(contents: _Contents, described: CampaignFile) -> Campaign:
+def _build_campaign(contents: _Contents, described: CampaignFile) -> Campaign:
     tables = contents.tables
     return Campaign(
         name=described.name or contents.folder.resolve().name,

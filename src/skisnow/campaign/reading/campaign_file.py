@@ -129,8 +129,8 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
     top = TomlValues(CAMPAIGN_FILE, parsed, "", problems)
     top.refuse_misspelt(TOP_KEYS)
     top.table("import").refuse_misspelt(IMPORT_KEYS)
-    tools, tool_names, flat_tools = _tools(top)
-    plates, plate_names = _plates(top)
+    tools, tool_names, flat_tools = _read_tools(top)
+    plates, plate_names = _read_plates(top)
     return CampaignFile(
         name=top.text("name", blank_allowed=True),
         place=top.text("place", blank_allowed=True) or "",
@@ -169,7 +169,8 @@ def _recording_settings(section: TomlValues) -> SnowMicroPenSettings:
     return settings
 
 
-def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:
+def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[str]]:
+    """Valid tools by name, names of all tools, and names of tools with a flat base."""
     tools: dict[str, Tool] = {}
     names: set[str] = set()
     flat: set[str] = set()
@@ -188,7 +189,7 @@ def _tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], frozenset[
     return tools, frozenset(names), frozenset(flat)
 
 
-def _plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
+def _read_plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
     """Length (m) of each valid plate by name, and the names of all plates, invalid ones as well."""
     plates: dict[str, float] = {}
     names: set[str] = set()
@@ -325,7 +326,7 @@ def campaign_schema() -> Schema:
             },
             "screening": {"type": "object", "properties": {"exclude": exclude}},
         },
-        "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool(), "plate": _plate()},
+        "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool_schema(), "plate": _plate_schema()},
     }
 
 
@@ -341,16 +342,16 @@ def _by_heading(words: str) -> Schema:
     return {"description": words, "type": "object", "additionalProperties": either}
 
 
-def _tool() -> Schema:
+def _tool_schema() -> Schema:
     return {
         "type": "object",
         "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
         "required": ["name", "shape"],
-        "oneOf": [_shape(name, shape) for name, shape in SHAPES.items()],
+        "oneOf": [_shape_schema(name, shape) for name, shape in SHAPES.items()],
     }
 
 
-def _shape(name: str, shape: Shape) -> Schema:
+def _shape_schema(name: str, shape: Shape) -> Schema:
     lengths = table_schema(shape.lengths)
     return {
         "properties": {"shape": {"const": name}, **lengths["properties"]},
@@ -358,7 +359,7 @@ def _shape(name: str, shape: Shape) -> Schema:
     }
 
 
-def _plate() -> Schema:
+def _plate_schema() -> Schema:
     length = table_schema([PLATE_LENGTH])
     return {
         "type": "object",

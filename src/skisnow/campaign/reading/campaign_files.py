@@ -107,15 +107,15 @@ class RawFiles:
             self.absent.add(name)
             return None
         except OSError as failure:
-            self._refuse(name, failure.strerror or str(failure))
+            self._report_unreadable(name, failure.strerror or str(failure))
             return None
         if data is None:
-            self._refuse(name, Message("something other than a plain file"))
+            self._report_unreadable(name, Message("something other than a plain file"))
             return None
         self.hashes[name] = hashlib.sha256(data).hexdigest()
         return data
 
-    def _refuse(self, name: str, what: str) -> None:
+    def _report_unreadable(self, name: str, what: str) -> None:
         action = Message("Make the file readable, or remove it from the campaign.")
         allowed = Message("a plain file that may be read")
         self.problems.append(error("unreadable_file", name, value=what, allowed=allowed, action=action))
@@ -161,13 +161,13 @@ def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]
     most = len(files.problems) + MOST_LISTED
     for row, name in enumerate(table.names["file"].cells()):
         if name and name not in contents and len(files.problems) < most:
-            data = _content(table, row, name, files)
+            data = _read_recording(table, row, name, files)
             if data is not None:
                 contents[name] = data
     return contents
 
 
-def _content(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
+def _read_recording(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
     if "/" in name or "\\" in name or not name.lower().endswith(ENDING):
         action = Message("Write only the file's name, and put the file next to the tables.")
         allowed = Message("the name of a .PNT file in the campaign's folder")

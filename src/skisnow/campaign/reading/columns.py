@@ -99,9 +99,9 @@ class NameCollector:
         self._parts.append(code)
         blank = self._codes.code_of_name.get("")
         if self._required and blank is not None:
-            problems.extend(self._blank(index, rows) for index in np.flatnonzero(code == blank).tolist())
+            problems.extend(self._blank_name_problem(index, rows) for index in np.flatnonzero(code == blank).tolist())
 
-    def _blank(self, index: int, rows: Rows) -> Problem:
+    def _blank_name_problem(self, index: int, rows: Rows) -> Problem:
         return rows.problem(
             "out_of_range",
             index,
@@ -134,7 +134,7 @@ class NumberCollector:
             cell = cells[index].strip()
             if cell or self._column.needed:
                 action, allowed = self._how_to_write(cell), allowed_words(self._column)
-                problems.append(self._refusal("not_a_number", index, cell, rows, action, allowed))
+                problems.append(self._number_problem("not_a_number", index, cell, rows, action, allowed))
         if self._unit is not None:
             with np.errstate(over="ignore"):
                 values = self._unit.convert(values)
@@ -148,11 +148,11 @@ class NumberCollector:
                     "{allowed}; if it is not 0, with a size from {smallest:g} to {largest:g}",
                     allowed=allowed, smallest=SMALLEST, largest=LARGEST,
                 )  # fmt: skip
-            problems.append(self._refusal("out_of_range", index, cell, rows, action, allowed))
+            problems.append(self._number_problem("out_of_range", index, cell, rows, action, allowed))
         values[outside] = np.nan
         self._parts.append(values)
 
-    def _refusal(self, code: str, index: int, cell: str, rows: Rows, action: str, allowed: Message) -> Problem:
+    def _number_problem(self, code: str, index: int, cell: str, rows: Rows, action: str, allowed: Message) -> Problem:
         return rows.problem(code, index, column=self._column.name, value=cell, allowed=allowed, action=action)
 
     def _how_to_write(self, cell: str) -> Message:
@@ -221,13 +221,13 @@ class Table:
 
     def error(self, row: int, code: str, column: str, value: str, allowed: str, action: str) -> Problem:
         """Error of the cell in a column and the row with this index."""
-        return error(code, **self._place(row, column), value=value, allowed=allowed, action=action)
+        return error(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 
     def warning(self, row: int, code: str, column: str | None, value: str, allowed: str, action: str) -> Problem:
         """Warning of the cell in a column and the row with this index."""
-        return warning(code, **self._place(row, column), value=value, allowed=allowed, action=action)
+        return warning(code, **self._problem_place(row, column), value=value, allowed=allowed, action=action)
 
-    def _place(self, row: int, column: str | None) -> dict[str, Any]:
+    def _problem_place(self, row: int, column: str | None) -> dict[str, Any]:
         experiment = self.names[self.form.key][row] or None
         return {"file": self.form.file, "row": int(self.row[row]), "column": column, "experiment": experiment}
 

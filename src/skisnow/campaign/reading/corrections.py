@@ -134,10 +134,10 @@ class Corrector:
             self._problems.append(correction.mismatch("column", correction.column, allowed))
             return
         cells.extend([""] * (len(self._header.columns) - len(cells)))
-        if self._agrees(cells, position, correction):
+        if self._matches_record(cells, position, correction):
             cells[position] = self._in_the_files_form(correction)
 
-    def _agrees(self, cells: list[str], position: int, correction: Correction) -> bool:
+    def _matches_record(self, cells: list[str], position: int, correction: Correction) -> bool:
         key_position = self._position.get(self._key)
         experiment = cells[key_position].strip() if key_position is not None else correction.experiment
         if experiment != correction.experiment:
@@ -145,12 +145,14 @@ class Corrector:
             self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
             return False
         standing = cells[position].strip()
-        if standing == correction.old or (correction.column in self._numbers and self._equal(standing, correction.old)):
+        if standing == correction.old or (
+            correction.column in self._numbers and self._equal_numbers(standing, correction.old)
+        ):
             return True
         self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
         return False
 
-    def _equal(self, standing: str, old: str) -> bool:
+    def _equal_numbers(self, standing: str, old: str) -> bool:
         stands = number(standing, self._mark)
         return any(stands == number(old, mark) for mark in (self._mark, "."))  # NaN, no number, equals nothing
 

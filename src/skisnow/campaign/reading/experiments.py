@@ -176,7 +176,7 @@ def penetration_tests(table: Table) -> PenetrationTests:
         penetration_depth=table.numbers["depth_mm"][laid_on] * MM,
         row=table.row[laid_on],
         further=_select_rows(table.further, ~taken_off) if is_unloaded else table.further,
-        unloading=_unloading(table, blocks, taken_off) if is_unloaded else None,
+        unloading=_unloading_readings(table, blocks, taken_off) if is_unloaded else None,
         depth_after=None if np.isnan(after).all() else after * MM,
     )
 
@@ -185,7 +185,7 @@ def _select_rows(further: Mapping[str, tuple[str, ...]], chosen: BoolArray) -> d
     return {name: tuple(compress(cells, chosen.tolist())) for name, cells in further.items()}
 
 
-def _unloading(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:
+def _unloading_readings(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:
     return UnloadingReadings(
         first=blocks.first_of(taken_off),
         load=table.numbers["load_N"][taken_off],

@@ -101,7 +101,7 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
         return [_all_missing(form, header)]
     repeated = [name for name, times in Counter(filter(None, header.columns)).items() if times > 1]
     problems = [_repeated_error(form, name, header.row) for name in repeated]
-    problems += [_missing(form, name, unknown, header.row) for name in missing]
+    problems += [_missing_column_problem(form, name, unknown, header.row) for name in missing]
     problems += [_unknown_error(form, name, header) for name in unknown]
     return problems
 
@@ -145,7 +145,7 @@ def _repeated_error(form: TableForm, name: str, row: int) -> Problem:
     return error("unreadable_file", form.file, row=row, column=name, value=name, allowed=allowed, action=action)
 
 
-def _missing(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
+def _missing_column_problem(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:
     as_written = {heading.lower(): heading for heading in unknown}
     near = difflib.get_close_matches(name.lower(), list(as_written), n=1)
     likely = {column: heading for heading, column in columns_by_synonym(form, unknown).items()}

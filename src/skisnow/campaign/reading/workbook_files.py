@@ -188,10 +188,10 @@ def description_text(sheets: Mapping[str, Rows]) -> str:
     for row in _records(sheets.get(CAMPAIGN, [])):
         key = row.get("key", "")
         if key and row.get("value"):
-            lines.append(f"{'screening.' if key == 'exclude' else ''}{_pair(key, row['value'])}")
+            lines.append(f"{'screening.' if key == 'exclude' else ''}{_toml_line(key, row['value'])}")
     for kind, sheet in (("tool", TOOLS), ("plate", PLATES)):
         for row in _records(sheets.get(sheet, [])):
-            lines += [f"[[{kind}]]", *(_pair(key, cell) for key, cell in row.items() if key and cell)]
+            lines += [f"[[{kind}]]", *(_toml_line(key, cell) for key, cell in row.items() if key and cell)]
     return "\n".join((*filter(None, lines), ""))
 
 
@@ -210,7 +210,7 @@ def _column_lines(row: Mapping[str, str]) -> Iterator[str]:
             yield f"{section}.{f'{toml_text(table)}.' if table else ''}{toml_text(heading)} = {toml_text(row[name])}"
 
 
-def _pair(key: str, cell: str) -> str:
+def _toml_line(key: str, cell: str) -> str:
     if key in _LISTS:
         several = ", ".join(_value(item) for item in re.split(r"\s*;\s*", cell) if item)
         return f"{toml_text(key)} = [{several}]"

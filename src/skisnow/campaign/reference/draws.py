@@ -256,7 +256,7 @@ def _row_numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.arange(2, count + 2, dtype=np.int64)  # the header is line 1
 
 
-def _spot(site: design.PenetrationSite, index: int) -> str:
+def _spot_name(site: design.PenetrationSite, index: int) -> str:
     return f"{site.name[-1]}{index + 1:02d}" if index < site.spots else ""
 
 
@@ -267,7 +267,7 @@ def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> Penetration
         experiment=_numbered_names("P", count),
         site=tuple(site.name for site, _ in sites),
         tool=(design.TOOL,) * count,
-        spot=tuple(_spot(site, index) for site, index in sites),
+        spot=tuple(_spot_name(site, index) for site, index in sites),
         edge_angle=edge_angle,
         snow_density=np.full(count, np.nan),
         drop_cone_depth=np.full(count, np.nan),
@@ -282,7 +282,7 @@ def _penetration_tests(edge_angle: FloatArray, depth: FloatArray) -> Penetration
 def _shear_tests(angle: FloatArray, depth: FloatArray, moment: FloatArray, density: FloatArray) -> ShearTests:
     count = angle.size
     varied = [(design.HARD_SITE, "")] * design.HARD_TESTS + [(design.SOFT_SITE, "")] * design.SOFT_TESTS
-    beside = [(site.name, _spot(site, index)) for site in design.PENETRATION_SITES for index in range(site.spots)]
+    beside = [(site.name, _spot_name(site, index)) for site in design.PENETRATION_SITES for index in range(site.spots)]
     alone = [(site.name, "") for site in design.FURTHER_SHEAR_SITES for _ in range(site.tests)]
     places = varied + beside + alone
     return ShearTests(

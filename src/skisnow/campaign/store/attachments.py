@@ -70,7 +70,7 @@ def photo_entry(file: str, test: str, photo: str, *, who: str = "") -> NewEntry:
             "The photo is not stored: {size} bytes. Allowed: a JPEG file of at most {most} bytes."
         ).tag("no_photo", size=len(data), most=MOST_PHOTO_BYTES)
     pieces = (photo[at : at + _PIECE] for at in range(0, len(photo), _PIECE))
-    return _entry(file, test, {f"photo_{number:02d}": piece for number, piece in enumerate(pieces)}, who)
+    return _attachment_entry(file, test, {f"photo_{number:02d}": piece for number, piece in enumerate(pieces)}, who)
 
 
 def photo_of(attachment: ReplayedTest) -> bytes:
@@ -82,10 +82,10 @@ def photo_of(attachment: ReplayedTest) -> bytes:
 def position_entry(file: str, test: str, position: Position, *, who: str = "") -> NewEntry:
     """Entry of the position of a test."""
     cells = {name: f"{getattr(position, name):.10g}" for name in ("latitude_deg", "longitude_deg", "accuracy_m")}
-    return _entry(file, test, cells, who)
+    return _attachment_entry(file, test, cells, who)
 
 
-def _entry(file: str, test: str, cells: dict[str, str], who: str) -> NewEntry:
+def _attachment_entry(file: str, test: str, cells: dict[str, str], who: str) -> NewEntry:
     name = f"{file.removesuffix('.csv')} {test} {uuid4().hex[:8]}"  # unique: two laptops never write the same one
     return NewEntry(
         action="add", file=ATTACHMENTS, test=name, cells={"table": file, "test": test, **cells}, position=0, who=who
@@ -121,7 +121,7 @@ def attachment_files(campaign: ReplayedCampaign, before: bytes = b"") -> Iterato
 def rows_of_file(data: bytes, file: str, test: str) -> list[dict[str, str]]:
     """Rows of an attachments.csv about a test; [] if the file cannot be read."""
     try:
-        header, *rows = _records(data, ATTACHMENTS)
+        header, *rows = _parse_records(data, ATTACHMENTS)
     except (StoreError, ValueError):
         return []
     cells = [dict(zip(map(str.strip, header), row, strict=False)) for row in rows]
@@ -133,14 +133,14 @@ def with_rows(before: bytes, file: str, columns: Sequence[str], rows: Iterable[M
 
     Raises StoreError: the file cannot be read.
     """
-    records = _records(before, file) if before.strip() else []
+    records = _parse_records(before, file) if before.strip() else []
     header = [cell.strip() for cell in records.pop(0)] if records else []
     header += [column for column in columns if column not in header]
     came = ([*cells, *[""] * (len(header) - len(cells))] for cells in records)
     return guarded_csv([header, *came, *([cells.get(column, "") for column in header] for cells in rows)])
 
 
-def _records(data: bytes, file: str) -> list[list[str]]:
+def _parse_records(data: bytes, file: str) -> list[list[str]]:
     try:
         return [cells for _, some in inspect_csv(data).records() for cells in some]
     except UnreadableTextError as error:

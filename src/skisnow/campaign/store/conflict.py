@@ -96,7 +96,9 @@ class Divergence:
         entries = (*self.here, *self.there)
         if all(entry.action == "correct" for entry in entries):
             return not self.contested
-        return not any(entry.action == "add" for entry in entries) and self._contents("here") == self._contents("there")
+        return not any(entry.action == "add" for entry in entries) and self._content_counts(
+            "here"
+        ) == self._content_counts("there")
 
     @property
     def contested(self) -> list[tuple[str, str]]:
@@ -140,7 +142,7 @@ class Divergence:
             choices=self.choices,
         )
 
-    def _contents(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
+    def _content_counts(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
         entries, uids = (self.here, self.uid_here) if side == "here" else (self.there, self.uid_there)
         return Counter(
             (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why)
@@ -268,14 +270,14 @@ def entries_about(connection: Connection, journal_id: str, subject: Subject) -> 
 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:
     """Ids of the journals that can be compared: of campaigns in entry, or stored in both stores."""
-    of_here, of_there = _journals(here), _journals(there)
+    of_here, of_there = _journal_ids(here), _journal_ids(there)
     stored_here, stored_there = _campaign_ids(here), _campaign_ids(there)
     for id_ in sorted(of_here | of_there):
         if (id_ in stored_here) == (id_ in stored_there):
             yield id_
 
 
-def _journals(connection: Connection) -> set[str]:
+def _journal_ids(connection: Connection) -> set[str]:
     return set(connection.execute(select(journal.c.id)).scalars())
 
 

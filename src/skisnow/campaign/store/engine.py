@@ -84,12 +84,12 @@ def _file_reason(error: BaseException, path: Path) -> str:
     if code == sqlite3.SQLITE_NOTADB:
         return _NO_STORE
     if code == sqlite3.SQLITE_CORRUPT or message.startswith(_NO_TEXT):
-        damage = _damage(path)
+        damage = _find_damage(path)
         return Message("{reason} ({damage})", reason=_DAMAGED, damage=damage) if damage else _DAMAGED
     return place_reason(error) or message
 
 
-def _damage(path: Path) -> str | None:
+def _find_damage(path: Path) -> str | None:
     with suppress(sqlite3.Error), closing(connect(path, mode="ro")) as database:
         return first_damage(database)
     return None
@@ -217,11 +217,11 @@ def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
         return connection
 
     engine = create_engine("sqlite://", creator=open_file, poolclass=NullPool)
-    event.listen(engine, "begin", _begin)
+    event.listen(engine, "begin", _begin_transaction)
     return engine
 
 
-def _begin(connection: Connection) -> None:
+def _begin_transaction(connection: Connection) -> None:
     # The driver's own BEGIN comes late and never before DDL; with isolation_level None it stays out of the way.
     connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
 

@@ -118,11 +118,11 @@ def replay_journal(entries: Iterable[JournalEntry], *, before: ReplayedCampaign 
             added.setdefault((entry.file, entry.test), []).append(entry)
     for key, new in added.items():
         history = campaign.tests[key].history if key in campaign.tests else []
-        campaign.tests[key] = _test(key, sorted([*history, *new], key=lambda entry: entry.uid))
+        campaign.tests[key] = _replay_test(key, sorted([*history, *new], key=lambda entry: entry.uid))
     return campaign
 
 
-def _test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
+def _replay_test(key: tuple[str, str], history: list[JournalEntry]) -> ReplayedTest:
     test = ReplayedTest(*key, history=history)
     for entry in reversed(history):  # an undoing can be undone
         if entry.action == "undo" and entry.about is not None and entry.sequence not in test.undone:
@@ -185,7 +185,7 @@ def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | N
     files = {DESCRIPTION: campaign.description}
     corrections: list[AppliedCorrection] = []
     for form, tests in _tests_by_table(campaign, of):
-        columns = _columns(form, tests)
+        columns = _table_columns(form, tests)
         rows = [_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
         files[form.file] = guarded_csv([columns, *rows])
         corrections.extend(_corrections(tests))
@@ -212,7 +212,7 @@ def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
     tables: dict[str, Cells] = {}
     corrections: list[AppliedCorrection] = []
     for form, tests in _tests_by_table(campaign, of):
-        columns = _columns(form, tests)
+        columns = _table_columns(form, tests)
         if STATUS not in columns and any(test.cancelling for test in tests):
             columns.append(STATUS)
         rows = [_cells(reading.entered.at, cells, columns) for test in tests for reading, cells in _readings(test)]
@@ -239,7 +239,7 @@ def _readings(test: ReplayedTest) -> Iterator[tuple[Reading, Mapping[str, str]]]
         yield reading, reading.cells | {STATUS: test.cancelled} if cancelled else reading.cells
 
 
-def _columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:
+def _table_columns(form: TableForm, tests: Sequence[ReplayedTest]) -> list[str]:
     rows = [row for test in tests for row in test.rows]
     present = {column for row in rows for column in row.entered.cells} | {_TIME}
     present |= {column for row in rows for correction in row.corrections for column in correction.cells}

@@ -111,14 +111,14 @@ def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequ
     """Error for an unknown or ambiguous beginning of an id, with candidates."""
     if matching:
         return StoreError("Several campaigns begin with {beginning}: {candidates}; give more digits.").tag(
-            "ambiguous_id", beginning=beginning, candidates=_candidates(matching)
+            "ambiguous_id", beginning=beginning, candidates=_candidates_text(matching)
         )
     return StoreError("No campaign begins with {beginning}; the store contains {candidates}.").tag(
-        "unknown_id", beginning=beginning, candidates=_candidates(stored)
+        "unknown_id", beginning=beginning, candidates=_candidates_text(stored)
     )
 
 
-def _candidates(campaigns: Sequence[NamedId]) -> Message:
+def _candidates_text(campaigns: Sequence[NamedId]) -> Message:
     named = [f"{campaign_id.id} ({campaign_id.name})" for campaign_id in campaigns[:_SHOWN_CANDIDATES]]
     further = len(campaigns) - len(named)
     if not named:

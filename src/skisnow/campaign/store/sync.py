@@ -122,7 +122,7 @@ class _Sync:
 
     def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> SyncResult:
         with database_errors(self._there.path, "could not be synchronised"):
-            before = self._names()
+            before = self._read_names()
             n_settled = self._settle_conflicts(chosen, who)
             to_there, to_here = (self._here, self._there), (self._there, self._here)
             return SyncResult(
@@ -131,12 +131,12 @@ class _Sync:
                 n_entries_given=self._copy_journals(*to_there, lambda done, n: progress(done, 2 * n)),
                 n_entries_taken=self._copy_journals(*to_here, lambda done, n: progress(n + done, 2 * n)),
                 n_settled=n_settled,
-                conflicts=self._conflicts(),
+                conflicts=self._find_conflicts(),
                 same_names=tuple(same_names(*before)),
                 problems=tuple(self._problems),
             )
 
-    def _names(self) -> tuple[Names, Names]:
+    def _read_names(self) -> tuple[Names, Names]:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             return names_of(here), names_of(there)
 
@@ -188,7 +188,7 @@ class _Sync:
                 settle(here, there, divergence, side, who)
         return len(choices)
 
-    def _conflicts(self) -> tuple[Conflict, ...]:
+    def _find_conflicts(self) -> tuple[Conflict, ...]:
         with reading(self._here.engine) as here, reading(self._there.engine) as there:
             open_ = list(self._open_divergences(here, there))
             names = names_of(here).all if open_ else {}

@@ -165,11 +165,11 @@ class BilinearLaw(PenetrationLaw):
         return {"zero at zero depth": "with a > 0 a flat base feels H a L W the moment it touches the snow"}
 
     def _force_in_contact(self, tool: Tool, depth: FloatArray, angle: FloatArray) -> FloatArray:
-        a = self._at("a", self.a0, self.a1, angle)
-        b = self._at("b", self.b0, self.b1, angle)
+        a = self._coefficient_at("a", self.a0, self.a1, angle)
+        b = self._coefficient_at("b", self.b0, self.b1, angle)
         return self.hardness * (a * tool.contact_area(depth, angle) + b * tool.displaced_volume(depth, angle))
 
-    def _at(self, name: str, at_zero: float, slope: float, angle: FloatArray) -> FloatArray:
+    def _coefficient_at(self, name: str, at_zero: float, slope: float, angle: FloatArray) -> FloatArray:
         value: FloatArray = at_zero + slope * angle
         if np.any(value < 0):
             worst = float(angle.flat[int(np.argmin(value))])

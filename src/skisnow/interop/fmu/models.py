@@ -51,7 +51,7 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
     sides = SIDES if skis == len(SIDES) else ("ski",)
     runner = Runner.of(scenario.ski)
     contact = SnowContact(setup.snow, [runner] * skis, spacing=setup.numbers["line_spacing_m"])
-    inputs = [variable for k, side in enumerate(sides) for variable in _pose(side, setup, k)]
+    inputs = [variable for k, side in enumerate(sides) for variable in _pose_variables(side, setup, k)]
     outputs = [
         variable
         for side in sides
@@ -138,7 +138,7 @@ def _snow_parameters(snow: SnowField) -> tuple[Variable, ...]:
     )
 
 
-def _pose(side: str, setup: Setup, ski: int) -> list[Variable]:
+def _pose_variables(side: str, setup: Setup, ski: int) -> list[Variable]:
     dynamics = setup.dynamics
     place = dynamics.position + dynamics.rotation @ dynamics.body.skis[ski].boot
     axes = dynamics.rotation @ dynamics.body.skis[ski].axes.T

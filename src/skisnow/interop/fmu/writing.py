@@ -61,7 +61,7 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
     _require(path, fmi)
     if skis not in (1, 2):
         raise ParameterError("skis is {skis!r}; an FMU of the contact has 1 or 2").tag("out_of_range", skis=skis)
-    return _write(contact_model(scenario, skis=skis, step=STEP["contact"]), Path(path), fmi)
+    return _write_fmu(contact_model(scenario, skis=skis, step=STEP["contact"]), Path(path), fmi)
 
 
 def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) -> Path:
@@ -93,7 +93,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     * The page docs/how-to/other-programs.md.
     """
     _require(path, fmi)
-    return _write(sledge_model(scenario, step=STEP["sledge"]), Path(path), fmi)
+    return _write_fmu(sledge_model(scenario, step=STEP["sledge"]), Path(path), fmi)
 
 
 def _require(path: str | Path, fmi: int) -> None:
@@ -109,7 +109,7 @@ def _require(path: str | Path, fmi: int) -> None:
         )
 
 
-def _write(model: Model, path: Path, fmi: Version) -> Path:
+def _write_fmu(model: Model, path: Path, fmi: Version) -> Path:
     library = c_library().read_bytes()
     digest = hashlib.sha256(library + model.data.encode() + repr(model).encode()).hexdigest()
     token = "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32]))
@@ -147,7 +147,7 @@ _STATE: Final = {
 
 def description(model: Model, token: str, *, fmi: Version) -> bytes:
     """The file, as one of the two standards has it."""
-    root = ET.Element("fmiModelDescription", _head(model, token, fmi))
+    root = ET.Element("fmiModelDescription", _head_attributes(model, token, fmi))
     capabilities = {
         "modelIdentifier": IDENTIFIER,
         "canHandleVariableCommunicationStepSize": "true",
@@ -165,12 +165,12 @@ def description(model: Model, token: str, *, fmi: Version) -> bytes:
     variables = ET.SubElement(root, "ModelVariables")
     for number, exported in offered:
         (_variable_2 if fmi == 2 else _variable_3)(variables, number, exported)
-    _structure(root, offered, fmi)
+    _add_structure(root, offered, fmi)
     ET.indent(root)
     return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="utf-8") + b"\n"
 
 
-def _head(model: Model, token: str, fmi: Version) -> dict[str, str]:
+def _head_attributes(model: Model, token: str, fmi: Version) -> dict[str, str]:
     return {
         "fmiVersion": f"{fmi}.0",
         "modelName": model.name,
@@ -182,7 +182,7 @@ def _head(model: Model, token: str, fmi: Version) -> dict[str, str]:
     }
 
 
-def _attributes(number: int, variable: Variable) -> dict[str, str]:
+def _variable_attributes(number: int, variable: Variable) -> dict[str, str]:
     variability = "fixed" if variable.causality == "parameter" else "continuous"
     return {
         "name": variable.name,
@@ -193,23 +193,25 @@ def _attributes(number: int, variable: Variable) -> dict[str, str]:
     }
 
 
-def _quantity(variable: Variable) -> dict[str, str]:
+def _unit_and_start(variable: Variable) -> dict[str, str]:
     starts = variable.causality in ("parameter", "input")
     return {"unit": variable.unit} | ({"start": repr(variable.start)} if starts else {})
 
 
 def _variable_2(variables: ET.Element, number: int, variable: Variable) -> None:
     ET.SubElement(
-        ET.SubElement(variables, "ScalarVariable", _attributes(number, variable)), "Real", _quantity(variable)
+        ET.SubElement(variables, "ScalarVariable", _variable_attributes(number, variable)),
+        "Real",
+        _unit_and_start(variable),
     )
 
 
 def _variable_3(variables: ET.Element, number: int, variable: Variable) -> None:
-    ET.SubElement(variables, "Float64", _attributes(number, variable) | _quantity(variable))
+    ET.SubElement(variables, "Float64", _variable_attributes(number, variable) | _unit_and_start(variable))
 
 
-def _structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Version) -> None:
-    """List of the outputs by position (2.0, from 1) or by reference (3.0)."""
+def _add_structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Version) -> None:
+    """Add the list of the outputs, by position from 1 (FMI 2.0) or by value reference (FMI 3.0)."""
     structure = ET.SubElement(root, "ModelStructure")
     outputs = [
         str(place if fmi == 2 else number)

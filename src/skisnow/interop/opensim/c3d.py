@@ -62,7 +62,7 @@ def read_c3d(path: str | Path) -> Markers:
     about = {name: values for (group, name), values in content.parameters.items() if group == "POINT"}
     rate, first, points = content.rate, content.first_frame, content.points
     labels, units = _labels_and_units(about)
-    quantities = {name for group in _GROUPS for name in _words(about, group)}
+    quantities = {name for group in _GROUPS for name in _texts_of(about, group)}
     names = labels[: points.shape[1]]
     columns = [i for i, name in enumerate(names) if name and not _is_quantity(name, quantities)]
     if not columns:
@@ -95,14 +95,14 @@ def _labels_and_units(about: Mapping[str, Values]) -> tuple[list[str], list[str]
     units: list[str] = []
     blocks = (str(number) if number > 1 else "" for number in count(1))
     for block in takewhile(lambda block: f"LABELS{block}" in about, blocks):
-        names, of_block = _words(about, f"LABELS{block}"), _words(about, f"UNITS{block}")
+        names, of_block = _texts_of(about, f"LABELS{block}"), _texts_of(about, f"UNITS{block}")
         labels += names
         one = next(iter(of_block or units), "")
         units += [unit.lower() for unit in (of_block if len(of_block) == len(names) else [one] * len(names))]
     return labels, units
 
 
-def _words(about: Mapping[str, Values], key: str) -> list[str]:
+def _texts_of(about: Mapping[str, Values], key: str) -> list[str]:
     return [word for word in about.get(key, ()) if isinstance(word, str)]
 
 
@@ -240,7 +240,7 @@ def c3d_content(data: bytes) -> C3dContent:
             raise ParameterError("the processor has the number {processor}; it must be 84, 85 or 86").tag(
                 "out_of_range", processor=processor
             )
-        parameters = dict(_parameters(data, start + 4, processor))
+        parameters = dict(_read_parameters(data, start + 4, processor))
         order = _ORDERS[processor]
         count, analogs, first, last = struct.unpack_from(f"{order}4H", data, 2)
         (begin,) = struct.unpack_from(f"{order}H", data, 16)
@@ -260,7 +260,7 @@ def _number(parameters: Mapping[tuple[str, str], Values], key: tuple[str, str], 
     return numbers[0] if len(numbers) == 1 and isinstance(numbers[0], float) and math.isfinite(numbers[0]) else default
 
 
-def _parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[str, str], Values]]:
+def _read_parameters(data: bytes, at: int, processor: int) -> Iterator[tuple[tuple[str, str], Values]]:
     groups: dict[int, str] = {}
     parameters: list[tuple[int, str, Values]] = []
     while True:

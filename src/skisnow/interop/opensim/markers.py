@@ -192,8 +192,8 @@ def boots_of_markers(
 def _pose(markers: Markers, of: BootMarkers, turned: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Places (n, 3) and axes (n, 3, 3), rows ahead, left and off the base."""
     heel, toe, left = (_complete_places(markers, name) @ turned.T for name in (of.heel, of.toe, of.left))
-    ahead = _unit(toe - heel, of)
-    off = _unit(np.cross(ahead, left - heel), of)
+    ahead = _unit_vectors(toe - heel, of)
+    off = _unit_vectors(np.cross(ahead, left - heel), of)
     axes = np.stack([ahead, np.cross(off, ahead), off], axis=1)
     return heel + np.einsum("c,nca->na", np.asarray(of.sole), axes), axes
 
@@ -216,7 +216,7 @@ def _complete_places(markers: Markers, name: str) -> FloatArray:
     return place
 
 
-def _unit(vectors: FloatArray, of: BootMarkers) -> FloatArray:
+def _unit_vectors(vectors: FloatArray, of: BootMarkers) -> FloatArray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not np.all(length > 1e-9):
         raise ParameterError(

@@ -87,7 +87,7 @@ def read_motion(path: str | Path) -> MotionTable:
     first = ends + 2
     rows = [(i + 1, line.split()) for i, line in enumerate(lines[first:], start=first) if line.strip()]
     require_whole(path, head, nRows=len(rows), nColumns=len(names))
-    numbers = np.array([_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
+    numbers = np.array([_parse_numbers(path, number, cells, names) for number, cells in rows]).reshape(-1, len(names))
     others = {key: value for key, value in head.items() if key.lower() not in _OWN_KEYS}
     in_degrees = is_in_degrees(path, head)
     try:
@@ -97,7 +97,7 @@ def read_motion(path: str | Path) -> MotionTable:
         raise error.at(path) from error
 
 
-def _numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
+def _parse_numbers(path: str | Path, number: int, cells: list[str], names: list[str]) -> list[float]:
     if len(cells) != len(names):
         raise ParameterError("{path}, line {number}: {n_cells} cells for {n_names} names of columns").tag(
             "wrong_number_of_cells", path=path, number=number, n_cells=len(cells), n_names=len(names)
