@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from skisnow.carving.edge_line import EdgeLine, circle_radius
-from skisnow.carving.equilibrium import _make_conditions, carve, rest
+from skisnow.carving.equilibrium import _conditions, carve, rest
 from skisnow.carving.result import Equilibrium
 from skisnow.carving.solve import solved
 from skisnow.ski import Ski, read_ski
@@ -292,7 +292,7 @@ def test_circle_through_three_points(radius: float) -> None:
 def test_the_straight_sides_of_a_flat_ski_lie_on_no_circle() -> None:
     ski = plain_ski()
     model = clamped(ski, 0.3, 40)
-    line = EdgeLine(model, 0.0, solved(model, _make_conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, False, False)))
+    line = EdgeLine(model, 0.0, solved(model, _conditions(ski, snow(0.2), 0.0, 400.0, 0.0, 1.0, False, False)))
     assert line.radius_at_boot() is None
     with pytest.raises(ValueError, match="straight edge line"):
         line.offset_from_circle()

@@ -214,10 +214,10 @@ def test_far_below_0_an_improvement_is_that_of_the_scaled_error_function() -> No
 
 
 def test_who_misses_a_gate_has_less_margin_than_who_straddles_its_pole() -> None:
-    from skisnow.racing.score import ABREAST, _margin
+    from skisnow.racing.score import ABREAST, _margin_of_passage
 
     found = [
-        _margin(cast("Any", SimpleNamespace(clearance=clearance, outcome=outcome)))
+        _margin_of_passage(cast("Any", SimpleNamespace(clearance=clearance, outcome=outcome)))
         for clearance, outcome in ((-0.2, "missed"), (-0.2, "straddled"), (0.3, "passed"), (None, "not_reached"))
     ]
     assert found == [-0.2 - ABREAST, -0.2, 0.3, None]

@@ -222,7 +222,7 @@ def test_no_text_of_a_german_turn_is_left_in_english(chain: TurnChain) -> None:
     names = frozenset({chain.campaign, chain.site, chain.snow.source, *chain.runs, *CHOICES, "Hypoplastic,"})
 
     def page(language: str) -> str:
-        pictures = drawn(turn_report._drawings(chain), names, language)
+        pictures = drawn(turn_report._make_drawings(chain), names, language)
         return turn_report.turn_page(chain, pictures, language=language)
 
     assert left(page, names, fewest=120) == set()

@@ -172,12 +172,10 @@ class Shown:
         kind = type(self).__name__
         head = f"<{kind} {title}" if title else f"<{kind}"
         if not rows:
-            return f"{_clip_line(head)}>"
+            return f"{_clip(head)}>"
         few = _limit_rows(rows)
         width = max(len(name) for name, _ in few)
-        return (
-            "\n".join([_clip_line(head), *(_clip_line(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
-        )
+        return "\n".join([_clip(head), *(_clip(f"  {name.ljust(width)}  {text}") for name, text in few)]) + ">"
 
     def _repr_html_(self) -> str:
         """The same as a table with a small figure, which a notebook shows."""
@@ -283,7 +281,7 @@ def _limit_rows(rows: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...
     return (*rows[: MOST_ROWS - 1], ("also", rest))
 
 
-def _clip_line(line: str) -> str:
+def _clip(line: str) -> str:
     plain = " ".join(line.split("\n"))
     return plain if len(plain) <= _WIDEST else f"{plain[: _WIDEST - 1]}…"
 

@@ -151,8 +151,7 @@ def workbook_bytes(name: str) -> bytes:
     book = Workbook()
     book.remove(book.active)
     described = [
-        (key, _number_or_text(value), quantity.unit, quantity.meaning)
-        for key, value, quantity in keys_with_values(name)
+        (key, _as_cell(value), quantity.unit, quantity.meaning) for key, value, quantity in keys_with_values(name)
     ]
     _fill_sheet(book.create_sheet(CAMPAIGN), ("key", "value", "unit", "meaning"), [*described, _OBSERVERS])
     _fill_sheet(
@@ -178,7 +177,7 @@ def workbook_bytes(name: str) -> bytes:
 _OBSERVERS: Final = ("observers", "", "", "who; several are parted by semicolons")
 
 
-def _number_or_text(text: str) -> str | float:
+def _as_cell(text: str) -> str | float:
     try:
         return float(text)
     except ValueError:

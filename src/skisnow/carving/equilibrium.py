@@ -153,9 +153,7 @@ def carve(
         require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     forms = side_force_bending, twist, side_force_spread, moment_balance
-    conditions = _under(
-        laws, ski, _make_conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
-    )
+    conditions = _under(laws, ski, _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms))
     find = solved if groove == "edge" else _following_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -197,7 +195,7 @@ def differentiable_carve(
     require_strength(snow)
     model = clamped(ski, clamp_length, elements)
     forms = side_force_bending, twist, side_force_spread, moment_balance
-    conditions = _make_conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
     solution = solved(model, conditions, near=near if near is not None and len(near.u) == model.size else None)
     if not solution.converged:
         return None
@@ -255,7 +253,7 @@ def rest(
     require_ranges(edge_angle, load, 1.0, moment)
     require_within(ski, load, moment)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
-    conditions = _make_conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
+    conditions = _conditions(ski, snow, edge_angle, load, moment, 1.0, False, twist)._replace(side_force=0.0)
     return equilibrium_of(model, conditions, snow, solved(model, conditions))
 
 
@@ -277,7 +275,7 @@ def _under(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Condition
     return conditions._replace(laws=laws, hardness=hardness, excess=hardness * (ratio - 1.0))
 
 
-def _make_conditions(
+def _conditions(
     ski: Ski,
     snow: SnowProperties,
     edge_angle: float,

@@ -267,15 +267,11 @@ class CarveDerivatives:
 
     def force_at(self, place: FloatArray) -> FloatArray:
         """Force per length (N/m) at places (m), linear between the stations."""
-        return np.interp(place, self._rising_stations, self.at.solution.force_per_length[::-1])
+        return np.interp(place, self._rising, self.at.solution.force_per_length[::-1])
 
     def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
         """Growth of `force_at` with a parameter, per its unit; stations may move with it."""
-        force, rising, shape = (
-            self.at.solution.force_per_length[::-1],
-            self._rising_stations,
-            self._direction(parameter).shape,
-        )
+        force, rising, shape = (self.at.solution.force_per_length[::-1], self._rising, self._direction(parameter).shape)
         out = np.interp(place, rising, self.force_growth(parameter)[::-1])
         if shape is None or not shape.moves:
             return out
@@ -284,7 +280,7 @@ class CarveDerivatives:
         return np.asarray(out - slope * np.interp(place, rising, shape.place[::-1]))
 
     @property
-    def _rising_stations(self) -> FloatArray:
+    def _rising(self) -> FloatArray:
         return self.request.model.stations.station[::-1]
 
     def fields(self, output: str) -> dict[str, FloatArray]:

@@ -234,7 +234,7 @@ class ShapeGradient:
     def _add_edge(self, model: ClampedSki, u: FloatArray, node: FloatArray) -> None:
         """Add the growth with the nodes that deflection and twist at fixed places give, for the same unknowns."""
         element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
-        value, length = _values_by_node(model, u)[element], _element_lengths(model)[element]
+        value, length = _by_node(model, u)[element], _element_lengths(model)[element]
         local, (by_deflection, by_twist) = (model.node[element] - self.edge) / length, self.by_edge[2:]
         slope = np.sum(slope_shape(local, length) * value, axis=1)
         forward = by_deflection * slope + by_twist * (value[:, 5] - value[:, 2]) / length
@@ -249,9 +249,7 @@ def _by_stretch(model: ClampedSki, stiffness: FloatArray, u: FloatArray, adjoint
     length, curvature = _curvature(model)
     falls = -np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
     (own, turn), (back, turn_back) = (curvature_and_turn(model, unknowns) for unknowns in (u, adjoint))
-    own_falls, back_falls = (
-        np.einsum("ngi,ni->ng", falls, _values_by_node(model, unknowns)) for unknowns in (u, adjoint)
-    )
+    own_falls, back_falls = (np.einsum("ngi,ni->ng", falls, _by_node(model, unknowns)) for unknowns in (u, adjoint))
     moment = stiffness[0] * ((own_falls + own) * back + own * back_falls) - stiffness[1] * turn * turn_back
     return np.asarray(moment @ GAUSS_WEIGHTS * length)
 
@@ -274,7 +272,7 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
     if not (lengthens or growth.stiffens):
         return out
     bending, torsion = growth.stiffness
-    value, (length, curvature) = _values_by_node(model, u), _curvature(model)
+    value, (length, curvature) = _by_node(model, u), _curvature(model)
     kappa, turn = curvature_and_turn(model, u)
     weight = GAUSS_WEIGHTS * length[:, None]
     force = np.einsum("ng,ngi->ni", weight * bending * kappa, curvature)
@@ -296,7 +294,7 @@ def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
 
 def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Curvature at the Gauss points (n, 4) and rate of twist of the elements (n, 1) for unknowns of the beam."""
-    value, (length, curvature) = _values_by_node(model, u), _curvature(model)
+    value, (length, curvature) = _by_node(model, u), _curvature(model)
     return np.einsum("ngi,ni->ng", curvature, value), (value[:, 5:] - value[:, 2:3]) / length[:, None]
 
 
@@ -339,7 +337,7 @@ def growth_by_tables(
     return out
 
 
-def _values_by_node(model: ClampedSki, u: FloatArray) -> FloatArray:
+def _by_node(model: ClampedSki, u: FloatArray) -> FloatArray:
     return np.append(u, 0.0)[model.dof]  # -1: held
 
 

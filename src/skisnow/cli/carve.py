@@ -242,21 +242,16 @@ def _design_summary(design: Design) -> str:
     before, after, change, rounded = map(str, names)
     condition, output = str(Message("condition")), str(Message("output"))
     lines = [f"{Message('variable')!s:24} {after:>12}"]
-    lines += [f"{name:24} {_number_text(value, '12.6g')}" for name, value in design.values.items()]
+    lines += [f"{name:24} {_number(value, '12.6g')}" for name, value in design.values.items()]
     lines += ["", f"{condition:>9}  {output:26} {before:>11} {after:>11} {change:>10} {rounded:>11}"]
     for row in design.rows:
-        numbers = (
-            _number_text(row.before),
-            _number_text(row.after),
-            _number_text(row.change_percent, "10.3g"),
-            _number_text(row.rounded),
-        )
+        numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "10.3g"), _number(row.rounded))
         lines.append("{:9}  {:26} {} {} {} {}".format(row.condition, row.output, *numbers))
     lines += ["", str(Message("local optima, with the share of starts that reached them, and their objective:"))]
-    lines += [f"  {optimum.share:5.0%}  {_number_text(optimum.result, '.6g')}" for optimum in design.optima]
+    lines += [f"  {optimum.share:5.0%}  {_number(optimum.result, '.6g')}" for optimum in design.optima]
     lines += ["", *map(str, design.remarks), str(Message("equilibria: {count}", count=design.equilibria))]
     return "\n".join(lines)
 
 
-def _number_text(value: float | None, form: str = "11.6g") -> str:
+def _number(value: float | None, form: str = "11.6g") -> str:
     return " " * int(form.partition(".")[0]) if value is None else local_number(f"{value:{form}}")

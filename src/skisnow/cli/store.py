@@ -82,21 +82,14 @@ def run(args: argparse.Namespace) -> int:
     """Run the subcommand; returns 1 if verify found damage, else 0."""
     from ..campaign.store import Store
 
-    act = {
-        "add": _add_campaign,
-        "list": _list_campaigns,
-        "show": _show_campaign,
-        "export": _export_campaign,
-        "verify": _verify_store,
-        "sync": _sync_stores,
-    }
+    act = {"add": _add, "list": _list, "show": _show, "export": _export, "verify": _verify, "sync": _sync}
     with Store.open(args.store, create=args.action in ("add", "sync")) as store:
         answer, text, code = act[args.action](store, args)
     print(json.dumps(answer, indent=2, allow_nan=False) if args.json else text)
     return code
 
 
-def _add_campaign(store: Store, args: argparse.Namespace) -> Answer:
+def _add(store: Store, args: argparse.Namespace) -> Answer:
     with _percent_printed("keeping") as progress:
         added = store.add(args.folder, progress=progress)
     if added.check_failure is not None:
@@ -111,7 +104,7 @@ def _add_campaign(store: Store, args: argparse.Namespace) -> Answer:
     return asdict(added), text, 0
 
 
-def _list_campaigns(store: Store, _: argparse.Namespace) -> Answer:
+def _list(store: Store, _: argparse.Namespace) -> Answer:
     from ..campaign.store import Journals
 
     stored, entered = store.list(), Journals(store).list()
@@ -120,7 +113,7 @@ def _list_campaigns(store: Store, _: argparse.Namespace) -> Answer:
     return answer, "\n".join(lines), 0
 
 
-def _show_campaign(store: Store, args: argparse.Namespace) -> Answer:
+def _show(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import JournalHead, entered_files, find_campaign
 
     campaign = find_campaign(store, args.id)
@@ -132,7 +125,7 @@ def _show_campaign(store: Store, args: argparse.Namespace) -> Answer:
     return {**as_json, "files": list(map(asdict, files))}, "\n".join(lines), 0
 
 
-def _export_campaign(store: Store, args: argparse.Namespace) -> Answer:
+def _export(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import ExportedCampaign, JournalHead, export_corrected, find_campaign
 
     campaign = find_campaign(store, args.id)
@@ -160,14 +153,14 @@ def _export_entered(store: Store, head: JournalHead, args: argparse.Namespace) -
     return {**asdict(head), "out": str(args.out)}, f"{_entered_line(head)}, written to {args.out}", 0
 
 
-def _verify_store(store: Store, _: argparse.Namespace) -> Answer:
+def _verify(store: Store, _: argparse.Namespace) -> Answer:
     with _percent_printed("verifying") as progress:
         findings = store.verify(progress=progress)
     lines = [str(finding) for finding in findings] or ["All is sound."]
     return {"findings": [asdict(finding) for finding in findings]}, "\n".join(lines), 1 if findings else 0
 
 
-def _sync_stores(store: Store, args: argparse.Namespace) -> Answer:
+def _sync(store: Store, args: argparse.Namespace) -> Answer:
     from ..campaign.store import Store, sync
 
     with Store.open(_group_place(args.group)) as group, _percent_printed("synchronising") as progress:

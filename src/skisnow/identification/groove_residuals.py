@@ -100,7 +100,7 @@ class GrooveResiduals:
     @property
     def series(self) -> tuple[int, ...]:
         """Number of depths, widths and radii that are used."""
-        return tuple(int(np.sum(use)) for _, _, use in self._measured_columns())
+        return tuple(int(np.sum(use)) for _, _, use in self._columns())
 
     def residuals(self, many: Sequence[Values], *, final: bool = False) -> list[FloatArray | None]:  # noqa: ARG002
         """(Computed - measured)/sd of depths, widths, radii."""
@@ -165,7 +165,7 @@ class GrooveResiduals:
         use = np.isfinite(self.measured.turn_radius)
         return float(np.sum(self.measured.turn_radius_sd[use] ** -2.0) ** -0.5) if use.any() else math.nan
 
-    def _measured_columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
+    def _columns(self) -> list[tuple[FloatArray, FloatArray, BoolArray]]:
         grooves = self.measured
         return [
             (grooves.depth, grooves.depth_sd, np.isfinite(grooves.depth)),
@@ -179,8 +179,7 @@ class GrooveResiduals:
             return None
         computed = (groove.depth, groove.width, self._turn_radius(values, groove))
         parts = [
-            (one - measured[use]) / sd[use]
-            for one, (measured, sd, use) in zip(computed, self._measured_columns(), strict=True)
+            (one - measured[use]) / sd[use] for one, (measured, sd, use) in zip(computed, self._columns(), strict=True)
         ]
         return np.concatenate(parts)
 

@@ -103,7 +103,7 @@ def _measurements_xml(pit: SnowPit) -> Iterator[str]:
     if pit.air_temperature_C is not None:
         yield _nested("weatherCond", _element_xml("airTempPres", _number(pit.air_temperature_C), uom="degC"))
     if pit.snow_height is not None:
-        yield _nested("snowPackCond/hS/Components", _centimetres_xml("height", pit.snow_height))
+        yield _nested("snowPackCond/hS/Components", _cm_xml("height", pit.snow_height))
     if pit.layers:
         yield _nested("stratProfile", "<caaml:stratMetaData/>" + "".join(map(_layer_xml, pit.layers)))
     if pit.temperatures:
@@ -142,14 +142,12 @@ def _temperature_xml(observed: DepthTemperature) -> str:
             "cannot_write", temperature_c=observed.temperature_C
         )
     temperature = _element_xml("snowTemp", _number(observed.temperature_C), uom="degC")
-    return _nested("Obs", _centimetres_xml("depth", observed.depth) + temperature)
+    return _nested("Obs", _cm_xml("depth", observed.depth) + temperature)
 
 
 def _extent(layer: SnowLayer | LayerDensity) -> str:
     """Depth of the top, and the thickness where it is known."""
-    return _centimetres_xml("depthTop", layer.top) + (
-        "" if layer.thickness is None else _centimetres_xml("thickness", layer.thickness)
-    )
+    return _cm_xml("depthTop", layer.top) + ("" if layer.thickness is None else _cm_xml("thickness", layer.thickness))
 
 
 def _forces_xml(profile: ForceProfile) -> str:
@@ -200,7 +198,7 @@ def _printable(text: str) -> str:
     return re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", " ", text)
 
 
-def _centimetres_xml(name: str, length: float) -> str:
+def _cm_xml(name: str, length: float) -> str:
     return _element_xml(name, _number(length / CM), uom="cm")
 
 

@@ -106,7 +106,7 @@ def _pit_header(pit: SnowPit) -> Iterable[Sequence[str]]:
     yield "# Date/Local Time", pit.time or NO_DATA
     yield "# Latitude", _number_text(pit.latitude_deg)
     yield "# Longitude", _number_text(pit.longitude_deg)
-    yield "# HS (cm)", _centimetres(pit.snow_height)
+    yield "# HS (cm)", _cm(pit.snow_height)
 
 
 def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], list[Sequence[str]]]]:
@@ -121,10 +121,7 @@ def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str
     yield (
         "temperature",
         TEMPERATURE,
-        [
-            (_centimetres(height - temperature.depth), f"{temperature.temperature_C:g}")
-            for temperature in pit.temperatures
-        ],
+        [(_cm(height - temperature.depth), f"{temperature.temperature_C:g}") for temperature in pit.temperatures],
     )
     yield (
         "stratigraphy",
@@ -144,10 +141,10 @@ def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str
 
 
 def _top_and_bottom(height: float, top: float, thickness: float | None) -> tuple[str, str]:
-    return _centimetres(height - top), NO_DATA if thickness is None else _centimetres(height - top - thickness)
+    return _cm(height - top), NO_DATA if thickness is None else _cm(height - top - thickness)
 
 
-def _centimetres(length: float | None) -> str:
+def _cm(length: float | None) -> str:
     return NO_DATA if length is None else f"{length / CM:.10g}"
 
 

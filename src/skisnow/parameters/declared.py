@@ -75,19 +75,19 @@ class _Slot(NamedTuple):
 
 def own_quantities(owner: type) -> tuple[Quantity, ...]:
     """The quantities of a dataclass's own fields, in their order."""
-    return tuple(quantity for slot in _slots(owner) for quantity in slot.own)
+    return tuple(quantity for slot in _slots_of(owner) for quantity in slot.own)
 
 
 def quantities(owner: type) -> tuple[Quantity, ...]:
     """The quantities of a dataclass and of its nested dataclasses, by section in the order of first occurrence."""
-    listed = list(_all(owner))
-    sections = list(dict.fromkeys(_section(quantity) for quantity in listed))
-    return tuple(sorted(listed, key=lambda quantity: sections.index(_section(quantity))))
+    listed = list(_all_quantities(owner))
+    sections = list(dict.fromkeys(_section_name(quantity) for quantity in listed))
+    return tuple(sorted(listed, key=lambda quantity: sections.index(_section_name(quantity))))
 
 
 def require_declared(thing: Any) -> None:
     """Raise an error for values that a file could not contain; ``__post_init__`` of a dataclass calls it."""
-    for slot in _slots(type(thing)):
+    for slot in _slots_of(type(thing)):
         value = getattr(thing, slot.field.name)
         if value is not None or not slot.may_be_none:
             for quantity in slot.own:
@@ -134,7 +134,7 @@ def build_declared(owner: type[T], values: Mapping[str, Any], *, section: str = 
             )
         elif value is not None:
             parts.setdefault(quantity.field, quantity.in_si(value))
-    for slot in _slots(owner):
+    for slot in _slots_of(owner):
         if len(slot.parts) == 1 and slot.field.name not in parts:
             parts[slot.field.name] = build_declared(slot.parts[0], values, section=slot.section.name)
     for name, entries in several.items():
@@ -152,7 +152,7 @@ def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") 
     Step(length=0.002)
     """
     parts: dict[str, Any] = {}
-    for slot in _slots(type(thing)):
+    for slot in _slots_of(type(thing)):
         current = getattr(thing, slot.field.name)
         for quantity in slot.own:
             name = _full(section, quantity.name)
@@ -183,7 +183,7 @@ def _loses_effect(quantity: Quantity, values: Mapping[str, Any]) -> bool:
 def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
     """Values of a dataclass and of nested ones, by name, in the units of the names."""
     values: dict[str, Any] = {}
-    for slot in _slots(type(thing)):
+    for slot in _slots_of(type(thing)):
         value = getattr(thing, slot.field.name)
         for quantity in slot.own:
             single = value if quantity.index is None else value[quantity.index]
@@ -223,8 +223,8 @@ def _in_short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _all(owner: type) -> Iterator[Quantity]:
-    for slot in _slots(owner):
+def _all_quantities(owner: type) -> Iterator[Quantity]:
+    for slot in _slots_of(owner):
         yield from slot.own
         otherwise = slot.section.otherwise
         for part in slot.parts:
@@ -238,20 +238,20 @@ def _full(section: str, name: str) -> str:
     return f"{section}.{name}" if section and "." not in name else name
 
 
-def _section(quantity: Quantity) -> str:
+def _section_name(quantity: Quantity) -> str:
     return quantity.name.rpartition(".")[0]
 
 
 _SLOTS: dict[type, tuple[_Slot, ...]] = {}
 
 
-def _slots(owner: type) -> tuple[_Slot, ...]:
+def _slots_of(owner: type) -> tuple[_Slot, ...]:
     if owner not in _SLOTS:
-        _SLOTS[owner] = tuple(_slot(owner, field) for field in fields(owner) if field.init)
+        _SLOTS[owner] = tuple(_make_slot(owner, field) for field in fields(owner) if field.init)
     return _SLOTS[owner]
 
 
-def _slot(owner: type, field: Field[Any]) -> _Slot:
+def _make_slot(owner: type, field: Field[Any]) -> _Slot:
     hint = field.type
     if isinstance(hint, str):  # postponed; `get_type_hints` needs all names, also those imported for type checking only
         hint = eval(hint, dict(vars(sys.modules[owner.__module__])))

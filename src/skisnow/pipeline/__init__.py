@@ -112,7 +112,7 @@ def turn(
       force-penetration relation", Scand. J. Med. Sci. Sports, doi 10.1111/sms.12035.
     * The page docs/how-to/in-python.md.
     """
-    _require(unloading_ratio, shear_displacement, runs)
+    _require_inputs(unloading_ratio, shear_displacement, runs)
     workers = worker_count(workers)
     say = progress or (lambda *_: None)
     analysis = campaign if isinstance(campaign, Analysis) else _analysed(campaign, site, progress)
@@ -130,7 +130,7 @@ def turn(
         Message("hypoplastic, k_u / H_V = {ratio:.3g}", ratio=snow.unloading_ratio): turn,
         Message("elastic"): turn.with_(unloading_ratio=ELASTIC),
     }
-    simulated = {name: _run(name, contact, say) for name, contact in contacts.items()}
+    simulated = {name: _simulate_with_contact(name, contact, say) for name, contact in contacts.items()}
     nominal = next(iter(simulated.values()))
     ensemble, moved, warnings = ensemble_of(nominal, drawn, every, workers=workers, progress=say)
     return TurnChain(
@@ -158,7 +158,7 @@ def _analysed(campaign: Campaign | str | Path, site: str | None, progress: Calla
     return analyse(read, progress=progress)
 
 
-def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
+def _simulate_with_contact(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
     say(f"the turn with the contact “{contact}”")
     run = simulate(turn)
     if run.outcome == "interrupted":
@@ -166,7 +166,7 @@ def _run(contact: str, turn: Scenario, say: Callable[[str], None]) -> Run:
     return run
 
 
-def _require(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
+def _require_inputs(unloading_ratio: float | None, shear_displacement: float | None, runs: int) -> None:
     if unloading_ratio is not None and not unloading_ratio > ELASTIC:
         raise ParameterError(
             "unloading_ratio is {unloading_ratio}; k_u/H_V must be above 1 here: elastic snow is the other contact"

@@ -117,9 +117,9 @@ class PointRacer:
                 x, step = low + i * (high - low) / count, (high - low) / count
                 square, time = self._runge_kutta_step(line, x, square, time, step)
                 if not square > SLOWEST**2:
-                    return _columns(rows)
+                    return _as_columns(rows)
                 rows.append((x + step, square, time))
-        return _columns(rows)
+        return _as_columns(rows)
 
     def _runge_kutta_step(self, line: Line, x: float, square: float, time: float, step: float) -> tuple[float, float]:
         inside = 1e-9 * step  # a line bends differently before and behind a break
@@ -157,7 +157,7 @@ class PointRacer:
         return own_score
 
 
-def _columns(rows: list[tuple[float, float, float]]) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _as_columns(rows: list[tuple[float, float, float]]) -> tuple[FloatArray, FloatArray, FloatArray]:
     x, square, time = np.array(rows).T
     return x, square, time
 

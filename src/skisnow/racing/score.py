@@ -59,7 +59,7 @@ def score_of(result: CourseResult | None, end: tuple[float, float], *, finished:
         return Score(value=float("inf"), time=None, passed=0, words=words)
     times = [None if passage.time is None else passage.time - result.start_time for passage in result.passages]
     gates = tuple((passage.outcome, time) for passage, time in zip(result.passages, times, strict=True))
-    margins = tuple(_margin(passage) for passage in result.passages)
+    margins = tuple(_margin_of_passage(passage) for passage in result.passages)
     last = times[-1]
     if finished and result.fault is None and last is not None:
         return Score(value=last, time=last, passed=result.passed, words=words, gates=gates, margins=margins)
@@ -91,7 +91,7 @@ def with_room(score: Score, room: float) -> Score:
     return replace(score, value=value, time=None, passed=score.passed - len(narrow), words=words, margins=margins)
 
 
-def _margin(passage: Passage) -> float | None:
+def _margin_of_passage(passage: Passage) -> float | None:
     if passage.clearance is None:
         return None
     return passage.clearance - (ABREAST if passage.outcome == "missed" else 0.0)

@@ -79,7 +79,7 @@ class Windows:
 
     def _whole(self, begun: RacingLine) -> Evaluated:
         """Candidates for the whole course: all turns alike if the start has that, else the start."""
-        batches = self._batches(begun, 0, len(begun.turns), len(begun.turns))
+        batches = self._make_batches(begun, 0, len(begun.turns), len(begun.turns))
         search, place = self._surrogate(batches, 0), self._place(begun, 0, len(begun.turns))
         if self.how.search == "surrogate" and search.starts_with_equal_turns(place):
             return search.minimise_equal_turns(place, self.how.evaluations)
@@ -88,7 +88,7 @@ class Windows:
 
     def _part(self, line: RacingLine, first: int, last: int, end: int) -> Evaluated:
         """Minimum over the turns from one gate to before another; the race ends at `end`."""
-        batches, place = self._batches(line, first, last, end), self._place(line, first, last)
+        batches, place = self._make_batches(line, first, last, end), self._place(line, first, last)
         how = self.how
         if how.search == "cma" or how.evaluations == 1:
             return minimise(
@@ -105,7 +105,7 @@ class Windows:
             settled=how.settled,
         )  # fmt: skip
 
-    def _batches(self, line: RacingLine, first: int, last: int, end: int) -> Batches:
+    def _make_batches(self, line: RacingLine, first: int, last: int, end: int) -> Batches:
         part, how = first_gates(line, end), self.how
 
         def point_of(place: FloatArray) -> LinePoint:

@@ -76,12 +76,12 @@ def replay_bytes(replay: Replay) -> bytes:
     groove.
     """
     arrays, described, at = [], {}, 0
-    for name, values in _arrays(thin_replay(replay)).items():
-        content, description = _pack(ARRAY_TYPES[name], values)
+    for name, values in _arrays_by_name(thin_replay(replay)).items():
+        content, description = _pack_array(ARRAY_TYPES[name], values)
         described[name] = description | {"start": at}
         arrays.append(content)
         at += len(content)
-    header = json.dumps(_words(replay) | {"arrays": described}, ensure_ascii=False, allow_nan=False).encode("utf-8")
+    header = json.dumps(_head(replay) | {"arrays": described}, ensure_ascii=False, allow_nan=False).encode("utf-8")
     header += b" " * (-len(header) % 4)
     return b"".join([MAGIC, struct.pack("<I", len(header)), header, *arrays])
 
@@ -103,7 +103,7 @@ def replay_of_bytes(content: bytes) -> Replay:
         arrays = {name: _unpack(content, 8 + length, description) for name, description in header["arrays"].items()}
         if not np.isin(np.rint(arrays["groove_ski"]), range(len(SKI_NAMES))).all():
             raise ParameterError("a piece of the groove belongs to no ski").tag("damaged")
-        return _build(header, arrays)
+        return _build_replay(header, arrays)
     except (ValueError, LookupError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         if isinstance(error, ParameterError) and not isinstance(error, ContentError):
             raise
@@ -137,7 +137,7 @@ def select_moments(replay: Replay, moments: IntArray) -> Replay:
     return replace(replay, skis=replace(skis, **along), **over)
 
 
-def _arrays(replay: Replay) -> dict[str, FloatArray]:
+def _arrays_by_name(replay: Replay) -> dict[str, FloatArray]:
     skis, groove = replay.skis, replay.groove
     arrays: dict[str, Any] = {
         name: getattr(replay, name)
@@ -170,7 +170,7 @@ def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
     }
 
 
-def _words(replay: Replay) -> dict[str, Any]:
+def _head(replay: Replay) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "title": replay.title,
@@ -196,7 +196,7 @@ def _skier_words(skier: ReplaySkier) -> dict[str, Any]:
     return {"height": skier.height, "weight": skier.weight, "joints": list(JOINTS), "parts": parts}
 
 
-def _pack(array_type: _ArrayType, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
+def _pack_array(array_type: _ArrayType, values: FloatArray) -> tuple[bytes, dict[str, Any]]:
     description: dict[str, Any] = {"type": array_type.type, "shape": list(values.shape), "unit": array_type.unit}
     if array_type.type == _EXACT:
         numbers: npt.NDArray[Any] = values.astype("<f4")
@@ -222,7 +222,7 @@ def _unpack(content: bytes, base: int, description: Mapping[str, Any]) -> FloatA
     return np.asarray(numbers.reshape(description["shape"]))
 
 
-def _build(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay:
+def _build_replay(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay:
     def some(*names: str, before: str = "") -> dict[str, Any]:
         return {name: arrays[f"{before}{name}"] for name in names}
 

@@ -91,7 +91,7 @@ def replay_of_run(
     ParameterError
         The run has no moment, or the gates are not pairs of finite numbers.
     """
-    setting = _setting(run)
+    setting = _setting_of_run(run)
     boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
     replay = assemble_replay(_arrays(run), setting, title=title, track=track, boots=boots)
     return replay if gates is None else replace(replay, gates=_gates(gates, setting.slope), gate_times=None)
@@ -112,7 +112,7 @@ def _arrays(run: Run) -> dict[str, FloatArray]:
     }  # fmt: skip
 
 
-def _setting(run: Run) -> Setting:
+def _setting_of_run(run: Run) -> Setting:
     scenario = run.scenario
     contact, sledge = scenario.contact, scenario.sledge
     stress = contact.snow.failure_shear_stress
@@ -184,7 +184,7 @@ def assemble_replay(
         curvature=np.nan_to_num(curvature),
         heading=arrays["heading"],
         depth=arrays["depth"],
-        skis=_skis(arrays, setting, boots),
+        skis=_skis_of_arrays(arrays, setting, boots),
         groove=_groove(arrays, setting.line_spacing),
         track=None if track is None else _on_the_snow(track, slope),
         gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
@@ -275,7 +275,7 @@ def _on_the_snow(track: ReplayTrack, slope: Slope) -> ReplayTrack:
     return ReplayTrack(name=track.name, place=place, time=track.time)
 
 
-def _skis(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None) -> ReplaySkis:
+def _skis_of_arrays(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None) -> ReplaySkis:
     ski, station = setting.ski, arrays["station"]
     at = ski.at(np.clip(station, float(ski.station[-1]), float(ski.station[0])))
     side = setting.stance_width / 2.0

@@ -331,10 +331,10 @@ class Glb:
         if self.channels:
             description["animations"] = [{"name": "run", "channels": self.channels, "samplers": self.samplers}]
         text = json.dumps(description | further, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-        chunks = _chunk(_JSON, text.encode("utf-8"), b" ") + _chunk(_BINARY, bytes(self.content), b"\0")
+        chunks = _padded_chunk(_JSON, text.encode("utf-8"), b" ") + _padded_chunk(_BINARY, bytes(self.content), b"\0")
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def _chunk(kind: int, data: bytes, filling: bytes) -> bytes:
+def _padded_chunk(kind: int, data: bytes, filling: bytes) -> bytes:
     data += filling * (-len(data) % 4)
     return struct.pack("<II", len(data), kind) + data

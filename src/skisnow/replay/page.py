@@ -77,14 +77,14 @@ def write_replay(
         The file cannot be written.
     """
     require_language(language)
-    shown = [_replay(run, title, track)]
+    shown = [_make_replay(run, title, track)]
     if ghost is not None:
-        shown.append(_replay(ghost, None, None))
+        shown.append(_make_replay(ghost, None, None))
     write_file(path, replay_page(*shown, language=language))
     return Path(path)
 
 
-def _replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrack | None) -> Replay:
+def _make_replay(run: Run | Replay | str | Path, title: str | None, track: ReplayTrack | None) -> Replay:
     if isinstance(run, Replay):
         if track is not None or title is not None:
             raise ParameterError(
@@ -108,7 +108,7 @@ def replay_page(run: Replay, ghost: Replay | None = None, *, language: str = ENG
         words=page_words(language),
         css=Markup(static_text(STYLE)),
         runs=[{"id": name, "base64": base64.b64encode(data).decode()} for name, data in content.items()],
-        modules=[{"name": name, "text": _module(name)} for name in MODULES],
+        modules=[{"name": name, "text": _script_text(name)} for name in MODULES],
     )
 
 
@@ -132,7 +132,7 @@ def static_text(name: str) -> str:
     return files(_PACKAGE).joinpath("static", name).read_text(encoding="utf-8")
 
 
-def _module(name: str) -> Any:
+def _script_text(name: str) -> Any:
     text = static_text(name)
     if any(words in text for words in _ENDS_A_SCRIPT):
         raise RuntimeError(f"{name} cannot be put into a page: it has {' or '.join(_ENDS_A_SCRIPT)} in it")

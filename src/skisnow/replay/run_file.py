@@ -72,12 +72,12 @@ def replay_of_file(
     try:
         with netcdf_file(path, "r", mmap=False) as file:
             content: Any = file  # its attributes are those of the file
-            arrays, values = _arrays(content), _scenario(content)
+            arrays, values = _read_arrays(content), _scenario(content)
             boots = _boots(content)
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         require_drawable(arrays)
         require_range("solver_line_spacing_m", spacing, 0.0, 1.0, above=True)
-        setting = _setting(path, values, outcome, spacing, ski)
+        setting = _make_setting(path, values, outcome, spacing, ski)
         return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
     except SkisnowError as error:
         if str(path.parent) in str(error) and not isinstance(error, ContentError):
@@ -91,7 +91,7 @@ def replay_of_file(
         raise _not_a_run(path, error) from error
 
 
-def _arrays(file: Any) -> dict[str, FloatArray]:
+def _read_arrays(file: Any) -> dict[str, FloatArray]:
     plain = {name: _values(file, name) for name in _PLAIN}
     vectors = {
         name: np.stack([_values(file, pattern.format(axis)) for axis in "xyz"], axis=-1)
@@ -127,8 +127,8 @@ def _values(file: Any, name: str) -> FloatArray:
     return values if missing is None else np.where(values == missing, np.inf, values)
 
 
-def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
-    ski, slope = ski or _ski(path, values), _slope(path, values)
+def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, ski: Ski | None) -> Setting:
+    ski, slope = ski or _read_ski(path, values), _read_slope(path, values)
     has_skier, edge_angle = values.get("skier.steers") is not None, needed_value(values, "sledge.edge_angle_deg")
     mass, inertia = needed_value(values, "sledge.mass_kg"), needed_value(values, "sledge.inertia_kg_m2")
     body = height_of(mass, inertia[0]), mass * needed_value(values, "slope.gravity_m_per_s2")
@@ -151,12 +151,12 @@ def _setting(path: Path, values: dict[str, Any], outcome: str, spacing: float, s
     )
 
 
-def _ski(path: Path, values: dict[str, Any]) -> Ski:
+def _read_ski(path: Path, values: dict[str, Any]) -> Ski:
     file = scenario_value(values, "ski.file")
     return ski_named(needed_value(values, "ski.name")) if file is None else read_ski(_locate(path, file, "ski"))
 
 
-def _slope(path: Path, values: dict[str, Any]) -> Slope:
+def _read_slope(path: Path, values: dict[str, Any]) -> Slope:
     kind = needed_value(values, "slope.kind")
     if kind == "plane":
         return Plane(needed_value(values, "slope.angle_deg") * DEGREE)

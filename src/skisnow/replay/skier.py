@@ -67,7 +67,7 @@ def drawn_joints(
     return np.einsum("nka,nab->nkb", relative, attitude)
 
 
-def _hip(pelvis: FloatArray, left: FloatArray, side: int, height: float) -> FloatArray:
+def _hip_position(pelvis: FloatArray, left: FloatArray, side: int, height: float) -> FloatArray:
     return pelvis + (0.25, -0.25)[side] * HIP_WIDTH * height * left
 
 
@@ -75,7 +75,7 @@ def _within_reach(pelvis: FloatArray, ankle: FloatArray, left: FloatArray, heigh
     """Pelvis moved towards an ankle that is farther from its hip than the length of a leg."""
     longest = STRETCHED * (SHANK.length + THIGH.length) * height
     for side in (0, 1, 0, 1):
-        way = ankle[:, side] - _hip(pelvis, left, side, height)
+        way = ankle[:, side] - _hip_position(pelvis, left, side, height)
         length = np.linalg.norm(way, axis=1, keepdims=True)
         pelvis = pelvis + np.maximum(length - longest, 0.0) / length * way
     return pelvis
@@ -88,11 +88,11 @@ def _joints(
     ahead, left, up = body
     trunk = math.cos(BENT) * up + math.sin(BENT) * ahead
     neck = pelvis + TRUNK.length * height * trunk
-    upright = _unit(trunk + np.array([0.0, 0.0, 1.0]))
+    upright = _unit_vectors(trunk + np.array([0.0, 0.0, 1.0]))
     places = {"pelvis": pelvis, "neck": neck, "head": neck + HEAD * height * upright}
     for side, name in enumerate(("left", "right")):
         outward = (1.0, -1.0)[side] * left
-        hip, shoulder = _hip(pelvis, left, side, height), neck + 0.5 * SHOULDER_WIDTH * height * outward
+        hip, shoulder = _hip_position(pelvis, left, side, height), neck + 0.5 * SHOULDER_WIDTH * height * outward
         own = np.stack([ahead, outward, up])
         hand = shoulder + height * np.einsum("a,anb->nb", HANDS, own)
         elbow = two_bones(shoulder, hand, UPPER_ARM.length * height, FOREARM.length * height, outward - up - ahead)
@@ -107,11 +107,11 @@ def _knee(hip: FloatArray, ankle: FloatArray, axes: FloatArray, height: float) -
     """Knee ahead of hip and ankle, with the lower leg in the plane of its boot if possible."""
     lengths = THIGH.length * height, SHANK.length * height
     straight = two_bones(hip, ankle, *lengths, axes[:, 0])
-    way = _unit(ankle - hip)
-    foot = hip + _dot(straight - hip, way) * way
+    way = _unit_vectors(ankle - hip)
+    foot = hip + _row_products(straight - hip, way) * way
     bend = straight - foot
     across = np.cross(way, bend)
-    towards, beside = _dot(across, axes[:, 1]), _dot(straight - ankle, axes[:, 1])
+    towards, beside = _row_products(across, axes[:, 1]), _row_products(straight - ankle, axes[:, 1])
     far = np.abs(towards) > 0.2 * np.linalg.norm(bend, axis=1, keepdims=True)
     aside = np.clip(np.where(far, -beside / np.where(far, towards, 1.0), 0.0), -KNEE_ASIDE, KNEE_ASIDE)
     return foot + np.sqrt(1.0 - aside**2) * bend + aside * across
@@ -128,14 +128,14 @@ def two_bones(start: FloatArray, end: FloatArray, first: float, second: float, b
     length = np.clip(length, abs(first - second) + 1e-6, first + second)
     along = (first**2 - second**2 + length**2) / (2.0 * length)
     out = np.sqrt(np.maximum(first**2 - along**2, 0.0))
-    return np.asarray(start + along * way + out * _unit(bent_to - _dot(bent_to, way) * way))
+    return np.asarray(start + along * way + out * _unit_vectors(bent_to - _row_products(bent_to, way) * way))
 
 
-def _unit(vectors: FloatArray) -> FloatArray:
+def _unit_vectors(vectors: FloatArray) -> FloatArray:
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9))
 
 
-def _dot(one: FloatArray, other: FloatArray) -> FloatArray:
+def _row_products(one: FloatArray, other: FloatArray) -> FloatArray:
     return np.einsum("na,na->n", one, other)[:, None]
 
 
@@ -197,8 +197,8 @@ def _trunk_and_head(height: float) -> list[Part]:
     helmet = _ball((0.01, 0.0, 1.05 * head), (0.125 * h, 0.105 * h, 0.125 * h), HELMET)
     visor = _ball((0.085 * h, 0.0, head), (0.055 * h, 0.085 * h, 0.05 * h), VISOR)
     return [
-        Part("trunk", "pelvis", "neck", _join([_round(hips, TROUSERS), _round(chest, JACKET)])),
-        Part("head", "neck", "head", _join([neck, helmet, visor])),
+        Part("trunk", "pelvis", "neck", _join_meshes([_round(hips, TROUSERS), _round(chest, JACKET)])),
+        Part("head", "neck", "head", _join_meshes([neck, helmet, visor])),
     ]
 
 
@@ -207,7 +207,7 @@ def _limb_parts(side: str, height: float) -> list[Part]:
     shank, thigh, arm, pole = (share * height for share in (SHANK.length, THIGH.length, UPPER_ARM.length, POLE))
     return [
         Part(f"{side} boot", f"{side} boot", f"{side} boot", _boot()),
-        Part(f"{side} lower leg", f"{side} ankle", f"{side} knee", _join([
+        Part(f"{side} lower leg", f"{side} ankle", f"{side} knee", _join_meshes([
             _round([(-0.06, 0.05, 0.05, 0.0), (0.0, 0.068, 0.058, 0.0), (0.42 * shank, 0.075, 0.062, 0.0),
                     (0.5 * shank, 0.08, 0.066, 0.0)], PLASTIC),
             _round([(0.48 * shank, 0.066, 0.06, 0.0), (0.75 * shank, 0.07, 0.064, -0.01),
@@ -218,10 +218,10 @@ def _limb_parts(side: str, height: float) -> list[Part]:
         Part(f"{side} upper arm", f"{side} shoulder", f"{side} elbow", _round([
             (-0.07 * h, 0.03, 0.03, 0.0), (-0.02 * h, 0.066, 0.064, 0.0), (0.5 * arm, 0.055, 0.052, 0.0),
             (arm, 0.045, 0.045, 0.0), (1.1 * arm, 0.025, 0.025, 0.0)], JACKET)),
-        Part(f"{side} forearm", f"{side} elbow", f"{side} hand", _join([_round([
+        Part(f"{side} forearm", f"{side} elbow", f"{side} hand", _join_meshes([_round([
             (-0.04 * h, 0.025, 0.025, 0.0), (0.0, 0.046, 0.046, 0.0), (0.135 * height, 0.038, 0.038, 0.0)], JACKET),
             _ball((0.0, 0.0, 0.15 * height), (0.055, 0.05, 0.065), GLOVE)])),
-        Part(f"{side} pole", f"{side} hand", f"{side} pole tip", _join([
+        Part(f"{side} pole", f"{side} hand", f"{side} pole tip", _join_meshes([
             _round([(-0.09, 0.016, 0.016, 0.0), (0.06, 0.016, 0.016, 0.0)], PLASTIC),
             _round([(0.0, 0.0085, 0.0085, 0.0), (pole, 0.005, 0.005, 0.0)], METAL),
             _round([(0.93 * pole, 0.035, 0.035, 0.0), (0.94 * pole, 0.03, 0.03, 0.0)], PLASTIC)])),
@@ -233,7 +233,7 @@ def _boot() -> Mesh:
     plate = _round([(0.012, 0.2, 0.031, 0.0), (0.045, 0.18, 0.031, 0.0)], METAL, square=4.0)
     shell = [(0.04, 0.155, 0.044, 0.0), (0.075, 0.16, 0.05, 0.0), (0.105, 0.15, 0.052, -0.005)]
     top = STAND_HEIGHT + 0.07
-    return _join(
+    return _join_meshes(
         [plate, _round([*shell, (top, 0.09, 0.058, -0.05), (top + 0.03, 0.07, 0.058, -0.05)], PLASTIC, square=2.6)]
     )
 
@@ -268,7 +268,7 @@ def _ball(middle: tuple[float, float, float], half: tuple[float, float, float], 
     return Mesh(mesh.vertices + np.array(middle), mesh.colours, mesh.pieces)
 
 
-def _join(meshes: Sequence[Mesh]) -> Mesh:
+def _join_meshes(meshes: Sequence[Mesh]) -> Mesh:
     first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -300,7 +300,7 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
     skier, boots = replay.skier, replay.skis.boots
     assert skier is not None
     assert boots is not None
-    body = _turn(replay.attitude).as_matrix()
+    body = _rotation_of(replay.attitude).as_matrix()
     joints = dict(zip(JOINTS, np.moveaxis(skier.joints @ _TO_OPENSIM.T, 1, 0), strict=True))
     place = (replay.place + np.einsum("nab,nb->na", body, skier.joints[:, JOINTS.index("pelvis")])) @ _TO_OPENSIM.T
     turns = _TO_OPENSIM @ body @ _TO_OPENSIM.T
@@ -309,13 +309,13 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
     columns["lumbar_extension"] = np.full(len(place), -BENT / DEGREE)
     for k, (side, letter, sense) in enumerate((("left", "l", -1.0), ("right", "r", 1.0))):
         hip, knee, ankle = (joints[f"{side} {name}"] for name in ("hip", "knee", "ankle"))
-        thigh, shank = _unit(hip - knee), _unit(knee - ankle)
-        axis = _unit(np.cross(shank, thigh))
+        thigh, shank = _unit_vectors(hip - knee), _unit_vectors(knee - ankle)
+        axis = _unit_vectors(np.cross(shank, thigh))
         upper, lower = (np.stack([np.cross(up, axis), up, axis], axis=-1) for up in (thigh, shank))
-        foot = _TO_OPENSIM @ _turn(boots.attitude[:, k]).as_matrix() @ _TO_OPENSIM.T
+        foot = _TO_OPENSIM @ _rotation_of(boots.attitude[:, k]).as_matrix() @ _TO_OPENSIM.T
         flexion, adduction, rotation = _cardan(upper)
         dorsal, inversion, _ = _cardan(np.swapaxes(turns @ lower, 1, 2) @ foot)
-        bend = np.arctan2(np.linalg.norm(np.cross(shank, thigh), axis=1), _dot(shank, thigh)[:, 0]) / DEGREE
+        bend = np.arctan2(np.linalg.norm(np.cross(shank, thigh), axis=1), _row_products(shank, thigh)[:, 0]) / DEGREE
         columns |= {
             f"hip_flexion_{letter}": flexion, f"hip_adduction_{letter}": sense * adduction,
             f"hip_rotation_{letter}": sense * rotation, f"knee_angle_{letter}": bend,
@@ -334,18 +334,18 @@ def skier_mesh(replay: Replay, frame: int) -> Mesh:
     skier, boots = replay.skier, replay.skis.boots
     assert skier is not None
     assert boots is not None
-    body = _turn(replay.attitude[frame])
+    body = _rotation_of(replay.attitude[frame])
     placed = []
     for part in skier_parts(skier.height):
         if part.start in JOINTS:
             start, turn = (pose[frame] for pose in part_poses(skier, part))
-            vertices = replay.place[frame] + body.apply(start + _turn(turn).apply(part.mesh.vertices))
+            vertices = replay.place[frame] + body.apply(start + _rotation_of(turn).apply(part.mesh.vertices))
         else:
             side = ("left boot", "right boot").index(part.start)
-            vertices = boots.place[frame, side] + _turn(boots.attitude[frame, side]).apply(part.mesh.vertices)
+            vertices = boots.place[frame, side] + _rotation_of(boots.attitude[frame, side]).apply(part.mesh.vertices)
         placed.append(Mesh(vertices, part.mesh.colours, part.mesh.pieces))
-    return _join(placed)
+    return _join_meshes(placed)
 
 
-def _turn(quaternion: FloatArray) -> Rotation:
+def _rotation_of(quaternion: FloatArray) -> Rotation:
     return Rotation.from_quat(np.roll(quaternion, -1, axis=-1))

@@ -125,11 +125,11 @@ def ski_drawing(ski: Ski) -> SkiDrawing:
         base_height_mm=thinned(ski.base_height / MM),
         EI_N_m2=thinned(ski.bending_stiffness),
         GJ_N_m2=thinned(ski.torsional_stiffness),
-        facts=_facts(ski),
+        facts=_ski_facts(ski),
     )
 
 
-def _facts(ski: Ski) -> dict[str, str]:
+def _ski_facts(ski: Ski) -> dict[str, str]:
     tip, waist, tail = (significant(width / MM) for width in ski.sidecut_widths)
     middle = int(np.argmin(np.abs(ski.station)))
     return {

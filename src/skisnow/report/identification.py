@@ -113,7 +113,7 @@ def _page(result: Identification, pictures: list[Picture]) -> str:
         sections.append(Section("correlation", Message("Correlations"), tables=[correlation_table(result)]))
     if profiles:
         sections.append(Section("profiles", Message("Profiles"), pictures=profiles))
-    sections.append(Section("provenance", Message("How it was computed"), words=_methods(result)))
+    sections.append(Section("provenance", Message("How it was computed"), words=_method_sentences(result)))
     facts = [
         (Message("Scenario"), result.scenario),
         (Message("Points"), str(result.points)),
@@ -144,7 +144,7 @@ def _title(result: Identification) -> str:
     return f"{names}: {outcome_words(result.outcome)}"
 
 
-def _methods(result: Identification) -> list[Markup]:
+def _method_sentences(result: Identification) -> list[Markup]:
     effort = result.effort
     runs = counted(effort.simulations, "{count} simulated run", "{count} simulated runs")
     last = prose(

@@ -85,7 +85,7 @@ def page_environment(language: str, *, package: str = "skisnow.report", folder: 
 
     environment = Environment(
         loader=PackageLoader(package, folder), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
-        extensions=["jinja2.ext.i18n"], finalize=_finalize(text),
+        extensions=["jinja2.ext.i18n"], finalize=_translate_messages(text),
     )  # fmt: skip
     environment.policies["ext.i18n.trimmed"] = True
     environment.filters["text"] = text
@@ -95,7 +95,7 @@ def page_environment(language: str, *, package: str = "skisnow.report", folder: 
     return environment
 
 
-def _finalize(text: Callable[[object], str]) -> Callable[[Any], Any]:
+def _translate_messages(text: Callable[[object], str]) -> Callable[[Any], Any]:
     return lambda value: text(value) if isinstance(value, Message) else value
 
 

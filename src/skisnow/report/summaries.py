@@ -96,7 +96,7 @@ def _yes_or_no(value: bool) -> str:
     return "yes" if value else "no"
 
 
-def _maximum(key: str, *, by: Callable[[float], float] = float) -> Callable[[Json], float | None]:
+def _maximum_of_key(key: str, *, by: Callable[[float], float] = float) -> Callable[[Json], float | None]:
     return lambda answer: max((value for value in answer[key] or () if value is not None), key=by, default=None)
 
 
@@ -122,10 +122,10 @@ _ROWS: Final[tuple[tuple[str, Callable[[Json], str | float | None]], ...]] = (
     ("contact length (m)", itemgetter("contact_length_m")),
     ("loaded contact length (m)", itemgetter("bearing_length_m")),
     ("edge depth, afterbody / forebody", itemgetter("afterbody_depth_ratio")),
-    ("edge depth, maximum (mm)", _maximum("edge_depth_mm")),
-    ("normal force per length, maximum (N/m)", _maximum("force_per_length_N_per_m")),
-    ("deflection, maximum (mm)", _maximum("bending_mm", by=abs)),
-    ("twist, maximum (degrees)", _maximum("twist_deg", by=abs)),
+    ("edge depth, maximum (mm)", _maximum_of_key("edge_depth_mm")),
+    ("normal force per length, maximum (N/m)", _maximum_of_key("force_per_length_N_per_m")),
+    ("deflection, maximum (mm)", _maximum_of_key("bending_mm", by=abs)),
+    ("twist, maximum (degrees)", _maximum_of_key("twist_deg", by=abs)),
     ("boot moment about the ski's cross axis (N m)", itemgetter("boot_pitch_moment_Nm")),
     ("force out of balance (N)", itemgetter("residual_force_N")),
     ("moment out of balance (N m)", itemgetter("residual_moment_Nm")),
@@ -137,14 +137,14 @@ def _carve_table(answers: list[Json]) -> Iterator[str]:
     cells = [["", *titles, *(f"{title}/%" for title in titles[1:])]]
     for name, of in _ROWS:
         values = [of(answer) for answer in answers]
-        cells.append([name, *map(_cell, values), *(_difference(values[0], value) for value in values[1:])])
+        cells.append([name, *map(_cell_text, values), *(_difference(values[0], value) for value in values[1:])])
     widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
     for row in cells if len(answers) > 1 else cells[1:]:
         first, *rest = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
         yield "  ".join([first.strip().ljust(widths[0]), *rest]).rstrip()
 
 
-def _cell(value: str | float | None) -> str:
+def _cell_text(value: str | float | None) -> str:
     return value if isinstance(value, str) else plain(value)
 
 
@@ -188,7 +188,7 @@ def identify_summary(result: Identification) -> str:
     rows = [_parameter_row(parameter) for parameter in result.parameters]
     widths = [max(len(row[i]) for row in rows) for i in range(2)]
     lines += [f"{key.ljust(widths[0])}  {value.ljust(widths[1])}  {rest}".rstrip() for key, value, rest in rows]
-    correlations = list(_correlations(result))
+    correlations = list(_correlation_lines(result))
     if correlations:
         lines += ["", "correlations: " + ", ".join(correlations)]
     lines += ["", f"points {result.points}, degrees of freedom {result.degrees_of_freedom}", *result.methods]
@@ -231,7 +231,7 @@ def _rounded(value: float | None, error: float | None) -> str:
     return f"{value:.{max(1 - math.floor(math.log10(error)), 0)}f}"
 
 
-def _correlations(result: Identification) -> Iterator[str]:
+def _correlation_lines(result: Identification) -> Iterator[str]:
     names = [row.parameter.name for row in result.parameters]
     for i in range(len(names)):
         for j in range(i):
@@ -251,7 +251,7 @@ def simulate_summary(summary: Json, *, title: str) -> str:
         lines.append(summary["remedy"])
     lines += ["", *named_rows(_run_rows(summary))]
     if "verification" in summary:
-        lines += ["", *_verification(summary["verification"])]
+        lines += ["", *_verification_lines(summary["verification"])]
     return "\n".join(lines)
 
 
@@ -262,10 +262,10 @@ def _run_rows(summary: Json) -> Iterator[tuple[str, str]]:
     yield "heading at the end", f"{plain(end['heading_deg'])} degrees from the fall line, positive left"
     speed = f"{plain(end['speed_m_per_s'])} m/s at the end, maximum {plain(summary['greatest_speed_m_per_s'])} m/s"
     yield "speed", speed
-    yield "turn radius", _radius(summary)
+    yield "turn radius", _radius_text(summary)
     if summary.get("gates_passed") is not None:
         yield "gates", _gates(summary)
-    yield "energy residual", _residual(summary["energy_balance_error"])
+    yield "energy residual", _residual_text(summary["energy_balance_error"])
     yield "steps", f"{summary['steps']}, {summary['rejected_steps']} rejected"
     wall, simulated = summary["wall_s"], summary["simulated_s"]
     rate = f", {plain(simulated / wall)} times real time" if wall and simulated else ""
@@ -281,20 +281,20 @@ def _gates(summary: Json) -> str:
     return f"{passed}, {times[-1] - times[0]:.2f} s between the first and the last that was reached"
 
 
-def _radius(summary: Json) -> str:
+def _radius_text(summary: Json) -> str:
     median, minimum = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
     if median is None:
         return "none, the run is straight or was over within half a second"
     return f"median {plain(median)} m, 5 % of the time below {plain(minimum)} m"
 
 
-def _residual(error: float | None) -> str:
+def _residual_text(error: float | None) -> str:
     if error is None:
         return "no energy was exchanged"
     return f"{plain(100.0 * error, 2)} % of the energy exchanged{'' if error <= OPEN_SHARE else ', too large'}"
 
 
-def _verification(verification: Mapping[str, Json]) -> Iterator[str]:
+def _verification_lines(verification: Mapping[str, Json]) -> Iterator[str]:
     yield "computed again, finer or with another input, one at a time:"
     rows = []
     for key, row in verification.items():

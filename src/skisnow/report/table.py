@@ -116,15 +116,15 @@ def _csv_names(column: Column) -> tuple[str, ...]:
 
 def _csv_cells(column: Column, values: Sequence[Any]) -> list[Sequence[str]]:
     if column.kind in ("interval", "range"):
-        return _ends(values)
+        return _digits_of_ends(values)
     if column.kind == "estimate":
-        return [_digits([value for value, _ in values]), *_ends([pair for _, pair in values])]
+        return [_digits([value for value, _ in values]), *_digits_of_ends([pair for _, pair in values])]
     if column.numeric:
         return [_digits(values)]
     return [list(map(_CSV_TEXT[column.kind], values))]
 
 
-def _ends(pairs: Sequence[Any]) -> list[Sequence[str]]:
+def _digits_of_ends(pairs: Sequence[Any]) -> list[Sequence[str]]:
     return [_digits([None if pair is None else pair[end] for pair in pairs]) for end in (0, 1)]
 
 
@@ -137,15 +137,15 @@ def _text(value: Any) -> str:
     return "" if value is None else protect_from_formulas(str(value))
 
 
-def _truth(value: bool) -> str:
+def _switch_text(value: bool) -> str:
     return "true" if value else "false"
 
 
 _CSV_TEXT: Final[dict[str, Callable[[Any], str]]] = {
     "text": _text,
     "words": _text,
-    "yes": _truth,
-    "tick": _truth,
+    "yes": _switch_text,
+    "tick": _switch_text,
     "codes": lambda codes: protect_from_formulas("; ".join(codes)),
 }
 
@@ -160,11 +160,11 @@ def table_html(table: Table, *, number: int) -> Markup:
 
     On a narrow screen each cell is a line with the column's name (report.css); roles keep it a table.
     """
-    head = Markup("").join(_header(column) for column in table.columns)
+    head = Markup("").join(_header_html(column) for column in table.columns)
     shown = table.rows[: table.rows_in_html]
     body = Markup("\n").join(
         Markup('<tr role="row">')
-        + Markup("").join(_cell(column, value, index) for index, (column, value) in _pairs(table, row))
+        + Markup("").join(_cell_html(column, value, index) for index, (column, value) in _numbered_cells(table, row))
         + Markup("</tr>")
         for row in shown
     )
@@ -185,18 +185,18 @@ def table_html(table: Table, *, number: int) -> Markup:
     )
 
 
-def _pairs(table: Table, row: tuple[Any, ...]) -> enumerate[tuple[Column, Any]]:
+def _numbered_cells(table: Table, row: tuple[Any, ...]) -> enumerate[tuple[Column, Any]]:
     return enumerate(zip(table.columns, row, strict=True))
 
 
-def _header(column: Column) -> Markup:
+def _header_html(column: Column) -> Markup:
     unit = Markup(" <small>{}</small>").format(html(column.unit)) if column.unit else Markup("")
     return Markup('<th scope="col" role="columnheader"{kind}>{text}{unit}</th>').format(
         kind=Markup(' class="n"') if column.numeric else Markup(""), text=html(column.header), unit=unit
     )
 
 
-def _cell(column: Column, value: Any, index: int) -> Markup:
+def _cell_html(column: Column, value: Any, index: int) -> Markup:
     content = cell_html(column, value)
     if index == 0:
         return Markup('<th scope="row" role="rowheader">{}</th>').format(content)
@@ -210,7 +210,7 @@ def cell_html(column: Column, value: Any) -> Markup:
     return Markup(formatting.ABSENT["typeset"]) if value is None else _SET[column.kind](value, column.digits)
 
 
-def _estimate(value: tuple[float | None, Any], digits: int) -> Markup:
+def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:
     number, pair = value
     if pair is None:
         return Markup(formatting.significant(number, digits))
@@ -240,7 +240,7 @@ _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
     "p": lambda value, _: Markup.escape(formatting.probability(value).replace(" ", "\u00a0")),
     "interval": lambda value, digits: Markup(formatting.interval(value, digits)),
     "range": lambda value, digits: Markup(formatting.from_to(value, digits)),
-    "estimate": _estimate,
+    "estimate": _estimate_html,
 }
 
 

@@ -39,12 +39,12 @@ def table_latex(table: Table) -> str:
     body = [" & ".join(row) + r" \\" for row in zip(*cells, strict=True)]
     caption = rf"\caption{{{latex(table.full_caption)}}}\label{{tab:{table.file_stem}}}"
     if len(shown) > ROWS_ON_A_PAGE:
-        lines = _long(alignment, caption, head, body, _notes(table))
+        lines = _long(alignment, caption, head, body, _notes_latex(table))
         if len(table.columns) > _COLUMNS_UPRIGHT:
             lines = [r"\begin{landscape}", *lines, r"\end{landscape}"]
     else:
         is_wide = sum(map(_width, cells)) > _LETTERS_UPRIGHT
-        lines = _on_one_page(alignment, caption, head, body, _notes(table), is_wide=is_wide)
+        lines = _on_one_page(alignment, caption, head, body, _notes_latex(table), is_wide=is_wide)
     return f"% needs \\usepackage{{{','.join(PACKAGES)}}}\n" + "\n".join(lines) + "\n"
 
 
@@ -71,7 +71,7 @@ def _long(alignment: str, caption: str, head: str, body: Sequence[str], notes: s
     ]  # fmt: skip
 
 
-def _notes(table: Table) -> str:
+def _notes_latex(table: Table) -> str:
     sentences = [latex(table.note)] if table.note else []
     if len(table.rows) > ROWS_IN_LATEX:
         sentences.append(f"The first {ROWS_IN_LATEX} of {len(table.rows)} rows; the CSV file holds them all.")
@@ -89,7 +89,7 @@ def _column(column: Column, values: Sequence[Any]) -> list[str]:
     """Cells of a column; plain numbers if they are aligned at the decimal point."""
     plain = _plain_numbers(column, values)
     if plain is None:
-        return [_cell(column, value) for value in values]
+        return [_cell_latex(column, value) for value in values]
     return [f"{{{formatting.ABSENT['latex']}}}" if text is None else text for text in plain]
 
 
@@ -109,7 +109,7 @@ def _plain_cell(column: Column, value: float) -> str:
 
 def _alignment(column: Column, cells: Sequence[str]) -> str:
     if not column.numeric:
-        is_broken = max(map(_letters, cells), default=0) > _LONGEST_TEXT and any(" " in cell for cell in cells)
+        is_broken = max(map(_count_letters, cells), default=0) > _LONGEST_TEXT and any(" " in cell for cell in cells)
         return rf">{{\raggedright\arraybackslash}}p{{{_TEXT_WIDTH}}}" if is_broken else "l"
     numbers = [match for cell in cells if (match := _PLAIN.fullmatch(cell))]
     if not numbers or column.kind not in _ALIGNED:
@@ -121,19 +121,19 @@ def _alignment(column: Column, cells: Sequence[str]) -> str:
 
 def _width(cells: Sequence[str]) -> int:
     """Width of a column in characters, including the gap."""
-    longest = max(map(_letters, cells), default=0)
+    longest = max(map(_count_letters, cells), default=0)
     return 2 + (min(longest, _LONGEST_TEXT) if any(" " in cell and "num" not in cell for cell in cells) else longest)
 
 
-def _letters(cell: str) -> int:
+def _count_letters(cell: str) -> int:
     return len(_COMMAND.sub("", cell))
 
 
-def _cell(column: Column, value: Any) -> str:
+def _cell_latex(column: Column, value: Any) -> str:
     return formatting.ABSENT["latex"] if value is None else _SET[column.kind](value, column.digits)
 
 
-def _estimate(value: tuple[float | None, Any], digits: int) -> str:
+def _estimate_latex(value: tuple[float | None, Any], digits: int) -> str:
     number, pair = value
     ends = "" if pair is None else f" {formatting.interval(pair, digits, style='latex')}"
     return formatting.significant(number, digits, style="latex") + ends
@@ -152,5 +152,5 @@ _SET: Final[dict[Kind, Callable[[Any, int], str]]] = {
     "p": lambda value, _: formatting.probability(value, style="latex"),
     "interval": lambda value, digits: f"{{{formatting.interval(value, digits, style='latex')}}}",
     "range": lambda value, digits: formatting.from_to(value, digits, style="latex"),
-    "estimate": _estimate,
+    "estimate": _estimate_latex,
 }

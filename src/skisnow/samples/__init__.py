@@ -73,7 +73,7 @@ def course_waypoints() -> str:
         f"<name>{number}</name><type>{side}</type></wpt>"
         for number, (point, side) in enumerate(zip(points, sides, strict=True), 1)
     ]
-    return _document(rows)
+    return _gpx_document(rows)
 
 
 def on_earth(place: FloatArray, *, slope_angle: float) -> FloatArray:
@@ -96,10 +96,10 @@ def gpx_track(place: FloatArray, time: FloatArray, *, slope_angle: float) -> str
         rows.append(
             f'<trkpt lat="{latitude:.9f}" lon="{longitude:.9f}"><ele>{height:.3f}</ele><time>{stamp}</time></trkpt>'
         )
-    return _document([*rows, "</trkseg></trk>"])
+    return _gpx_document([*rows, "</trkseg></trk>"])
 
 
-def _document(rows: list[str]) -> str:
+def _gpx_document(rows: list[str]) -> str:
     head = '<gpx version="1.1" creator="skisnow, synthetic" xmlns="http://www.topografix.com/GPX/1/1">'
     return "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', head, *rows, "</gpx>", ""])
 
@@ -116,7 +116,7 @@ def snow_samples(random: np.random.Generator) -> Iterator[tuple[str, str | bytes
     for pit in ("P1", "P2"):
         rows += [f"{pit},{top},{top - 10},{random.normal(450.0, 20.0):.1f},-9999,N" for top in range(120, 80, -10)]
     yield "densities.csv", "\n".join((*rows, ""))
-    yield "weather.smet", smet_text(_weather(random))
+    yield "weather.smet", smet_text(_weather_series(random))
     yield "snow_micro_pen.PNT", snow_micro_pen_recording(random)
 
 
@@ -140,7 +140,7 @@ def sample_pit() -> SnowPit:
     )
 
 
-def _weather(random: np.random.Generator) -> StationSeries:
+def _weather_series(random: np.random.Generator) -> StationSeries:
     hours = np.arange(0.0, 48.0)
     day = np.cos(2.0 * np.pi * (hours - 13.0) / 24.0)
     fields = {
@@ -278,29 +278,29 @@ mass_kg = 95
 
 def run_samples(random: np.random.Generator) -> Iterator[tuple[str, str]]:
     """Name and content of the samples that need a simulated run."""
-    usual = _run()
-    other = _run(speed_m_per_s=8.1, heading_deg=-25.0, mass_kg=95.0)
+    usual = _simulate_sample()
+    other = _simulate_sample(speed_m_per_s=8.1, heading_deg=-25.0, mass_kg=95.0)
     mine = (files("skisnow.scenario") / "catalogue" / f"{SCENARIO}.toml").read_text("utf-8") + _MINE
     yield "mine.toml", mine
     yield "two-runs.toml", mine + _SECOND_RUN
-    yield "measured.csv", _table(usual, random)
-    yield "measured.gpx", _gpx(usual, random)
-    yield "run-1.gpx", _gpx(usual, random)
-    yield "run-2.gpx", _gpx(other, random)
+    yield "measured.csv", _track_csv(usual, random)
+    yield "measured.gpx", _track_gpx(usual, random)
+    yield "run-1.gpx", _track_gpx(usual, random)
+    yield "run-2.gpx", _track_gpx(other, random)
     yield "marks.csv", _grooves(usual.scenario, random)
 
 
-def _run(**changes: float) -> Run:
+def _simulate_sample(**changes: float) -> Run:
     return simulate(load_scenario(SCENARIO, changes={"solver.method": "fast"}).with_(**changes))
 
 
-def _table(run: Run, random: np.random.Generator) -> str:
+def _track_csv(run: Run, random: np.random.Generator) -> str:
     place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)
     rows = np.column_stack([run.time[::_EVERY], place])
     return "\n".join(["time_s,x_m,y_m,z_m", *(",".join(f"{value:.3f}" for value in row) for row in rows.tolist()), ""])
 
 
-def _gpx(run: Run, random: np.random.Generator) -> str:
+def _track_gpx(run: Run, random: np.random.Generator) -> str:
     slope = run.scenario.slope
     assert isinstance(slope, Plane)
     place = run.place[::_EVERY] + _NOISE_M * random.standard_normal(run.place[::_EVERY].shape)

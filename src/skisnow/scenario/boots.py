@@ -83,7 +83,7 @@ class Boots(Shown):
     over: Over = "time"
     source: str = Message("given as numbers")
     _place: CubicSpline = field(init=False, repr=False)
-    _axes: tuple[RotationSpline, ...] = field(init=False, repr=False)
+    _axes_over_time: tuple[RotationSpline, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         from scipy.interpolate import CubicSpline
@@ -94,7 +94,7 @@ class Boots(Shown):
             object.__setattr__(self, name, table)
         self._require_sound()
         object.__setattr__(self, "_place", CubicSpline(self.at, self.place))
-        object.__setattr__(self, "_axes", self._join_axes())
+        object.__setattr__(self, "_axes_over_time", self._join_axes())
 
     def _join_axes(self) -> tuple[RotationSpline, ...]:
         """Spline of rotations of each boot; SciPy's iteration diverges where axes turn far within a short step."""
@@ -183,8 +183,8 @@ class Boots(Shown):
         """Places (2, 3), axes (2, 3, 3), velocities and angular velocities (2, 3), in the frame, per unit of ``at``."""
         within = float(np.clip(at, self.at[0], self.at[-1]))
         rest = 0.0 if at != within else 1.0
-        axes = np.array([np.swapaxes(ax(within).as_matrix(), -1, -2) for ax in self._axes])
-        turning = np.array([own.T @ ax(within, 1) for own, ax in zip(axes, self._axes, strict=True)])
+        axes = np.array([np.swapaxes(ax(within).as_matrix(), -1, -2) for ax in self._axes_over_time])
+        turning = np.array([own.T @ ax(within, 1) for own, ax in zip(axes, self._axes_over_time, strict=True)])
         return self._place(within), axes, rest * self._place(within, 1), rest * turning
 
 
@@ -218,7 +218,7 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
     stripped = [name.strip() for name in names]
     head = column_names(stripped, (*CLOCKS, *(f"{side}_{name}" for side in SIDES for name in _OF_A_BOOT)))
     _require_columns(path, head)
-    table = {name: _column(path, rows, head, place) for place, name in enumerate(head) if _is_input_column(name)}
+    table = {name: _read_column(path, rows, head, place) for place, name in enumerate(head) if _is_input_column(name)}
     clock = next(name for name in CLOCKS if name in table)
     if len(rows) < FEWEST_POSES:
         raise ParameterError("{path}: {n_rows} rows with poses; boots need {fewest_poses} rows or more").tag(
@@ -349,7 +349,7 @@ def _require_rising(path: Path, clock: str, rows: list[Row], at: FloatArray) -> 
             )
 
 
-def _column(path: Path, rows: list[Row], head: list[str], place: int) -> FloatArray:
+def _read_column(path: Path, rows: list[Row], head: list[str], place: int) -> FloatArray:
     values = np.empty(len(rows))
     for i, (line, row) in enumerate(rows):
         if len(row) != len(head):
@@ -383,7 +383,7 @@ def _cell(path: Path, line: int, column: str, text: str) -> float:
     return value
 
 
-def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> FloatArray:
+def _axes_of_table(table: Mapping[str, Any], missing: Mapping[str, float]) -> FloatArray:
     n = len(next(iter(table.values())))
     angles = [[table.get(f"{side}_{name}", np.full(n, missing[name])) * DEGREE for name in ANGLES] for side in SIDES]
     return np.array([[axes_of(*(float(row[i]) for row in of_ski)) for of_ski in angles] for i in range(n)])
@@ -391,7 +391,7 @@ def _axes(table: Mapping[str, Any], missing: Mapping[str, float]) -> FloatArray:
 
 def _of_slope(table: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     place = np.stack([np.stack([table[f"{side}_{name}"] for name in OF_SLOPE], axis=-1) for side in SIDES], axis=1)
-    return place, _axes(table, dict.fromkeys(ANGLES, 0.0))
+    return place, _axes_of_table(table, dict.fromkeys(ANGLES, 0.0))
 
 
 def _of_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float) -> tuple[FloatArray, FloatArray]:
@@ -401,4 +401,4 @@ def _of_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float)
         for axis, name in enumerate(OF_SLEDGE):
             own = sense * stance_width / 2.0 if name == "aside_m" else 0.0
             place[:, ski, axis] = table.get(f"{side}_{name}", own)
-    return place, _axes(table, {"edge_angle_deg": edge_angle / DEGREE, "pitch_deg": 0.0, "heading_deg": 0.0})
+    return place, _axes_of_table(table, {"edge_angle_deg": edge_angle / DEGREE, "pitch_deg": 0.0, "heading_deg": 0.0})

@@ -36,38 +36,38 @@ def build(resolution: Resolution, sources: Sources) -> tuple[Scenario, tuple[str
     values = dict(resolution.values)
     for name, key in SCENARIO_KEYS.items():
         if key.needed and not (name == "friction.mu_0" and LAW_FILE in values):
-            _require(values, name, Message("It has no default"))
-    ski, ski_warnings = _ski(resolution, sources)
-    slope = _slope(resolution)
+            _require_key(values, name, Message("It has no default"))
+    ski, ski_warnings = _build_ski(resolution, sources)
+    slope = _build_slope(resolution)
     contact = _contact(resolution)
     if "run.duration_s" not in values and "run.length_m" not in values:
         raise ParameterError("the run has no end: give run.duration_s or run.length_m").tag("no_data")
     values.setdefault("drag.centre_of_pressure_height_m", values["sledge.centre_of_mass_height_m"])
-    course = _course(resolution, slope)
+    course = _build_course(resolution, slope)
     parts: dict[str, Any] = {
         "slope": slope,
         "contact": contact,
         "ski": ski,
         "course": course,
-        "boots": _boots(resolution),
+        "boots": _build_boots(resolution),
     }
     if not any(name.startswith("skier.") for name in values):
         parts["skier"] = None
     return build_declared(Scenario, values, **parts), (*ski_warnings, *(course.warnings if course else ()))
 
 
-def _require(values: Mapping[str, Any], name: str, remedy: Message) -> None:
+def _require_key(values: Mapping[str, Any], name: str, remedy: Message) -> None:
     if name not in values:
         raise ParameterError("{name} is missing: {meaning}. {remedy}").tag(
             "missing", name=name, meaning=SCENARIO_KEYS[name].meaning, remedy=remedy
         )
 
 
-def _value(values: Mapping[str, Any], name: str) -> Any:
+def _value_of(values: Mapping[str, Any], name: str) -> Any:
     return values.get(name, SCENARIO_KEYS[name].default)
 
 
-def _boots(resolution: Resolution) -> Boots | None:
+def _build_boots(resolution: Resolution) -> Boots | None:
     if "boots.file" not in resolution.files:
         return None
     edge_angle = math.radians(float(str(resolution.values["sledge.edge_angle_deg"])))
@@ -75,23 +75,23 @@ def _boots(resolution: Resolution) -> Boots | None:
     return read_boots(resolution.files["boots.file"], edge_angle=edge_angle, stance_width=stance_width)
 
 
-def _slope(resolution: Resolution) -> Slope:
+def _build_slope(resolution: Resolution) -> Slope:
     values = resolution.values
-    kind = _value(values, "slope.kind")
+    kind = _value_of(values, "slope.kind")
     if kind == "plane":
         profile = Message('Give it, or a measured profile: slope.kind = "profile" and slope.profile')
-        _require(values, "slope.angle_deg", profile)
+        _require_key(values, "slope.angle_deg", profile)
         return build_declared(Plane, values)
     plane = Message('Give it, or a plane: slope.kind = "plane" and slope.angle_deg')
     if kind == "grid":
-        _require(values, "slope.grid", plane)
-        smoothing, x, y = (float(_value(values, f"slope.{key}")) for key in ("smooth_m", "origin_x_m", "origin_y_m"))
+        _require_key(values, "slope.grid", plane)
+        smoothing, x, y = (float(_value_of(values, f"slope.{key}")) for key in ("smooth_m", "origin_x_m", "origin_y_m"))
         return read_terrain(resolution.files["slope.grid"], smoothing=smoothing, origin_x=x, origin_y=y)
-    _require(values, "slope.profile", plane)
-    return read_profile(resolution.files["slope.profile"], gap=_value(values, "slope.profile_gap"))
+    _require_key(values, "slope.profile", plane)
+    return read_profile(resolution.files["slope.profile"], gap=_value_of(values, "slope.profile_gap"))
 
 
-def _course(resolution: Resolution, slope: Slope) -> Course | None:
+def _build_course(resolution: Resolution, slope: Slope) -> Course | None:
     options: dict[str, Any] = {
         name.partition(".")[2]: value for name, value in resolution.values.items() if name.startswith("course.")
     }
@@ -110,7 +110,7 @@ def _course(resolution: Resolution, slope: Slope) -> Course | None:
     return course_on_slope(course, slope)
 
 
-def _ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
+def _build_ski(resolution: Resolution, sources: Sources) -> tuple[Ski, tuple[str, ...]]:
     if "ski.file" in resolution.files:
         return sources.ski(str(resolution.files["ski.file"].absolute()))
     name = resolution.values.get("ski.name")

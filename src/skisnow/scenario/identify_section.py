@@ -68,7 +68,7 @@ def require_known(section: Mapping[str, Any]) -> None:
                 "wrong_kind", run=run, entries=entries
             )
         for word in entries:
-            _key(word, f'[identify.runs."{run}"]')
+            _checked_key(word, f'[identify.runs."{run}"]')
 
 
 def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
@@ -78,7 +78,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         if word in NO_KEYS:
             continue
         own, at, run = word.partition("@")
-        key = _key(own, f'[identify."{word}"]', _no_key_meant(word)) + at + run
+        key = _checked_key(own, f'[identify."{word}"]', _no_key_meant(word)) + at + run
         if not isinstance(table, dict):
             raise ParameterError(
                 'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
@@ -88,7 +88,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
     return parameters
 
 
-def _key(word: str, place: str, meant: Message | None = None) -> str:
+def _checked_key(word: str, place: str, meant: Message | None = None) -> str:
     try:
         return free_key(word)
     except ParameterError as error:
@@ -189,10 +189,10 @@ def measured_of(snow: SnowProperties) -> tuple[Measured, ...]:
     >>> measured_of(snow)
     (Measured(key='snow.unloading_ratio', value=9.0, low=6.0, high=16.0),)
     """
-    return tuple(_measured(snow))
+    return tuple(_measured_values(snow))
 
 
-def _measured(snow: SnowProperties) -> Iterator[Measured]:
+def _measured_values(snow: SnowProperties) -> Iterator[Measured]:
     measured = (
         ("snow.H_V_N_per_mm3", snow.snow_hardness, snow.snow_hardness_interval, N_PER_MM3),
         ("snow.S_f_N_per_mm2", snow.failure_shear_stress, snow.failure_shear_stress_interval, N_PER_MM2),

@@ -122,12 +122,12 @@ def require_true_lengths(path: object, system: MapSystem, x: float, y: float) ->
     true_scale = _scale(system, x, y)
     if true_scale is None:
         if _MERCATOR.search(system.text):
-            raise ParameterError(_stretched(_BY_LATITUDE, path, system)).tag("stretched")
+            raise ParameterError(_stretched_problem(_BY_LATITUDE, path, system)).tag("stretched")
         return
     scales, target = true_scale
     worst = max(scales, key=lambda scale: abs(scale - 1.0))
     if not abs(worst - 1.0) <= TRUE_LENGTHS:
-        raise ParameterError(_stretched(_BY_FACTOR, path, system, factor=worst, target=target)).tag("stretched")
+        raise ParameterError(_stretched_problem(_BY_FACTOR, path, system, factor=worst, target=target)).tag("stretched")
 
 
 _BY_LATITUDE: Final = template(
@@ -142,7 +142,7 @@ _BY_FACTOR: Final = template(
 )
 
 
-def _stretched(text: str, path: object, system: MapSystem, **fields: object) -> Message:
+def _stretched_problem(text: str, path: object, system: MapSystem, **fields: object) -> Message:
     return Message(text, path=path, system=system.name, limit=100 * TRUE_LENGTHS, **fields)
 
 

@@ -158,7 +158,7 @@ def read_esri_ascii(path: str | Path, *, column: str) -> PlacedValues:
     system = None if file is None else map_system(plain_text(file, most_bytes=_MOST_BYTES_OF_SYSTEM))
     raster = Raster(
         path=path,
-        values=_values(path, text, first, counts, header.get("nodata_value", header.get("nodata"))),
+        values=_read_cells(path, text, first, counts, header.get("nodata_value", header.get("nodata"))),
         first=(west, south + (counts[1] - 1) * steps[1]),
         step=(steps[0], -steps[1]),
         height_unit=_height_unit(path, None, system),
@@ -220,8 +220,8 @@ def _lower_left(path: str | Path, header: Mapping[str, float], axis: str, size: 
     return corner_place
 
 
-def _values(path: str | Path, text: str, first: int, counts: tuple[int, int], no_data: float | None) -> FloatArray:
-    """(rows, columns), the northern row first; NaN in a hole."""
+def _read_cells(path: str | Path, text: str, first: int, counts: tuple[int, int], no_data: float | None) -> FloatArray:
+    """Values of the cells (rows, columns), the northern row first; NaN in a hole."""
     cells = counts[0] * counts[1]
     if len(text) - first < 2 * cells - 1:  # before memory is allocated
         _refuse_number(path, len(text[first:].split()), counts)

@@ -101,7 +101,7 @@ def load_scenario(name_or_path: str | Path, *, changes: Mapping[str, object] = _
     >>> scenario.sledge.mass, scenario.contact.snow.snow_hardness
     (90.0, 200000000.0)
     """
-    scenario, messages, _ = _built(load_input(name_or_path).changed(changes), Sources())
+    scenario, messages, _ = _build_or_explain(load_input(name_or_path).changed(changes), Sources())
     for text in messages:
         warnings.warn(RangeWarning(text).tag("unusual"), stacklevel=2)
     return scenario
@@ -121,16 +121,16 @@ def load_input(name_or_path: str | Path | Scenario) -> ScenarioInput:
         return ScenarioInput("scenario given in Python", None, (), base=name_or_path)
     word = str(name_or_path)
     if word in scenario_names():
-        return _parse(word, None, scenario_text(word))
+        return _parse_scenario(word, None, scenario_text(word))
     path = Path(name_or_path)
     if not (isinstance(name_or_path, Path) or path.suffix.lower() == ".toml" or path.name != word or is_file(path)):
         raise ParameterError(
             "unknown scenario {word!r}. {allowed} Any other scenario is read from a file ending in .toml"
         ).tag("unknown_name", word=word, allowed=suggest_and_list(word, scenario_names()))
-    return _parse(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
+    return _parse_scenario(str(path), path, plain_text(path, most_bytes=MOST_TOML_BYTES))
 
 
-def _parse(title: str, file: Path | None, text: str) -> ScenarioInput:
+def _parse_scenario(title: str, file: Path | None, text: str) -> ScenarioInput:
     sections = toml_values(text, title=title)
     identify = sections.pop(IDENTIFY, {})
     if not isinstance(identify, dict):
@@ -150,7 +150,7 @@ def build_input(scenario_input: ScenarioInput, *, sources: Sources | None = None
 
     sources: cache of skis and snows for many scenarios.
     """
-    scenario, messages, resolution = _built(scenario_input, sources or Sources())
+    scenario, messages, resolution = _build_or_explain(scenario_input, sources or Sources())
     expected = (
         _warnings_of_built_in(scenario_input.title)
         if scenario_input.file is None and scenario_input.base is None
@@ -164,10 +164,10 @@ def build_input(scenario_input: ScenarioInput, *, sources: Sources | None = None
 @cache
 def _warnings_of_built_in(name: str) -> tuple[str, ...]:
     """Warnings about a built-in scenario itself, which its file explains."""
-    return implausible_values(_built(load_input(name), Sources())[0])
+    return implausible_values(_build_or_explain(load_input(name), Sources())[0])
 
 
-def _built(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
+def _build_or_explain(scenario_input: ScenarioInput, sources: Sources) -> tuple[Scenario, tuple[str, ...], Resolution]:
     if scenario_input.base is not None:
         return (
             changed_scenario(scenario_input.base, scenario_input.values),

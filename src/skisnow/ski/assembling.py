@@ -51,7 +51,7 @@ class ArcOutline:
         front, rear = self.layout.widest_points
         share = (np.clip(station, rear, front) - self.layout.middle) / self.layout.sidecut_length
         taper = self.tip_width - self.tail_width
-        side = self.waist_width + taper * share + 2.0 * self._deepening * share**2
+        side = self.waist_width + taper * share + 2.0 * self._sidecut_width * share**2
         overhang = self.layout.tip - front
         if overhang <= 0:
             return side
@@ -60,7 +60,7 @@ class ArcOutline:
         return np.asarray(side * np.sqrt(1.0 - (1.0 - end**2) * beyond**2))
 
     @property
-    def _deepening(self) -> float:
+    def _sidecut_width(self) -> float:
         return self.tip_width + self.tail_width - 2.0 * self.waist_width
 
     @property
@@ -74,7 +74,7 @@ class ArcOutline:
         0.35
         """
         taper = self.tip_width - self.tail_width
-        return taper**2 / (8.0 * self._deepening) if self._deepening > 0 else 0.0
+        return taper**2 / (8.0 * self._sidecut_width) if self._sidecut_width > 0 else 0.0
 
 
 FEWEST_ROWS: Final = 3
@@ -94,7 +94,7 @@ def width_of_table(table: StationTable, layout: Layout) -> StationFunction:
     """
     if np.max(-np.diff(table.station), initial=0.0) <= GREATEST_SPACING + 1e-9:
         return table.at
-    parabola = _parabola(table, layout)
+    parabola = _fit_parabola(table, layout)
     rest = StationTable(table.station, table.value - parabola(table.station))
     return lambda station: parabola(station) + rest.at(station)
 
@@ -111,7 +111,7 @@ class _Parabola:
         return np.asarray(np.polynomial.polynomial.polyval(np.clip(station, self.rear, self.front), self.coefficients))
 
 
-def _parabola(table: StationTable, layout: Layout) -> _Parabola:
+def _fit_parabola(table: StationTable, layout: Layout) -> _Parabola:
     front, rear = layout.widest_points
     inside = (table.station <= front + _AT_THE_END) & (table.station >= rear - _AT_THE_END)
     station = table.station[inside]
@@ -165,7 +165,7 @@ class SkiParts:
         like: a ski of nearly the same lengths, whose stations are moved with tip, tail, contact points and widest
             points: tables with the same number of rows, which differ smoothly; None: own stations.
         """
-        station = self._grid() if like is None else self._moved_grid(like)
+        station = self._make_grid() if like is None else self._moved_grid(like)
         width, shape = self.width(station), self.base if isinstance(self.base, BaseShape) else None
         base_height = self.base(station) if callable(self.base) else self.base.height_at(station, self.layout)
         mass_per_length = width if self.mass_per_length is None else self.mass_per_length(station)
@@ -195,7 +195,7 @@ class SkiParts:
     def _moved_grid(self, like: Ski) -> FloatArray:
         return like.station if self.stations is not None else moved_stations(like.station, like.layout, self.layout)
 
-    def _grid(self) -> FloatArray:
+    def _make_grid(self) -> FloatArray:
         own_stations = np.empty(0) if self.stations is None else self.stations
         if own_stations.size and np.max(-np.diff(own_stations)) <= GREATEST_SPACING + _SAME_PLACE:
             return own_stations

@@ -249,7 +249,7 @@ def clamped(ski: Ski, clamp_length: float, elements: int, footprint_stiffness: f
     require_range("elements", elements, 4)
     if footprint_stiffness is not None:
         require_range("footprint_stiffness", footprint_stiffness, 0.0, above=True)
-    mesh = _mesh(front, rear, clamp_length, elements, bedded=footprint_stiffness is not None)
+    mesh = _make_mesh(front, rear, clamp_length, elements, bedded=footprint_stiffness is not None)
     node, dof, size = mesh.node, mesh.dof, mesh.size
     length = node[:-1] - node[1:]
     stiffness = stiffness_matrices(
@@ -274,9 +274,9 @@ class _Mesh(NamedTuple):
 
 
 @functools.lru_cache(maxsize=16)
-def _mesh(front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool) -> _Mesh:
-    node = _nodes(front, rear, clamp_length, elements, bedded=bedded)
-    dof, size = _numbering(node, 0.0 if bedded else clamp_length)
+def _make_mesh(front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool) -> _Mesh:
+    node = _place_nodes(front, rear, clamp_length, elements, bedded=bedded)
+    dof, size = _number_dofs(node, 0.0 if bedded else clamp_length)
     length = node[:-1] - node[1:]
 
     def flat(values: FloatArray) -> FloatArray:
@@ -305,7 +305,7 @@ def element_places(node: FloatArray, local: FloatArray) -> FloatArray:
 
 def model_nodes(front: float, rear: float, clamp_length: float, elements: int) -> FloatArray:
     """Nodes (m) of the model that `clamped` makes of a ski between these stations, whose clamp is rigid."""
-    return _nodes(front, rear, clamp_length, elements, bedded=False)
+    return _place_nodes(front, rear, clamp_length, elements, bedded=False)
 
 
 def beam_at(model: ClampedSki, u: FloatArray, station: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -337,7 +337,7 @@ def beam_at_stations(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, Floa
     return np.einsum("ij,ij->i", stations.deflection, value), np.einsum("ij,ij->i", stations.twist, value)
 
 
-def _nodes(front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool) -> FloatArray:
+def _place_nodes(front: float, rear: float, clamp_length: float, elements: int, *, bedded: bool) -> FloatArray:
     half = clamp_length / 2.0
     spacing = (front - rear) / elements
 
@@ -351,7 +351,7 @@ def _nodes(front: float, rear: float, clamp_length: float, elements: int, *, bed
     return np.concatenate(parts)
 
 
-def _numbering(node: FloatArray, clamp_length: float) -> tuple[IntArray, int]:
+def _number_dofs(node: FloatArray, clamp_length: float) -> tuple[IntArray, int]:
     free = np.abs(node) > clamp_length / 2.0 + 1e-12
     number = np.where(free, DOFS_PER_NODE * (np.cumsum(free) - 1), -DOFS_PER_NODE)
     dof = number[:, None] + np.arange(DOFS_PER_NODE)

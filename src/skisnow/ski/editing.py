@@ -96,8 +96,8 @@ def edited_ski(ski: Ski, edit: SkiEdit, *, name: str, source: str) -> Ski:
     >>> round(float(stiffer.bending_stiffness.max() / slalom.bending_stiffness.max()), 9)
     1.2
     """
-    _require(edit)
-    changed = {attribute: _curve(ski, edit, column) for column, attribute in EDITED_COLUMNS.items()}
+    _require_edit(edit)
+    changed = {attribute: _edited_curve(ski, edit, column) for column, attribute in EDITED_COLUMNS.items()}
     height = changed["base_height"]
     changed["base_height"] = height - np.interp(0.0, ski.station[::-1], height[::-1])  # it counts from the boot
     mass = ski.mass_per_length * edit.factors.get(MASS, 1.0)
@@ -123,7 +123,7 @@ def values_at(ski: Ski, station: FloatArray) -> dict[str, FloatArray]:
     }
 
 
-def _curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
+def _edited_curve(ski: Ski, edit: SkiEdit, column: str) -> FloatArray:
     factor = edit.factors.get(column, 1.0)
     curve = factor * np.asarray(getattr(ski, EDITED_COLUMNS[column]))
     if column == "width_mm" and (deeper := edit.factors.get(SIDECUT, 1.0)) != 1.0:
@@ -145,7 +145,7 @@ def _with_deeper_sidecut(ski: Ski, factor: float) -> FloatArray:
     return np.asarray((waist + factor * (width - waist)) / width)
 
 
-def _require(edit: SkiEdit) -> None:
+def _require_edit(edit: SkiEdit) -> None:
     for column, factor in edit.factors.items():
         if not 1.0 / _LARGEST_FACTOR <= factor <= _LARGEST_FACTOR:
             raise ParameterError(
@@ -260,16 +260,16 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
     value, key, parsed = shape_value(ski, name), name.removeprefix("ski."), parsed_keys(ski)
     step = _LENGTH_STEP if key.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP
     if table in STIFFNESSES:
-        rows = _stiffness(parsed, table, _layout(parsed)).growths(ski.station)
+        rows = _stiffness_table(parsed, table, _layout_of(parsed)).growths(ski.station)
         memo |= {f"ski.{table}[{row}]": _of_table(EDITED_COLUMNS[table], of) for row, of in enumerate(rows, start=1)}
     elif table == "base_height":
         memo[name] = _of_table(table, _part_growth(parsed, key, step, table, ski.station)[1])
     elif table == "width" and parsed.tip_end_width is None:
-        units = MM * _unit_widths(parsed, _layout(parsed), ski.station)
+        units = MM * _unit_widths(parsed, _layout_of(parsed), ski.station)
         memo |= {f"ski.{width}": _of_table(table, unit) for width, unit in zip(WIDTHS, units, strict=True)}
     elif table == "width":
         sides = (_with_changed_key(parsed, key, side * step * MM) for side in (1.0, -1.0))
-        ends = [_outline(side, _layout(side)).width_at(ski.station) for side in sides]
+        ends = [_outline_of(side, _layout_of(side)).width_at(ski.station) for side in sides]
         return _of_table(table, (ends[0] - ends[1]) / (2.0 * step))
     else:
         return _of_several(ski, name, step)
@@ -355,7 +355,7 @@ def _of_table(table: str, growth: FloatArray) -> TableGrowth:
     return TableGrowth(tables, np.zeros(len(_NUMBERS)))
 
 
-def _layout(keys: SkiFile) -> Layout:
+def _layout_of(keys: SkiFile) -> Layout:
     return layout_of_lengths(
         length=keys.length or 0.0,
         running_length=keys.running_length or 0.0,
@@ -365,7 +365,7 @@ def _layout(keys: SkiFile) -> Layout:
     )
 
 
-def _outline(keys: SkiFile, layout: Layout) -> ArcOutline:
+def _outline_of(keys: SkiFile, layout: Layout) -> ArcOutline:
     tip, waist, tail = (width or 0.0 for width in (keys.tip_width, keys.waist_width, keys.tail_width))
     return ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=keys.tip_end_width)
 
@@ -375,11 +375,11 @@ def _unit_widths(keys: SkiFile, layout: Layout, station: FloatArray) -> FloatArr
     pairs = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
     relative = replace(keys, tip_width=1.0, tip_end_width=_tip_end_ratio(keys))
     skis = [replace(relative, waist_width=waist, tail_width=tail) for waist, tail in pairs]
-    tip, *others = (_outline(ski, layout).width_at(station) for ski in skis)
+    tip, *others = (_outline_of(ski, layout).width_at(station) for ski in skis)
     return np.array([tip, *(other - tip for other in others)])
 
 
-def _stiffness(keys: SkiFile, part: str, layout: Layout) -> StationTable:
+def _stiffness_table(keys: SkiFile, part: str, layout: Layout) -> StationTable:
     listed = getattr(keys, SKI_KEYS[part].field)
     return stiffness_table(RIGID if listed is None else listed, keys.stiffness_station, layout)
 
@@ -400,17 +400,17 @@ def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
 
 def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: FloatArray) -> FloatArray:
     """Growth of the stations, and of a table on them, for the width of its three units, with a key."""
-    home, ends = _layout(keys), []
+    home, ends = _layout_of(keys), []
     for change in (step, -step):
         side = _with_changed_key(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)
-        layout = _layout(side)
+        layout = _layout_of(side)
         at = moved_stations(station, home, layout)
         if part == "width":
             ends.append(np.vstack([at, _unit_widths(side, layout, at)]))
         elif part == "base_height":
             ends.append(np.vstack([at, side.base.height_at(at, layout)]))
         else:
-            ends.append(np.vstack([at, _stiffness(side, part, layout).at(at)]))
+            ends.append(np.vstack([at, _stiffness_table(side, part, layout).at(at)]))
     return np.asarray((ends[0] - ends[1]) / (2.0 * step))
 
 

@@ -102,11 +102,11 @@ def checked(file: Path, value: object, quantity: Quantity) -> InputValue:
         return quantity.in_range(value)
     except ParameterError as error:
         raise ParameterError("{file}: {problem}. {action}").tag(
-            error.code or "out_of_range", file=file, problem=error, action=_remedy(value, quantity)
+            error.code or "out_of_range", file=file, problem=error, action=_remedy_text(value, quantity)
         ) from None
 
 
-def _remedy(value: object, quantity: Quantity) -> Message:
+def _remedy_text(value: object, quantity: Quantity) -> Message:
     numbers: list[Any] = value if isinstance(value, list) else [value]
     if any(isinstance(number, bool) or not isinstance(number, int | float) for number in numbers):
         if quantity.kind in ("text", "switch"):

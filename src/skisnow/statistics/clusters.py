@@ -135,7 +135,7 @@ def _bias_reduced(
     L = fit.loadings
     lost = _determined_by_one(L, vector, alone)
     errors = np.sqrt(np.sum((score @ L.T) ** 2, axis=0))
-    dof = np.array([_degrees(share, adjust, row) for row in L])
+    dof = np.array([_satterthwaite_degrees(share, adjust, row) for row in L])
     return np.where(lost, np.nan, errors), np.where(lost, np.nan, dof)
 
 
@@ -146,7 +146,7 @@ def _determined_by_one(L: FloatArray, vector: FloatArray, alone: BoolArray) -> B
     return held
 
 
-def _degrees(share: FloatArray, adjust: FloatArray, row: FloatArray) -> float:
+def _satterthwaite_degrees(share: FloatArray, adjust: FloatArray, row: FloatArray) -> float:
     """Degrees of freedom by Satterthwaite: (tr M)²/tr(M²), M_gh = a_gᵀ(I - H)_gh a_h, a_g = A_g Q_g l for β = lᵀ Qᵀy.
 
     The diagonal of M is lᵀ S_g l, S_g = Q_gᵀQ_g; the other elements are -P_gᵀP_h with P_g = S_g (I - S_g)^-½ l.

@@ -152,7 +152,7 @@ def factorise(columns: Columns) -> Factorisation:
     Q, R, order = pivoted_qr(columns.scaled)
     rank = rank_of(R, n)
     if rank < p:
-        raise FitError(_dependence(columns.names, order[rank:].tolist(), rank)).tag("rank_deficient")
+        raise FitError(_dependence_problem(columns.names, order[rank:].tolist(), rank)).tag("rank_deficient")
     inverse = np.empty((p, p))
     inverse[order] = solve_triangular(R, np.eye(p))
     return Factorisation(Q, columns.back @ inverse, columns.scaled, columns.back, inverse)
@@ -214,7 +214,7 @@ def spread(coefficients: FloatArray, residuals: FloatArray, design: Factorisatio
     )
 
 
-def _dependence(names: Sequence[str], dependent: list[int], rank: int) -> Message:
+def _dependence_problem(names: Sequence[str], dependent: list[int], rank: int) -> Message:
     return Message(
         "the data determine only {rank} of {count} coefficients: {names} does not vary or follows from the other "
         "columns; remove it, or measure at more settings of it",

@@ -113,7 +113,7 @@ class GridPoints(Points):
 
     def distinct(self, name: str) -> list[Any]:
         """The values of an axis, or the one that is fixed."""
-        return _fixed(self.fixed, name) if name not in self.axes else list(dict.fromkeys(self.axes[name]))
+        return _fixed_value(self.fixed, name) if name not in self.axes else list(dict.fromkeys(self.axes[name]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,10 +161,10 @@ class SampledPoints(Points):
     def distinct(self, name: str) -> list[Any]:
         """The values of a column, or the one that is fixed."""
         column = self.columns.get(name)
-        return _fixed(self.fixed, name) if column is None else list(dict.fromkeys(column.values(0, self.n)))
+        return _fixed_value(self.fixed, name) if column is None else list(dict.fromkeys(column.values(0, self.n)))
 
 
-def _fixed(fixed: Mapping[str, Any], name: str) -> list[Any]:
+def _fixed_value(fixed: Mapping[str, Any], name: str) -> list[Any]:
     return [fixed[name]] if name in fixed else []
 
 

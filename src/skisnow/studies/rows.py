@@ -106,10 +106,10 @@ class DatabaseRows(StoredRows):
 
     def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
         self._path = path
-        with self._errors():
+        with self._table_errors():
             self._database = connect(path, mode="ro")
         weakref.finalize(self, self._database.close)
-        with self._errors():
+        with self._table_errors():
             require_schema(self._database, {"study": ("outcome", "study")})
             require_sound_pages(self._database)
             declared = self._database.execute("select name, type from pragma_table_info('study')").fetchall()
@@ -121,7 +121,7 @@ class DatabaseRows(StoredRows):
         self._texts = [is_text(name, keys) for name in self.columns]
 
     @contextmanager
-    def _errors(self) -> Iterator[None]:
+    def _table_errors(self) -> Iterator[None]:
         try:
             yield
         except (sqlite3.Error, UnicodeDecodeError) as error:  # the latter where a name in the schema is not a text
@@ -131,12 +131,12 @@ class DatabaseRows(StoredRows):
     def block(self, number: int) -> list[Row]:
         """Rows of one block, read from the database."""
         query = "select * from study where rowid >= ? order by rowid limit ?"
-        with self._errors():
+        with self._table_errors():
             rows = self._database.execute(query, (self._firsts[number], ROWS_OF_A_BLOCK)).fetchall()
         first = number * ROWS_OF_A_BLOCK + 1
-        return [self._row(place, row) for place, row in enumerate(rows, start=first)]
+        return [self._make_row(place, row) for place, row in enumerate(rows, start=first)]
 
-    def _row(self, place: int, values: Sequence[Any]) -> Row:
+    def _make_row(self, place: int, values: Sequence[Any]) -> Row:
         try:
             row = dict(zip(self.columns, map(_as_python, values, self._kinds), strict=True))
         except ValueError as error:
@@ -166,7 +166,7 @@ class ParquetRows(StoredRows):
     def __init__(self, path: Path, keys: Mapping[str, Quantity]) -> None:
         parquet = require_pyarrow().parquet
         self._path = path
-        with self._errors():
+        with self._table_errors():
             self._file = parquet.ParquetFile(path)
             super().__init__(self._file.metadata.num_rows)
             self.columns = tuple(self._file.schema_arrow.names)
@@ -179,7 +179,7 @@ class ParquetRows(StoredRows):
         self._read: tuple[int, Any] = (-1, None)
 
     @contextmanager
-    def _errors(self) -> Iterator[None]:
+    def _table_errors(self) -> Iterator[None]:
         try:
             yield
         except (
@@ -198,7 +198,7 @@ class ParquetRows(StoredRows):
         rows: list[Row] = []
         for group, (begin, end) in enumerate(self._groups):
             if begin < last and end > first:
-                with self._errors():
+                with self._table_errors():
                     if self._read[0] != group:
                         self._read = (group, self._file.read_row_group(group))
                     rows += self._read[1].slice(max(first - begin, 0), last - max(first, begin)).to_pylist()

@@ -198,9 +198,9 @@ class _Rows:
     def __call__(self) -> Iterator[list[Any]]:
         self.counted = Tally()
         self.held = [] if len(self._kept) <= MOST_ROWS_HELD else None
-        return self.counted.counting(self._columns, self._values())
+        return self.counted.counting(self._columns, self._values_to_store())
 
-    def _values(self) -> Iterator[list[Any]]:
+    def _values_to_store(self) -> Iterator[list[Any]]:
         for values in self._kept.values():
             row = [*values, self._fingerprint]
             if self.held is not None:

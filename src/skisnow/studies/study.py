@@ -173,33 +173,33 @@ def read_study(path: str | Path, *, subject: ModelReader = CarveModel) -> Study:
     path = Path(path)
     values = read_toml(path)
     try:
-        return _study(path, values, subject)
+        return _make_study(path, values, subject)
     except ParameterError as error:
         raise error.at(path) from error
 
 
-def _study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
+def _make_study(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Study:
     for key in values:
         if key not in TOP_KEYS:
             raise ParameterError("{key} is not a key of a study. {allowed}").tag(
                 "unknown_name", key=key, allowed=suggest_and_list(key, TOP_KEYS)
             )
-    subject_ = _subject(path, values, subject)
-    form = _form(values)
-    fixed = _fixed(subject_.named(_table(values, "fixed")), subject_.keys)
-    varying = _table(values, form)
+    subject_ = _make_model(path, values, subject)
+    form = _sampling_form(values)
+    fixed = _read_fixed(subject_.named(_read_section(values, "fixed")), subject_.keys)
+    varying = _read_section(values, form)
     inputs = subject_.named({name: value for name, value in varying.items() if name not in OWN_KEYS[form]})
-    axes = [_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
+    axes = [_make_axis(form, name, value, subject_.keys, fixed) for name, value in inputs.items()]
     if not axes:
         raise ParameterError("[{form}] contains no varied input; write one, such as edge_angle_deg = [30, 45, 60]").tag(
             "missing", form=form
         )
-    points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_sample(varying))
+    points = grid_points(axes, fixed) if form == "grid" else hypercube_points(axes, fixed, *_size_and_seed(varying))
     subject_.require_sound(points, fixed)
     return Study(path, _table_path(path, values), subject_, tuple(axis.key.name for axis in axes), points)
 
 
-def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
+def _make_model(path: Path, values: Mapping[str, Any], subject: ModelReader) -> StudyModel:
     if "scenario" not in values:
         return subject(path.parent)
     word = values["scenario"]
@@ -210,7 +210,7 @@ def _subject(path: Path, values: Mapping[str, Any], subject: ModelReader) -> Stu
     return ScenarioModel(path.parent, word)
 
 
-def _form(values: Mapping[str, Any]) -> str:
+def _sampling_form(values: Mapping[str, Any]) -> str:
     forms = [form for form in FORMS if form in values]
     if len(forms) != 1:
         problem = (
@@ -222,7 +222,7 @@ def _form(values: Mapping[str, Any]) -> str:
     return forms[0]
 
 
-def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+def _read_section(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = values.get(name, {})
     if not isinstance(table, dict):
         raise ParameterError("{name} is {table!r}; it must be a table, begun by the line [{name}]").tag(
@@ -231,7 +231,7 @@ def _table(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return table
 
 
-def _fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
+def _read_fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point:
     fixed = {}
     for name, value in table.items():
         _require_key("fixed", name, keys)
@@ -250,7 +250,7 @@ def _in_range(key: Quantity, value: object) -> InputValue:
         raise ParameterError("fixed.{problem}").tag(error.code, problem=error) from error
 
 
-def _axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
+def _make_axis(form: str, name: str, value: object, keys: Mapping[str, Quantity], fixed: Point) -> Axis:
     _require_key(form, name, (*OWN_KEYS[form], *keys))
     if name in fixed:
         raise ParameterError("{name} is in [{form}] and in [fixed]. Remove one of them").tag(
@@ -266,7 +266,7 @@ def _require_key(table: str, name: str, keys: Collection[str]) -> None:
         )
 
 
-def _sample(table: Mapping[str, Any]) -> tuple[int, int]:
+def _size_and_seed(table: Mapping[str, Any]) -> tuple[int, int]:
     own = {name: table[name] for name in ("n", "seed") if name in table}
     sample = build_declared(Sample, checked_table(Sample, own, "[latin_hypercube]"))
     return sample.n, sample.seed

@@ -147,12 +147,12 @@ class CarveModel(ShownFields):
                 "reason": equilibrium.remedy,
             }
         except SkisnowError as error:
-            return _failure(point, str(error))
+            return _failed_row(point, str(error))
         except Exception as error:  # a study never stops for one point
-            return _failure(point, f"unexpected {type(error).__name__}: {error}")
+            return _failed_row(point, f"unexpected {type(error).__name__}: {error}")
 
 
-def _failure(point: Point, reason: str) -> Row:
+def _failed_row(point: Point, reason: str) -> Row:
     values: dict[str, Any] = {name: key.default for name, key in CARVE_KEYS.items()} | point
     return {**values, **dict.fromkeys(CARVE_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 
@@ -224,9 +224,9 @@ class ScenarioModel(ShownFields):
             scenario_file = self._scenario_of_point(point)
             run = simulate(scenario_file.scenario)
         except SkisnowError as error:
-            return self._failure(point, str(error))
+            return self._failed_row(point, str(error))
         except Exception as error:  # a study never stops for one point
-            return self._failure(point, f"unexpected {type(error).__name__}: {error}")
+            return self._failed_row(point, f"unexpected {type(error).__name__}: {error}")
         if run.outcome == "interrupted":  # half a run does not count: the study is what was interrupted
             raise KeyboardInterrupt
         return _run_row(scenario_file, run)
@@ -234,7 +234,7 @@ class ScenarioModel(ShownFields):
     def _scenario_of_point(self, point: Point) -> ScenarioFile:
         return build_input(self._base.changed(point, folder=self.folder), sources=self._sources)
 
-    def _failure(self, point: Point, reason: str) -> Row:
+    def _failed_row(self, point: Point, reason: str) -> Row:
         values = {name: self._base.values.get(name, key.default) for name, key in SCENARIO_KEYS.items()} | point
         return {**values, **dict.fromkeys(RUN_RESULTS), "outcome": "error", "warnings": "", "reason": reason}
 

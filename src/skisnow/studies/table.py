@@ -129,7 +129,7 @@ def stored_rows(
             return None
         file = path.open("rb")
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise _unreadable_error(path, error) from error
     return large_csv(path, file, keys, begins)
 
 
@@ -197,7 +197,7 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
         _require_columns(path, columns)
         lines = [(reader.line_num + skipped, cells) for cells in reader if cells]
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise _unreadable_error(path, error) from error
     except (NoTextError, csv.Error) as error:
         raise ParameterError("{path} is not a table of a study: {error}").tag(
             "unknown_name", path=path, error=error
@@ -207,7 +207,7 @@ def _read_at_once(path: Path, keys: Mapping[str, Quantity]) -> tuple[tuple[str, 
     return columns, [row_of(f"{path}, line {line}", columns, cells, cell_readers) for line, cells in lines]
 
 
-def _unreadable(path: Path, error: OSError) -> ParameterError:
+def _unreadable_error(path: Path, error: OSError) -> ParameterError:
     return ParameterError("{path} cannot be read: {reason}").tag(
         "cannot_read", path=path, reason=error.strerror or error
     )

@@ -233,7 +233,7 @@ class PathModel:
     def _weights(self, parameters: MotionParameters) -> _Weights:
         """Precisions, and the part of the normal equations that they determine."""
         place = 1.0 / (parameters.drift**2 * self.step)
-        turn = self._turn(parameters).precision / parameters.turn_rate**2
+        turn = self._turn_chain(parameters).precision / parameters.turn_rate**2
         speed = self._speed.precision / parameters.acceleration**2
         band = np.zeros((2 * STATES, self.count, STATES))
         band[STATES, :-1, _X] = -place[:, None]
@@ -241,7 +241,7 @@ class PathModel:
         band[0, 1:, _X] += place[:, None]
         band[0, self.points, _X] += 1.0 / parameters.place_noise**2
         band[0, 0] += _first_precision(parameters)
-        for precision, chain, first in ((turn, self._turn(parameters), _THETA), (speed, self._speed, _V)):
+        for precision, chain, first in ((turn, self._turn_chain(parameters), _THETA), (speed, self._speed, _V)):
             below = -precision @ chain.transition
             before = -chain.transition.transpose(0, 2, 1) @ below
             for row, column in itertools.product(range(precision.shape[1]), repeat=2):
@@ -251,7 +251,7 @@ class PathModel:
                     band[row - column, 1:, first + column] += precision[:, row, column]
         return _Weights(place, turn, speed, band)
 
-    def _turn(self, parameters: MotionParameters) -> Chain:
+    def _turn_chain(self, parameters: MotionParameters) -> Chain:
         if parameters.period not in self._turns:
             self._turns[parameters.period] = turn_chain(parameters.period, self.step)
         return self._turns[parameters.period]
@@ -261,7 +261,7 @@ class PathModel:
         steps, points = len(self.step), len(self.points)
         turn, speed = np.log(parameters.turn_rate), np.log(parameters.acceleration)
         scale = -(3 * steps + 2) * turn - (2 * steps + 1) * speed - 2 * steps * np.log(parameters.drift)
-        scale += self._turn(parameters).log_scale + self._speed.log_scale + np.log(parameters.period)
+        scale += self._turn_chain(parameters).log_scale + self._speed.log_scale + np.log(parameters.period)
         return float(scale - 2 * points * np.log(parameters.place_noise))
 
     def _residuals(self, state: FloatArray, parameters: MotionParameters, weights: _Weights) -> _Residuals:
@@ -273,7 +273,7 @@ class PathModel:
         shortening = 1.0 - turn**2 / 24.0
         direction = np.stack([np.cos(middle), np.sin(middle)], axis=1)
         place = np.diff(state[:, _X], axis=0) - (self.step * mean_speed * shortening)[:, None] * direction
-        turns = state[1:, _TURN] - _times(self._turn(parameters).transition, state[:-1, _TURN])
+        turns = state[1:, _TURN] - _times(self._turn_chain(parameters).transition, state[:-1, _TURN])
         speeds = state[1:, _SPEED] - _times(self._speed.transition, state[:-1, _SPEED])
         pulls = _times(weights.turn, turns), _times(weights.speed, speeds)
         point = state[self.points, _X] - self.place
@@ -290,7 +290,7 @@ class PathModel:
         gradient[self.points, _X] = residuals.point / parameters.place_noise**2
         gradient[0] += _first_precision(parameters) * (state[0] - _FIRST)
         for part, chain, pull in (
-            (_TURN, self._turn(parameters), residuals.turn_pull),
+            (_TURN, self._turn_chain(parameters), residuals.turn_pull),
             (_SPEED, self._speed, residuals.speed_pull),
         ):
             gradient[1:, part] += pull

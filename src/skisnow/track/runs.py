@@ -95,9 +95,9 @@ def split_day(track: Track, motion: TrackMotion) -> Day:
         if rise >= max(LEAST_HEIGHT, _coasting_height(motion, low))
     ]
     climbs = [_climb(smooth, *ascent) for ascent in ascents if _recorded_rise(track, smooth, *ascent) >= LEAST_HEIGHT]
-    lifts = [_stretch(track, motion, height, *climb) for climb in climbs]
+    lifts = [_make_stretch(track, motion, height, *climb) for climb in climbs]
     spans = (_descent(motion, smooth, corners, area) for area in _areas_between(ascents, len(track)))
-    runs = [_stretch(track, motion, height, *ends) for ends in spans if ends is not None]
+    runs = [_make_stretch(track, motion, height, *ends) for ends in spans if ends is not None]
     return Day(tuple(run for run in runs if _is_run(run)), tuple(lifts), "height", remarks)
 
 
@@ -138,7 +138,7 @@ def _areas_between(ascents: list[tuple[int, int]], count: int) -> Iterator[tuple
 
 def _climb(smooth: FloatArray, low: int, high: int) -> tuple[int, int]:
     """A lift without the waiting below and above: from the last point at the bottom to the first at the top."""
-    margin = _margin(float(smooth[high] - smooth[low]))
+    margin = _zone_margin(float(smooth[high] - smooth[low]))
     inside = smooth[low : high + 1]
     bottom = np.flatnonzero(inside <= smooth[low] + margin)
     top = np.flatnonzero(inside >= smooth[high] - margin)
@@ -154,7 +154,7 @@ def _descent(
     if not falls:
         return None
     top, bottom = falls[0][0], falls[-1][1]
-    margin = _margin(float(smooth[top] - smooth[bottom]))
+    margin = _zone_margin(float(smooth[top] - smooth[bottom]))
     heights = smooth[top : bottom + 1]
     leaves = top + int(np.flatnonzero(heights >= smooth[top] - margin)[-1])
     arrives = top + int(np.flatnonzero(heights <= smooth[bottom] + margin)[0])
@@ -164,7 +164,7 @@ def _descent(
     return int(before[-1]) if len(before) else area[0], int(after[0]) if len(after) else area[1]
 
 
-def _margin(drop: float) -> float:
+def _zone_margin(drop: float) -> float:
     return max(1.0, _ZONE * drop)
 
 
@@ -176,12 +176,12 @@ def _moving_stretches(track: Track, motion: TrackMotion, height: FloatArray | No
     breaks = np.flatnonzero(np.diff(track.time[moving]) > LONGEST_STOP)
     firsts, lasts = moving[np.r_[0, breaks + 1]], moving[np.r_[breaks, len(moving) - 1]]
     for first, last in zip(firsts.tolist(), lasts.tolist(), strict=True):
-        stretch = _stretch(track, motion, height, first, last)
+        stretch = _make_stretch(track, motion, height, first, last)
         if stretch.distance >= LEAST_DISTANCE:
             yield stretch
 
 
-def _stretch(track: Track, motion: TrackMotion, height: FloatArray | None, first: int, last: int) -> Stretch:
+def _make_stretch(track: Track, motion: TrackMotion, height: FloatArray | None, first: int, last: int) -> Stretch:
     inside = slice(first, last + 1)
     start, end = float(track.time[first]), float(track.time[last])
     distance, distance_interval = float(motion.arc_length[last] - motion.arc_length[first]), None

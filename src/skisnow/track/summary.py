@@ -120,7 +120,7 @@ def track_summary(track: Track, *, window: float | None = None, place_noise: flo
         )
     day = split_day(track, motion)
     turns = tuple(turn for run in day.runs for turn in find_turns(motion, first=run.first, last=run.last))
-    distances = _distances(track, motion)
+    distances = _distances_by_source(track, motion)
     length = None if motion.path is None else motion.path.length()
     return TrackSummary(
         track, motion, day, turns, distances, *max_speed(track, motion, slice(None)),
@@ -135,7 +135,7 @@ def _shown_interval(interval: tuple[float, float] | None, unit: str) -> str:
     return "" if interval is None else f" ({interval[0]:.5g} to {interval[1]:.5g} {unit})"
 
 
-def _distances(track: Track, motion: TrackMotion) -> dict[str, float]:
+def _distances_by_source(track: Track, motion: TrackMotion) -> dict[str, float]:
     if motion.path is not None and motion.arc_length_source == "places":
         return {"places": motion.path.length().value}
     ways = {"places": places_arc_length(track, motion.smoothed)}

@@ -85,7 +85,7 @@ def find_turns(
         if one.sign != other.sign and _join(motion, one, other, patience):
             ends[number] = starts[number + 1] = _switch_time(motion, one.last, other.first)
     spans = zip(pieces, starts, ends, strict=True)
-    return tuple(_turn(motion, piece, float(start), float(end)) for piece, start, end in spans)
+    return tuple(_make_turn(motion, piece, float(start), float(end)) for piece, start, end in spans)
 
 
 def _signs(motion: TrackMotion) -> npt.NDArray[np.int8]:
@@ -143,7 +143,7 @@ def _switch_time(motion: TrackMotion, before: int, after: int) -> float:
     return float(passes) if inside else float((time[0] + time[-1]) / 2.0)
 
 
-def _turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
+def _make_turn(motion: TrackMotion, piece: _Piece, start: float, end: float) -> Turn:
     sharpest = _sharpest(motion, piece)
     headings, errors = _at_times(motion, (start, end))
     length = float(np.diff(np.interp((start, end), motion.time, motion.arc_length))[0])

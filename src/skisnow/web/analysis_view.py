@@ -82,7 +82,7 @@ class AnalysisView:
         subject = self._page.subject
         result = subject.cached(self._page.choice) if subject is not None else None
         if result is not None:
-            self._show(result)
+            self._show_result(result)
 
     async def compute(self) -> None:
         """Compute the numbers, then draw figure by figure; results for an older choice are dropped."""
@@ -98,7 +98,7 @@ class AnalysisView:
                 self._refuse(result)
                 return
             if result is not page.analysed:
-                self._show(result)
+                self._show_result(result)
             page.settled.set()
             await self._draw(result, number)
         except Exception as error:
@@ -130,15 +130,15 @@ class AnalysisView:
                     Message("Correct the files and import them again. Single cells can be corrected under Correct.")
                 )
 
-    def _show(self, result: CachedAnalysis) -> None:
+    def _show_result(self, result: CachedAnalysis) -> None:
         first, self._page.analysed = not self._choices.default_slot.children, result
         if first and ReportData(result.numbers.analysis).has_tests:
             self._show_choices(result.numbers)
         self._show_results(result.numbers)
         self._show_tables(result.numbers)
-        self._status.set_text(Message("{counts}. Drawing the figures …", counts=self._counts(result.numbers)))
+        self._status.set_text(Message("{counts}. Drawing the figures …", counts=self._counts_text(result.numbers)))
 
-    def _counts(self, numbers: Numbers) -> str:
+    def _counts_text(self, numbers: Numbers) -> str:
         with in_language(language_of(self._figures.client)):  # tasks in the background have no page
             return ReportData(numbers.analysis).counts
 
@@ -156,7 +156,7 @@ class AnalysisView:
             with self._figures:
                 _add_figure(shown)
         if not self._is_old(number):
-            self._status.set_text(f"{self._counts(result.numbers)}.")
+            self._status.set_text(f"{self._counts_text(result.numbers)}.")
 
     def _show_results(self, numbers: Numbers) -> None:
         """Show the key results of the report, then the table of the sites."""
@@ -208,11 +208,11 @@ class AnalysisView:
         for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
             rows = numbers.results[kind]["experiments"]
             for row in rows[:MOST_LISTED]:
-                self._experiment(file, kind, row)
+                self._add_experiment_box(file, kind, row)
             if len(rows) > MOST_LISTED:
                 sentence(Message(_FIRST_ONLY[kind], most=MOST_LISTED, all=len(rows)), "quiet")
 
-    def _experiment(self, file: str, kind: str, row: dict[str, Any]) -> None:
+    def _add_experiment_box(self, file: str, kind: str, row: dict[str, Any]) -> None:
         cancelled = "cancelled" in row["flags"]
         words = Message(
             _EXPERIMENT[kind, cancelled], name=row["experiment"], site=row["site"], angle=row["edge_angle_deg"]

@@ -134,7 +134,7 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        answer = self._refusal(scope, headers)
+        answer = self._refusing_response(scope, headers)
         if answer is None and scope["type"] == "http" and not self.access.has_access(headers):
             answer = await self._token_answer(scope, receive)
         if scope["type"] == "websocket":
@@ -151,7 +151,7 @@ class Guard:
             return
         await self.app(scope, receive, send)
 
-    def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
+    def _refusing_response(self, scope: Scope, headers: Headers) -> Response | None:
         host, origin = headers.get("host", ""), headers.get("origin")
         try:
             is_own, sent_by = self.access.allows_host(host), None if origin is None else urlsplit(origin).netloc

@@ -82,7 +82,7 @@ class LabSkis:
         Raises ParameterError: the name is not valid or exists already.
         Raises OutputError: the folder cannot be written.
         """
-        self._save(name, lambda folder: write_ski(ski, folder / FILE))
+        self._save_ski(name, lambda folder: write_ski(ski, folder / FILE))
 
     def save_texts(self, name: str, text: str, table: str) -> None:
         """Save the text of a ski's file and table under a new name; see `save_ski`."""
@@ -99,7 +99,7 @@ class LabSkis:
             if table:
                 write_file(folder / TABLE, table)
 
-        self._save(name, write)
+        self._save_ski(name, write)
 
     def require_new(self, name: str) -> None:
         """Reject a name that exists or is not a valid name of a folder on every system."""
@@ -116,7 +116,7 @@ class LabSkis:
                 "there is a ski {name} already, and none is overwritten; give this one another name"
             ).tag("already_there", name=name)
 
-    def _save(self, name: str, write: Writing) -> None:
+    def _save_ski(self, name: str, write: Writing) -> None:
         self.require_new(name)
         with hidden_folder(self._folder) as made:
             try:

@@ -157,15 +157,15 @@ _ID: Final = re.compile(r"[0-9a-f]{4,64}")
 
 def entering(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
     """Address of the entry of a campaign, or of a table and test in it; ``head``: cells of a test without rows."""
-    return f"/enter/{id_}" + _query(table, test, **(head or {}))
+    return f"/enter/{id_}" + _query_string(table, test, **(head or {}))
 
 
 def correcting(id_: str, *, table: str = "", test: str = "") -> str:
     """Address of the correction of an imported campaign, or of a table and test in it."""
-    return f"/correct/{id_}" + _query(table, test)
+    return f"/correct/{id_}" + _query_string(table, test)
 
 
-def _query(table: str, test: str, **further: str) -> str:
+def _query_string(table: str, test: str, **further: str) -> str:
     parameters = {"table": table, "test": test, **further}
     words = [f"{key}={quote(value, safe='')}" for key, value in parameters.items() if value]
     return "?" + "&".join(words) if words else ""

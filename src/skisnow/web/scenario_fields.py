@@ -91,11 +91,11 @@ class ScenarioField:
         self.key = key
         self.before = typed_form(value)
         with ui.element("div").classes("input") as self.place:
-            self.element = self._create(self.before if typed is None else typed)
+            self.element = self._create_element(self.before if typed is None else typed)
             named(self.element, field_label(key))
             self._range = sentence(range_words(key), "quiet range")
 
-    def _create(self, text: str) -> InputField:
+    def _create_element(self, text: str) -> InputField:
         if self.key.kind == "switch":
             return ui.switch(said(field_label(self.key)), value=text == ON).classes("field")
         if self.key.choices:
@@ -156,7 +156,7 @@ class ScenarioField:
         client.run_javascript(f"lab.goTo({id_})")
 
 
-def _replace(name: str, label: str, text: str) -> str:
+def _with_label(name: str, label: str, text: str) -> str:
     return text.replace(name, label)
 
 
@@ -168,5 +168,5 @@ def in_labels(message: str, *keys: Quantity) -> str:
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
     for key in sorted(keys, key=lambda key: -len(key.name)):
-        message = reworded(message, partial(_replace, key.name, field_label(key)))
+        message = reworded(message, partial(_with_label, key.name, field_label(key)))
     return message

@@ -268,10 +268,10 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     """
     log_to(lab.runs / LOG_FILE)
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
-    outer.add_api_route(STYLES, lambda: _asset("lab.css", "text/css"), include_in_schema=False)
-    outer.add_api_route(SCRIPT, lambda: _asset("lab.js", "text/javascript"), include_in_schema=False)
-    outer.add_api_route(FIRST_SCRIPT, lambda: _asset("first.js", "text/javascript"), include_in_schema=False)
-    outer.add_api_route(KEEPING, lambda: _asset("kept.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(STYLES, lambda: _asset_response("lab.css", "text/css"), include_in_schema=False)
+    outer.add_api_route(SCRIPT, lambda: _asset_response("lab.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(FIRST_SCRIPT, lambda: _asset_response("first.js", "text/javascript"), include_in_schema=False)
+    outer.add_api_route(KEEPING, lambda: _asset_response("kept.js", "text/javascript"), include_in_schema=False)
     outer.add_api_route(LANGUAGE + "/{code}", _set_language, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)
     add_ski_uploads(outer, lab)
@@ -304,7 +304,7 @@ def _set_language(code: str, back: str = "/") -> Response:
     return answer
 
 
-def _asset(name: str, kind: str) -> FileResponse:
+def _asset_response(name: str, kind: str) -> FileResponse:
     return FileResponse(_HERE / name, media_type=kind, headers={"cache-control": "no-cache"})
 
 

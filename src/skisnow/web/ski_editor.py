@@ -57,22 +57,22 @@ class SkiEditor:
         self._begun = sentence("", "quiet")
         heading(Message("Whole curves"), 3)
         with ui.element("div").classes("factors"):
-            self._factors = {key: self._factor(words) for key, words in FACTORS.items()}
+            self._factors = {key: self._add_factor_field(words) for key, words in FACTORS.items()}
         heading(Message("At positions along the ski"), 3)
         sentence(
             Message("What is typed here holds; between its neighbours the curve goes through it smoothly."), "quiet"
         )
         self._table = ui.element("div").classes("table")
-        self._text, self._csv = self._file(text, table)
+        self._text, self._csv = self._add_file_fields(text, table)
         self._base = self._file_and_table_text()
         self._show_origin(name)
 
-    def _factor(self, words: str) -> ui.input:
+    def _add_factor_field(self, words: str) -> ui.input:
         made = field(f"{words} ×", ONE, numeric=True)
         made.on("change", self._update)
         return made
 
-    def _file(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
+    def _add_file_fields(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
         with folded(Message("The file of the ski")):
             sentence(
                 Message(
@@ -152,9 +152,9 @@ class SkiEditor:
                             Words(number_text(f"{station:.3f}", self._table.client))
                         for column in CELLS:
                             with ui.element("td"):
-                                self._cell(column, i, station)
+                                self._add_cell(column, i, station)
 
-    def _cell(self, column: str, i: int, station: float) -> None:
+    def _add_cell(self, column: str, i: int, station: float) -> None:
         place = (column, i)
         made = ui.input(value=self._shown[place]).props("outlined dense inputmode=decimal autocomplete=off")
         named(made, Message("{cells} at {station:.3f} m", cells=CELLS[column], station=station))
@@ -296,10 +296,10 @@ class SkiImportForms:
                     for key, words in MEASURED.items()
                 }
             with ui.element("div").classes("acts"):
-                button(Message("Add this ski"), self._add, "main", once=True)
+                button(Message("Add this ski"), self._add_measured_ski, "main", once=True)
             self._said = Outcome()
 
-    async def _add(self) -> None:
+    async def _add_measured_ski(self) -> None:
         name = " ".join(str(self._name.value or "").split())
         for field_ in self._fields.values():
             field_.error = None

@@ -62,7 +62,7 @@ class SnowChoice:
         self._refused = ""
         self._analysis: tuple[str, Analysis] | None = None
         self._menu.on_value_change(self._choose_campaign_or_snow)
-        self._site.on_value_change(self._choose)
+        self._site.on_value_change(self._use_choice)
 
     @property
     def is_numbers(self) -> bool:
@@ -95,7 +95,7 @@ class SnowChoice:
         key = str(self._menu.value)
         of_campaign = key in self._campaigns
         self._site.set_visibility(False)
-        if of_campaign and not await self._analyse(key):
+        if of_campaign and not await self._analyse_campaign(key):
             return
         if of_campaign and self._analysis is not None:
             sites = sites_of(self._analysis[1])
@@ -104,29 +104,29 @@ class SnowChoice:
             if self._site.value != ALL_SITES:
                 self._site.set_value(ALL_SITES)  # which chooses
                 return
-        await self._choose()
+        await self._use_choice()
 
-    async def _analyse(self, key: str) -> bool:
+    async def _analyse_campaign(self, key: str) -> bool:
         self._found, self._refused = None, ""
         self.words.set_text(Message("The campaign is being analysed …"))
         if self._analysis is None or self._analysis[0] != key:
             try:
                 analysis = await run.io_bound(campaign_snow, self._lab, key)
             except SkisnowError as error:
-                self._refuse(error)
+                self._show_error(error)
                 return False
             if analysis is None or key != self._menu.value:
                 return False
             self._analysis = key, analysis
         return True
 
-    async def _choose(self) -> None:
+    async def _use_choice(self) -> None:
         self._found, self._refused = None, ""
         key = str(self._menu.value)
         try:
             self._found = self._snow_of(key)
         except SkisnowError as error:
-            self._refuse(error)
+            self._show_error(error)
             return
         self.words.set_text(
             "" if self._found is None else Message("Snow: {snow_words}", snow_words=snow_words(self._found.snow))
@@ -144,7 +144,7 @@ class SnowChoice:
         words = self._campaigns[key] + (f", {site}" if site else "")
         return ChosenSnow(analysis.snow(site or None), words, analysis=analysis, site=site)
 
-    def _refuse(self, error: SkisnowError) -> None:
+    def _show_error(self, error: SkisnowError) -> None:
         self._refused = error_sentence(error)
         self.words.set_text(self._refused)
 

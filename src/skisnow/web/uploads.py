@@ -52,7 +52,7 @@ class Unpacking:
         Raises ParameterError: the name is not valid on every system, leads out of the folder or exists, or a limit is
             exceeded.
         """
-        self._write(name, iter(lambda: content.read(CHUNK_BYTES), b""))
+        self._write_file(name, iter(lambda: content.read(CHUNK_BYTES), b""))
 
     def take_zip(self, packed: IO[bytes]) -> None:
         """Unpack a zip file; sizes are counted while reading.
@@ -81,10 +81,10 @@ class Unpacking:
                 )
             for member in members:
                 _require_plain(member)
-                self._write(member.filename, _unpacked(archive, member))
+                self._write_file(member.filename, _unpacked_pieces(archive, member))
 
-    def _write(self, name: str, pieces: Iterable[bytes]) -> None:
-        place = self._place(name)
+    def _write_file(self, name: str, pieces: Iterable[bytes]) -> None:
+        place = self._safe_place(name)
         self._files += 1
         if self._files > self.limits.files:
             raise ParameterError("more than {most} files at once are not accepted").tag(
@@ -111,7 +111,7 @@ class Unpacking:
                 "name_too_long", file=shown(name)
             ) from error
 
-    def _place(self, name: str) -> Path:
+    def _safe_place(self, name: str) -> Path:
         path = name.replace("\\", "/")
         if (why := unsafe_because(path, for_windows=True)) is not None:
             raise ParameterError("the file {file} is not accepted: {why}").tag(
@@ -140,7 +140,7 @@ def _require_plain(member: zipfile.ZipInfo) -> None:
         )
 
 
-def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[bytes]:
+def _unpacked_pieces(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Iterator[bytes]:
     with _damage_errors():
         content = archive.open(member)
     with content:

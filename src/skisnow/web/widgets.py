@@ -94,7 +94,7 @@ class LineChart(Element, component="line_chart.js"):
         self._drawn = [(line, self._plain(line)) for line in lines]
         self._props["panel"] = {
             **self._titles,
-            "label": self._label(lines),
+            "label": self._chart_label(lines),
             "range": range_,
             "from_zero": from_zero,
             "lines": [plain for _, plain in self._drawn],
@@ -109,7 +109,7 @@ class LineChart(Element, component="line_chart.js"):
         plain = {"x": _short(line.x), "y": _short(line.y), "style": line.style, "points": line.points}
         return plain | {"name": said(line.name, self.client)}
 
-    def _label(self, lines: Sequence[ChartLine]) -> str:
+    def _chart_label(self, lines: Sequence[ChartLine]) -> str:
         values = [value for line in lines for value in line.y if value is not None and math.isfinite(value)]
         names = [line.name for line in lines if line.name]
         if not values:
@@ -203,11 +203,11 @@ class JobList:
         for index, job in enumerate(jobs):
             if job.name not in self._cards:
                 with self._place:
-                    self._cards[job.name] = card = self._card(self._runs, job, self._act)
+                    self._cards[job.name] = card = self._card(self._runs, job, self._act_and_show)
                 card.place.move(target_index=index)
             self._cards[job.name].show(job)
 
-    def _act(self, act: Callable[[str], None], name: str) -> None:
+    def _act_and_show(self, act: Callable[[str], None], name: str) -> None:
         try:
             act(name)
         except ParameterError as error:

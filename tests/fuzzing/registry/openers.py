@@ -61,7 +61,7 @@ NO_READERS: Final[Mapping[str, str]] = {
     "_support.environment:load_certificate": "a certificate, parsed by OpenSSL",
     "cli.replay:serve_lab": "opens the store as campaign.store.store:Store.open",
     "cli.store:run": "opens the store as campaign.store.store:Store.open",
-    "cli.store:_sync_stores": "opens the store as campaign.store.store:Store.open",
+    "cli.store:_sync": "opens the store as campaign.store.store:Store.open",
 }
 """Why a function needs no reader in the registry."""
 

@@ -33,9 +33,7 @@ def json_value(text: str | bytes, *, title: str = "") -> Any:
         number, length of a text), repeats a key of an object, or contains an invalid character.
     """
     try:
-        value = json.loads(
-            text, object_pairs_hook=_object_of_entries, parse_int=_parse_integer, parse_constant=_refuse_constant
-        )
+        value = json.loads(text, object_pairs_hook=_checked_dict, parse_int=_integer, parse_constant=_refuse_constant)
         require_sound(value, infinite=False)
     except ContentError as error:
         raise error.of(title) from None
@@ -53,7 +51,7 @@ def own_json(text: str | bytes) -> Any:
     return json.loads(text)
 
 
-def _object_of_entries(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _checked_dict(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     entries = dict(pairs)
     if len(entries) != len(pairs):
         twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
@@ -61,7 +59,7 @@ def _object_of_entries(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return entries
 
 
-def _parse_integer(digits: str) -> int:
+def _integer(digits: str) -> int:
     if len(digits) > _MOST_DIGITS:
         raise ContentError("a whole number has {count} digits; allowed is ±{largest}. Correct it.").tag(
             "number_too_large", count=len(digits), largest=LARGEST_WHOLE

@@ -49,9 +49,7 @@ class Answers:
     @classmethod
     def of_options(cls, options: Mapping[str, Iterable[str]]) -> Self:
         """Answers from texts such as ``Last=load_N``; tools and plates may have no name, ``ignore`` has no value."""
-        return cls(
-            **{kind: dict(_split_option(kind, text) for text in options.get(kind) or ()) for kind in IMPORT_ANSWERS}
-        )
+        return cls(**{kind: dict(_split(kind, text) for text in options.get(kind) or ()) for kind in IMPORT_ANSWERS})
 
     def with_(self, kind: str, key: str, value: str) -> Self:
         """The same with one more answer."""
@@ -78,7 +76,7 @@ class Answers:
         ]
 
 
-def _split_option(kind: str, text: str) -> tuple[str, str]:
+def _split(kind: str, text: str) -> tuple[str, str]:
     key, equals, value = text.rpartition("=")
     if kind == "ignore":
         return text, "yes"

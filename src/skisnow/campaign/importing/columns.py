@@ -58,8 +58,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
         dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
     stated = [
-        _chosen_column(form, dialogue.answers.of_heading("column", table, heading), heading)
-        for heading in section.headings
+        _column_of(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
     ]
     dialogue.open.extend(_invalid_column_answers(section, form, dialogue))
     dialogue.open.extend(_column_questions(section, form, stated))
@@ -75,7 +74,7 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     return choices
 
 
-def _chosen_column(form: TableForm, answer: str, heading: str) -> str:
+def _column_of(form: TableForm, answer: str, heading: str) -> str:
     return answer if answer in form.known or answer == NONE else stated_column(form, heading)
 
 

@@ -319,9 +319,7 @@ def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
     first = series[0]
     sheet, row = first.sheet, first.header
     while (
-        row
-        and not ignored.row(sheet.name, row - 1)
-        and all(len(_filled_columns(sheet, row - 1, p.own)) == 1 for p in series)
+        row and not ignored.row(sheet.name, row - 1) and all(len(_filled(sheet, row - 1, p.own)) == 1 for p in series)
     ):
         row -= 1
     titles = [title for at in range(row, first.header) for title in _titles(series, at)]
@@ -335,7 +333,7 @@ def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
     for part in series:
         places = tuple(range(left, left + len(titles)))
         left += len(titles)
-        for at in (at for at in range(part.start, part.end) if _filled_columns(sheet, at, part.own)):
+        for at in (at for at in range(part.start, part.end) if _filled(sheet, at, part.own)):
             for place, title in zip(places, titles, strict=True):
                 value, source = title.values[part.own]
                 rows[at][place] = filled[at][place] = value
@@ -348,7 +346,7 @@ def _with_titles(series: Sequence[Section], ignored: Ignored) -> list[Section]:
     return [replace(part, sheet=after) for part in named]
 
 
-def _filled_columns(sheet: Sheet, row: int, columns: range) -> list[int]:
+def _filled(sheet: Sheet, row: int, columns: range) -> list[int]:
     return [column for column in columns if sheet.cell(row, column)]
 
 
@@ -364,7 +362,7 @@ class _Title:
 def _titles(series: Sequence[Section], row: int) -> Iterator[_Title]:
     """Columns of a row above series: a label at its left names them, or words before the values do."""
     sheet = series[0].sheet
-    places = [_filled_columns(sheet, row, part.own)[0] for part in series]
+    places = [_filled(sheet, row, part.own)[0] for part in series]
     label = next((text for column in range(series[0].own.start)[::-1] if (text := sheet.cell(row, column))), "")
     texts = [sheet.cell(row, place) for place in places]
     parts = [[text] if label else re.split(r"[,;|]\s+", text) for text in texts]

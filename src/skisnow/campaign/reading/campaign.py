@@ -103,7 +103,7 @@ def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = (
     FieldDataError
         As `read_campaign`.
     """
-    return _require_valid(_read_contents(FilesInMemory(files, others), None))
+    return _require_valid(_read_all(FilesInMemory(files, others), None))
 
 
 def campaign_of_cells(
@@ -178,9 +178,7 @@ class _Contents:
 
 def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Contents:
     if folder.is_file() and is_workbook(folder.name):
-        return _read_contents(
-            FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress
-        )
+        return _read_all(FilesInMemory({folder.name: folder.read_bytes()}, folder=folder.with_suffix("")), progress)
     if not folder.is_dir():
         action = Message(
             "Name the folder of campaign.toml and the tables, or a workbook (.xlsx) that contains all of them."
@@ -193,10 +191,10 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
             "unreadable_file", str(folder), value=value, allowed=Message("a folder that exists"), action=action
         )
         return _Contents(folder, None, {}, {}, (nowhere,))
-    return _read_contents(FilesOfFolder(folder), progress)
+    return _read_all(FilesOfFolder(folder), progress)
 
 
-def _read_contents(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
+def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
     campaign = unfolded(campaign_files)
     files = RawFiles(campaign, problems=campaign.problems)
     described, headings, corrections = read_description(files)

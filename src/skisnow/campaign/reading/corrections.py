@@ -145,14 +145,12 @@ class Corrector:
             self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
             return False
         standing = cells[position].strip()
-        if standing == correction.old or (
-            correction.column in self._numbers and self._equal_numbers(standing, correction.old)
-        ):
+        if standing == correction.old or (correction.column in self._numbers and self._equal(standing, correction.old)):
             return True
         self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
         return False
 
-    def _equal_numbers(self, standing: str, old: str) -> bool:
+    def _equal(self, standing: str, old: str) -> bool:
         stands = number(standing, self._mark)
         return any(stands == number(old, mark) for mark in (self._mark, "."))  # NaN, no number, equals nothing
 

@@ -96,9 +96,7 @@ class Divergence:
         entries = (*self.here, *self.there)
         if all(entry.action == "correct" for entry in entries):
             return not self.contested
-        return not any(entry.action == "add" for entry in entries) and self._content_counts(
-            "here"
-        ) == self._content_counts("there")
+        return not any(entry.action == "add" for entry in entries) and self._counts("here") == self._counts("there")
 
     @property
     def contested(self) -> list[tuple[str, str]]:
@@ -142,7 +140,7 @@ class Divergence:
             choices=self.choices,
         )
 
-    def _content_counts(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
+    def _counts(self, side: Literal["here", "there"]) -> Counter[tuple[object, ...]]:
         entries, uids = (self.here, self.uid_here) if side == "here" else (self.there, self.uid_there)
         return Counter(
             (entry.action, uids.get(entry.about or 0), tuple(sorted(entry.cells.items())), entry.why)

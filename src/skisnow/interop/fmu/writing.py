@@ -182,7 +182,7 @@ def _head_attributes(model: Model, token: str, fmi: Version) -> dict[str, str]:
     }
 
 
-def _variable_attributes(number: int, variable: Variable) -> dict[str, str]:
+def _attributes(number: int, variable: Variable) -> dict[str, str]:
     variability = "fixed" if variable.causality == "parameter" else "continuous"
     return {
         "name": variable.name,
@@ -200,14 +200,12 @@ def _unit_and_start(variable: Variable) -> dict[str, str]:
 
 def _variable_2(variables: ET.Element, number: int, variable: Variable) -> None:
     ET.SubElement(
-        ET.SubElement(variables, "ScalarVariable", _variable_attributes(number, variable)),
-        "Real",
-        _unit_and_start(variable),
+        ET.SubElement(variables, "ScalarVariable", _attributes(number, variable)), "Real", _unit_and_start(variable)
     )
 
 
 def _variable_3(variables: ET.Element, number: int, variable: Variable) -> None:
-    ET.SubElement(variables, "Float64", _variable_attributes(number, variable) | _unit_and_start(variable))
+    ET.SubElement(variables, "Float64", _attributes(number, variable) | _unit_and_start(variable))
 
 
 def _add_structure(root: ET.Element, offered: list[tuple[int, Variable]], fmi: Version) -> None:

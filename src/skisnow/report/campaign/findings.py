@@ -172,7 +172,7 @@ def _table_file(name: str, data: ReportData) -> Markup:
 def regression_sentences(data: ReportData) -> list[Markup]:
     """One sentence for each regression, up to `MOST_SENTENCES`."""
     rows = data.results["regressions"]
-    sentences = [_sentence(row) for row in rows[:MOST_SENTENCES]]
+    sentences = [_finding(row) for row in rows[:MOST_SENTENCES]]
     if len(rows) > MOST_SENTENCES:
         sentences.append(
             prose("{n_rows} further regressions are only in the table.", n_rows=len(rows) - MOST_SENTENCES)
@@ -180,7 +180,7 @@ def regression_sentences(data: ReportData) -> list[Markup]:
     return sentences
 
 
-def _sentence(row: Json) -> Markup:
+def _finding(row: Json) -> Markup:
     if row["b"] is None and row["n"] == 0:
         return _regression_sentence(row, Message("no data."))
     if row["b"] is None:
@@ -196,13 +196,13 @@ def _sentence(row: Json) -> Markup:
     if row["p"] < SIGNIFICANT:
         judgement = prose(
             "significant ({p}); {response} changes by {change} {unit} {step}, 95 % interval {ends}.",
-            p=p_equals(row["p"]), ends=_changes(row, row["interval"][1]), **_slope(row),
+            p=p_equals(row["p"]), ends=_change_interval(row, row["interval"][1]), **_slope(row),
         )  # fmt: skip
     else:
         judgement = prose(
             "not significant ({p}); yet {response} could still change by anything in {ends} {unit} {step} (95 % "
             "interval; estimate {change}).",
-            p=p_equals(row["p"]), ends=_changes(row, row["interval"][1]), **_slope(row),
+            p=p_equals(row["p"]), ends=_change_interval(row, row["interval"][1]), **_slope(row),
         )  # fmt: skip
     return html(" ").join([_regression_sentence(row, judgement), *_by_site(row)])
 
@@ -225,7 +225,7 @@ def _slope(row: Json) -> dict[str, Any]:
     return {"response": html(response), "unit": unit, "change": change, "step": step}
 
 
-def _changes(row: Json, slopes: list[float] | None) -> str:
+def _change_interval(row: Json, slopes: list[float] | None) -> str:
     factor = _STEP[row["terms"][1]][0]
     return interval(None if slopes is None else [end * factor for end in slopes])
 
@@ -237,7 +237,7 @@ def _by_site(row: Json) -> list[Markup]:
     pair = row["interval_by_site"][1]
     if pair is None:
         return [prose("The sites do not give a separate interval.")]
-    contains_zero, ends = pair[0] <= 0.0 <= pair[1], _changes(row, pair)
+    contains_zero, ends = pair[0] <= 0.0 <= pair[1], _change_interval(row, pair)
     if contains_zero and row["p"] < SIGNIFICANT:
         return [
             prose(

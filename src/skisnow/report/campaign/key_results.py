@@ -72,7 +72,7 @@ def _hardness_sentence(data: ReportData) -> Markup | None:
     used = Message("{used} of {n} used", used=whole(len(data.hardness)), n=n)
     mean_name = Message("Snow hardness H_V: geometric mean")
     quantity = Quantity(mean_name, "H_V", "H_V_N_per_mm3", "N/mm³", n, used, _site_count(data.penetration_site))
-    return _mean(data, quantity) if data.penetration else None
+    return _mean_sentence(data, quantity) if data.penetration else None
 
 
 def _unloading_sentence(data: ReportData) -> Markup | None:
@@ -102,7 +102,7 @@ def _stress_sentence(data: ReportData) -> Markup | None:
     used = Message("{used} of {n} used", used=whole(len(data.stress)), n=n)
     mean_name = Message("Failure shear stress S_f: mean")
     quantity = Quantity(mean_name, "S_f", "S_f_N_per_mm2", "N/mm²", n, used, _site_count(data.shear_site))
-    return _mean(data, quantity) if data.shear else None
+    return _mean_sentence(data, quantity) if data.shear else None
 
 
 def _site_count(sites: TextArray) -> int:
@@ -178,7 +178,7 @@ class Quantity(NamedTuple):
     sites: int
 
 
-def _mean(data: ReportData, quantity: Quantity) -> Markup:
+def _mean_sentence(data: ReportData, quantity: Quantity) -> Markup:
     row, sites = own_value(data, quantity.key), quantity.sites
     if row is None:
         return prose(
@@ -194,7 +194,7 @@ def _mean(data: ReportData, quantity: Quantity) -> Markup:
         mean_name=html(quantity.mean_name),
         value=_strong(row["own"]),
         unit=quantity.unit,
-        ends=_ends(row["own_interval"], quantity.unit, sites),
+        ends=_interval_text(row["own_interval"], quantity.unit, sites),
         low=significant(row["own_range"][0]),
         high=significant(row["own_range"][1]),
         used=quantity.used,
@@ -218,7 +218,7 @@ def _many_sites(data: ReportData, quantity: Quantity, pooled: Json) -> Markup:
         sites=counted(len(rows), "{count} site", "{count} sites"),
         used=quantity.used,
         value=significant(pooled["own"]),
-        ends=_ends(pooled["own_interval"], quantity.unit, len(rows)),
+        ends=_interval_text(pooled["own_interval"], quantity.unit, len(rows)),
     )
 
 
@@ -231,7 +231,7 @@ def _few_sites(data: ReportData, quantity: Quantity, pooled: Json) -> Markup:
             site=row["site"],
             value=_strong(row["mean"]),
             unit=quantity.unit,
-            ends=_ends(row["interval"], quantity.unit, 1),
+            ends=_interval_text(row["interval"], quantity.unit, 1),
             n=whole(row["n"]),
         )
         for row in sites
@@ -255,7 +255,7 @@ def _strong(value: float) -> Markup:
     return Markup("<strong>{}</strong>").format(significant(value))
 
 
-def _ends(pair: list[float] | None, unit: str, sites: int) -> Markup:
+def _interval_text(pair: list[float] | None, unit: str, sites: int) -> Markup:
     if pair is None:
         return prose(" (no interval: the scatter is not known)")
     if sites > 1:

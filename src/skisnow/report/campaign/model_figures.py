@@ -57,7 +57,7 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
     axes.hlines(places, own, printed, color=PALE, linewidth=0.7, zorder=1)
     axes.plot(printed, places, linestyle="none", marker="D", color=VERMILLION, markerfacecolor="white", zorder=3)
     axes.plot(own, places, linestyle="none", marker="o", color=BLUE, markersize=4.4, zorder=4)
-    axes.set_yticks(list(places), [_label(row, data) for row in rows])
+    axes.set_yticks(list(places), [_line_label(row, data) for row in rows])
     axes.invert_yaxis()
     if max(finite) > _WIDE_RATIO * max(min(finite), 1e-9):
         axes.set_xscale("log")
@@ -89,7 +89,7 @@ def model_rmse(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftO
     return Drawing("model_rmse", caption, alt, figure)
 
 
-def _label(row: Json, data: ReportData) -> str:
+def _line_label(row: Json, data: ReportData) -> str:
     selected = data.results["penetration"]["selected"]
     text = f"${row['hardness'][0]}_\\mathrm{{{row['hardness'][2]}}}$: {_model_label(row)}"
     return f"▸ {text}" if selected and selected["id"] == row["id"] else text

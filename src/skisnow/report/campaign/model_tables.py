@@ -30,11 +30,11 @@ def formula(model_id: str) -> str:
     """
     hardness, _, terms = model_id.partition(":")
     forms = dict(term.split("=") for term in terms.split(","))
-    parts = [part for part in (_term("a", forms["a"], "A"), _term("b", forms["b"], "V")) if part]
+    parts = [part for part in (_term_text("a", forms["a"], "A"), _term_text("b", forms["b"], "V")) if part]
     return f"{hardness} {parts[0]}" if len(parts) == 1 else f"{hardness} ({' + '.join(parts)})"
 
 
-def _term(letter: str, form: str, measure: str) -> str:
+def _term_text(letter: str, form: str, measure: str) -> str:
     terms = {"none": "", "one": measure, "constant": f"{letter}_0 {measure}"}
     return terms.get(form, f"({letter}_0 + {letter}_1 ϑ) {measure}")
 

@@ -124,7 +124,7 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
                 draw_line(plot.axes, line, colour=style.colour, x_unit=DEGREE)
     _angle_axis(plot.axes)
     plot.start_at_zero("y", stress, 1.08)
-    judgements = "; ".join(map(_judgement, rows[:MOST_SENTENCES]))
+    judgements = "; ".join(map(_p_value_text, rows[:MOST_SENTENCES]))
     caption = prose(
         "Failure shear stress S_f against edge angle at the sites where the angle was varied (the paper's Fig. 8), "
         "with the 95 % interval that the instruments allow. A regression line with the 95 % band of its mean is drawn "
@@ -135,7 +135,7 @@ def stress_angle(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | Lef
     return Drawing(name, caption, alt, plot.finish(data, handles), points=len(stress))
 
 
-def _judgement(row: Json) -> str:
+def _p_value_text(row: Json) -> str:
     if row["withheld"]:
         return str(Message("{site}: n = {n}, too few different angles to judge", site=row["group"], n=row["n"]))
     return f"{row['group']}: n = {row['n']}, {p_equals(row['p'])}"

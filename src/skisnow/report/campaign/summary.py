@@ -40,17 +40,17 @@ def summary(results: Json) -> str:
 
     results: contents of `skisnow.estimation.results_dict`.
     """
-    return "\n".join(_lines(results))
+    return "\n".join(_summary_lines(results))
 
 
-def _lines(results: Json) -> Iterator[str]:
+def _summary_lines(results: Json) -> Iterator[str]:
     name = results["campaign"]["name"]
     # in each line, because numbers are copied line by line
     tag = " (synthetic)" if "synthetic" in name.casefold() else ""
     yield f"{name}, {results['campaign']['place']}" if results["campaign"]["place"] else name
     yield ""
     yield from (f"{verdict}{tag}" for verdict in verdicts(results))
-    yield from _experiments(results)
+    yield from _experiment_lines(results)
     yield from _measured(results, "H_V_N_per_mm3", f"H_V{tag}", "N/mm³", "geometric mean")
     yield from _unloading(results, tag)
     yield from _measured(results, "S_f_N_per_mm2", f"S_f{tag}", "N/mm²", "mean")
@@ -61,12 +61,12 @@ def _lines(results: Json) -> Iterator[str]:
     yield from _missing_values(results["campaign"], has_tests=not relations)
     if results["penetration"]["selected"]:
         yield ""
-        yield from _models(results["penetration"], tag)
+        yield from _model_lines(results["penetration"], tag)
     shown = [row for row in results["regressions"] if row["p"] is not None or row["withheld"]]
     if shown:
         yield ""
         yield f"Regressions{tag}, slope with 95 % interval:"
-        yield from map(_regression, shown[:MOST_REGRESSIONS])
+        yield from map(_regression_line, shown[:MOST_REGRESSIONS])
         if len(shown) > MOST_REGRESSIONS:
             yield f"  and {len(shown) - MOST_REGRESSIONS} more in results.json"
         if any(row["withheld"] for row in shown[:MOST_REGRESSIONS]):
@@ -74,7 +74,7 @@ def _lines(results: Json) -> Iterator[str]:
             yield f"  not judged: with {few}, whatever else differs between them would show as well"
 
 
-def _experiments(results: Json) -> Iterator[str]:
+def _experiment_lines(results: Json) -> Iterator[str]:
     for kind in ("penetration", "shear"):
         rows = results[kind]["experiments"]
         if not rows:
@@ -101,7 +101,7 @@ def _measured(results: Json, quantity: str, symbol: str, unit: str, kind: str) -
     sites = [item for item in results["site_means"] if item["quantity"] == quantity]
     pooled = _mean(symbol, kind, unit, (row["own"], row["own_interval"], row["own_range"]), _over_sites(sites))
     if len(sites) > 1:
-        yield from (_site(item, symbol, unit, kind) for item in sites[:MOST_SITES])
+        yield from (_site_line(item, symbol, unit, kind) for item in sites[:MOST_SITES])
         if len(sites) > MOST_SITES:
             yield f"  and {len(sites) - MOST_SITES} more sites in results.json"
     yield pooled
@@ -169,7 +169,7 @@ def _mean(symbol: str, kind: str, unit: str, numbers: tuple[float, list[float] |
     return f"{symbol}: {kind} {plain(mean)} {unit}, {interval_words}, range {spread}"
 
 
-def _site(item: Json, symbol: str, unit: str, kind: str) -> str:
+def _site_line(item: Json, symbol: str, unit: str, kind: str) -> str:
     numbers = (item["mean"], item["interval"], item["range"])
     return _mean(f"{symbol} at {item['site']}", kind, unit, numbers, f"over its experiments, n = {item['n']}")
 
@@ -188,7 +188,7 @@ def _missing_values(campaign: Json, *, has_tests: bool) -> Iterator[str]:
         yield f"not stated, counted as 0: {', '.join(missing)}"
 
 
-def _models(penetration: Json, tag: str) -> Iterator[str]:
+def _model_lines(penetration: Json, tag: str) -> Iterator[str]:
     yield f"{f'Laws of the force{tag}':<34}{'rmse (N)':>9}{'n - p':>9}{'free':>9}   coefficients"
     chosen = penetration["selected"]["id"]
     for row in penetration["models"]:
@@ -209,7 +209,7 @@ def _law_coefficients(row: Json) -> str:
     return text + bounds
 
 
-def _regression(row: Json) -> str:
+def _regression_line(row: Json) -> str:
     head = f"  {row['response']} on {row['terms'][1]}, {row['group']}, n = {row['n']}: "
     slope = plain(row["b"][1])
     if row["withheld"]:

@@ -79,12 +79,12 @@ def _kind_verdicts(rows: list[Json], quantity: str, by: str, difference: float) 
     if len(rows) > MOST_PAIRS:
         uncertain = [row for row in rows if not _is_certain(row)]
         if by == "site":
-            yield _survey(rows, quantity, len(rows) - len(uncertain))
+            yield _survey_sentence(rows, quantity, len(rows) - len(uncertain))
         rows = sorted(uncertain, key=lambda row: row["p"] if _is_number(row["p"]) else 2.0)[:MOST_PAIRS]
     yield from (verdict(row, difference) for row in rows)
 
 
-def _survey(rows: list[Json], quantity: str, certain: int) -> Message:
+def _survey_sentence(rows: list[Json], quantity: str, certain: int) -> Message:
     won = Counter(row["group_a"] if row["ratio"] > 1.0 else row["group_b"] for row in rows)
     lost = Counter(row["group_b"] if row["ratio"] > 1.0 else row["group_a"] for row in rows)
     largest, smallest = won.most_common(1)[0][0], lost.most_common(1)[0][0]

@@ -68,14 +68,14 @@ def _names_of_legends(figure: Figure) -> dict[tuple[str, str], str]:
     """Names in legends by colour and marker of their lines."""
     legends = [*figure.legends, *(legend for axes in figure.axes if (legend := axes.get_legend()) is not None)]
     return {
-        _style(handle): text.get_text()
+        _line_style(handle): text.get_text()
         for legend in legends
         for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True)
         if isinstance(handle, Line2D)
     }
 
 
-def _style(line: Line2D) -> tuple[str, str]:
+def _line_style(line: Line2D) -> tuple[str, str]:
     return to_hex(line.get_color()), str(line.get_marker())
 
 
@@ -85,7 +85,7 @@ def _series(artist: Artist, axes: Axes, names: dict[tuple[str, str], str]) -> st
     if label and not label.startswith("_"):
         return label
     if isinstance(artist, Line2D):
-        return names.get(_style(artist), "")
+        return names.get(_line_style(artist), "")
     if isinstance(artist, QuadMesh):
         bars = [bar for bar in axes.figure.axes if bar.get_label() == _COLOUR_BAR]
         return next((bar.get_ylabel() for bar in bars if axes in getattr(bar, "_colorbar_info")["parents"]), "")  # noqa: B009

@@ -188,9 +188,9 @@ def worth_summary(variants: Sequence[Worth]) -> str:
     for variant in variants:
         through = len(variant.differences)
         deviation = "-" if variant.deviation is None else f"{variant.deviation:.3f}"
-        interval = ", ".join(map(_signed, variant.interval or ())) or "-"
+        interval = ", ".join(map(_signed_text, variant.interval or ())) or "-"
         lines.append(
-            f"{variant.name:{width}}  {_signed(variant.on_own_snow):>9} {_signed(variant.mean):>8} "
+            f"{variant.name:{width}}  {_signed_text(variant.on_own_snow):>9} {_signed_text(variant.mean):>8} "
             f"{deviation:>8} {interval:>16}  {variant.faster} of {through} snows"
             + (f": {variant.verdict}" if variant.interval else "")
             + ("" if through == len(variant.scores) else f", {len(variant.scores) - through} not through all gates")
@@ -263,5 +263,5 @@ def _time_text(score: Score) -> str:
     return score.words if score.time is None else f"{score.time:.3f} s"
 
 
-def _signed(value: float | None) -> str:
+def _signed_text(value: float | None) -> str:
     return "-" if value is None else f"{value:+.3f}"

@@ -291,7 +291,7 @@ def _snow_forces() -> list[RunVariable]:
     ]  # fmt: skip
 
 
-def _coordinates() -> list[RunVariable]:
+def _coordinate_variables() -> list[RunVariable]:
     down = (
         "place of the middle between the boots: {}, of x down the fall line (or horizontal, on a profile), y left, z up"
     )
@@ -346,7 +346,7 @@ def _groove_variables() -> list[RunVariable]:
 
 
 RUN_VARIABLES: Final = (
-    *_coordinates(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energy_variables(),
+    *_coordinate_variables(), *_over_time(), *_along_skis(), *_snow_forces(), *_boot_variables(), *_energy_variables(),
     *_groove_variables(),
 )  # fmt: skip
 """Variables of run.nc except the names of the skis, in the order of the file."""
@@ -373,11 +373,11 @@ def _balance_variables() -> tuple[RunVariable, ...]:
         *(RunVariable(name, (TIME,), "rad", meaning, of(name)) for name, meaning in leans.items()),
         *(RunVariable(name, (TIME,), "m", meaning, of(name)) for name, meaning in lengths.items()),
         RunVariable("load", (TIME, SKI), "N", "force of the ski on its boot along the snow's normal", of("load")),
-        *_three("centre_{}", (TIME,), "m", centre, _centre),
+        *_three("centre_{}", (TIME,), "m", centre, _centre_of_mass),
     )
 
 
-def _centre(run: Run) -> FloatArray:
+def _centre_of_mass(run: Run) -> FloatArray:
     return np.full((len(run.time), 3), np.nan) if run.boots is None else run.boots.centre_of_mass
 
 

@@ -264,10 +264,10 @@ def outcome_sentences(run: Run) -> list[Markup]:
     sentences.append(prose("Deepest place of an edge in the snow: {deepest} mm.", deepest=_number(deepest)))
     scenario = run.scenario
     sentences += [prose("Warning: {text}.", text=text) for text in model_limits(scenario.ski).values()]
-    return sentences + _balance(run)
+    return sentences + _energy_sentences(run)
 
 
-def _balance(run: Run) -> list[Markup]:
+def _energy_sentences(run: Run) -> list[Markup]:
     error = run.energy_balance_error
     if error is None or json_number(error) is None:
         return []

@@ -105,11 +105,11 @@ def run_energies(run: Run) -> Figure:
     figure = new_figure(width_mm=DOUBLE_MM, height_mm=80.0)
     total_axes, losses = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     shares = stacked_energies(run)
-    _stack(total_axes, run, shares, (*STORED, *LOST))
+    _draw_stack(total_axes, run, shares, (*STORED, *LOST))
     total = sum(shares[name][0] for name in STORED)
     total_axes.axhline(float(total), color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
     total_axes.set_title(_residual_in_words(run), loc="left", fontsize=7.5)
-    _stack(losses, run, shares, LOST)
+    _draw_stack(losses, run, shares, LOST)
     losses.set_title(Message("losses alone"), loc="left", fontsize=7.5)
     drawn = [style for name, style in _STYLES.items() if name not in _RATE or shares[name].any()]
     legend_below(figure, [Line2D([], [], color=colour, linewidth=5.0, label=label) for colour, label in drawn])
@@ -123,7 +123,7 @@ def stacked_energies(run: Run) -> dict[str, FloatArray]:
     return energies
 
 
-def _stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
+def _draw_stack(axes: Axes, run: Run, shares: dict[str, FloatArray], names: tuple[str, ...]) -> None:
     axes.stackplot(
         run.time, [shares[name] for name in names], colors=[_STYLES[name][0] for name in names], linewidth=0.0
     )

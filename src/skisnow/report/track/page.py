@@ -44,14 +44,14 @@ def turns_table(summary: TrackSummary) -> Table:
         "turns",
         Message("Turns of {track}, with 95 % intervals due to the noise of the places.", track=summary.track.name),
         _COLUMNS,
-        map(_record, turn_rows(summary)),
+        map(_record_json, turn_rows(summary)),
         note=Message(
             "Lean of balance: atan(v²/(g r)) at the minimum radius r. Best: the turn of its side that keeps most speed."
         ),
     )
 
 
-def _record(row: dict[str, Any]) -> dict[str, Any]:
+def _record_json(row: dict[str, Any]) -> dict[str, Any]:
     finite = {key: None if isinstance(value, float) and not np.isfinite(value) else value for key, value in row.items()}
     for name, low, high in (
         ("radius", "radius_low_m", "radius_high_m"),

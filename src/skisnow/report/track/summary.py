@@ -48,7 +48,7 @@ def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] |
     values: contents of `skisnow.track.summary.summary_dict`.
     flag_sentences: sentence of each flag, by code.
     """
-    lines = [values["file"], "", *named_rows(_rows(values))]
+    lines = [values["file"], "", *named_rows(_summary_rows(values))]
     for code, count in values["marked"].items():
         lines.append(f"{'flagged ' + code.replace('_', ' ')}: {count}. {(flag_sentences or {}).get(code, '')}".rstrip())
     for remark in values["remarks"]:
@@ -60,7 +60,7 @@ def track_text(values: Mapping[str, Any], *, flag_sentences: Mapping[str, str] |
     return "\n".join(lines)
 
 
-def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _summary_rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     smoothing = values["smoothing"]
     yield "points", f"{values['points']} in {plain(values['duration_s'], 4)} s, time scale {values['time_scale']}"
     if values["start"]:
@@ -85,7 +85,7 @@ def _rows(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             f"{bound}{plain(smoothing['place_noise_m'], 2)} m a coordinate, from point to point",
         )
     yield "smoothing", f"cubics by least squares in windows of {plain(smoothing['window_s'])} s"
-    yield "resolution", _resolution(smoothing)
+    yield "resolution", _resolution_text(smoothing)
 
 
 def _interval(ends: Sequence[float | None] | None, unit: str, digits: int) -> str:
@@ -110,7 +110,7 @@ _SOLUTION_WORDS: Final = {
 _SPEED_WORDS: Final = {"recorded": "as recorded", "fitted": "horizontal, of the estimated path: no speeds are recorded"}
 
 
-def _resolution(smoothing: Json) -> str:
+def _resolution_text(smoothing: Json) -> str:
     length = smoothing["half_amplitude_wavelength_m"]
     metres = "" if length is None else f" ({plain(length)} m at the median speed of the runs)"
     return (
@@ -183,7 +183,7 @@ def compare_summary(comparison: Mapping[str, Any]) -> str:
     if comparison["nearest"]["rms_m"] is not None:
         lines += [track_verdict(comparison), ""]
     for kind, title in TITLES.items():
-        lines += [*_distances(title, comparison[kind], measured["length_m"], exact), ""]
+        lines += [*_distance_lines(title, comparison[kind], measured["length_m"], exact), ""]
     back = comparison["largest_from_simulated_m"]
     if back is not None:
         lines.append(
@@ -193,7 +193,7 @@ def compare_summary(comparison: Mapping[str, Any]) -> str:
     lines.append(f"{comparison['means']}.")
     if exact:
         lines.append(f"A place is known to {plain(exact, 1)} m: no further digits are printed.")
-    lines += _fitted(comparison)
+    lines += _fitted_lines(comparison)
     return "\n".join(lines)
 
 
@@ -245,7 +245,7 @@ def rounded(value: float | None, exact: float, digits: int = 3) -> str:
     return f"{round(value, min(decimals, max(fewest, 0))):.{max(min(decimals, max(fewest, 0)), 0)}f}"
 
 
-def _distances(title: str, distances: Mapping[str, Any], length: float, exact: float) -> Iterator[str]:
+def _distance_lines(title: str, distances: Mapping[str, Any], length: float, exact: float) -> Iterator[str]:
     yield f"{title}: {distances['definition']}"
     if distances["max_m"] is None:
         yield f"  none: {distances['reason']}"
@@ -260,7 +260,7 @@ def _distances(title: str, distances: Mapping[str, Any], length: float, exact: f
     yield f"  over    {metres(distances['compared_m'], exact, 4)}, {share} % of the measured track"
 
 
-def _fitted(comparison: Mapping[str, Any]) -> Iterator[str]:
+def _fitted_lines(comparison: Mapping[str, Any]) -> Iterator[str]:
     fitted = comparison["fitted"]
     if fitted is None:
         return

@@ -59,7 +59,7 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
     folder = Path(folder)
     prepare_folder(folder)
     with staged(folder, last="report.html") as stage:
-        pictures = write_pictures(_drawings(chain), stage.path / "figures", every=FIGURES, language=language)
+        pictures = write_pictures(_make_drawings(chain), stage.path / "figures", every=FIGURES, language=language)
         write_file(stage.path / "turn.json", f"{json_text(turn_dict(chain))}\n")
         write_file(stage.path / "report.html", turn_page(chain, pictures, language=language))
     return folder / "report.html"
@@ -68,10 +68,10 @@ def write_turn_report(chain: TurnChain, folder: str | Path, *, language: str = E
 def turn_page(chain: TurnChain, pictures: Sequence[Picture], *, language: str = ENGLISH) -> str:
     """HTML of the report of a chain from campaign to turn."""
     with in_language(language):
-        return sheet(_header(chain), _sections(chain, pictures))
+        return sheet(_make_header(chain), _make_sections(chain, pictures))
 
 
-def _drawings(chain: TurnChain) -> Iterator[Drawing]:
+def _make_drawings(chain: TurnChain) -> Iterator[Drawing]:
     name, nominal = next(iter(chain.runs.items()))
     yield Drawing(
         "contacts",
@@ -113,7 +113,7 @@ def _drawings(chain: TurnChain) -> Iterator[Drawing]:
     )
 
 
-def _header(chain: TurnChain) -> Header:
+def _make_header(chain: TurnChain) -> Header:
     nominal = next(iter(chain.runs.values()))
     facts = [
         (Message("Campaign"), chain.campaign),
@@ -134,7 +134,7 @@ def _header(chain: TurnChain) -> Header:
     )
 
 
-def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
+def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     by_name = {picture.name: picture for picture in pictures}
     nominal = next(iter(chain.runs.values()))
     contacts = prose(
@@ -153,7 +153,9 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     )
     return [
         Section("key-results", Message("Key results"), key=key_sentences(chain)),
-        Section("snow", Message("The snow that was found"), words=[_snow()], tables=[parameters_table(chain.snow)]),
+        Section(
+            "snow", Message("The snow that was found"), words=[_snow_method()], tables=[parameters_table(chain.snow)]
+        ),
         Section(
             "contacts",
             Message("The turn with each contact"),
@@ -180,7 +182,7 @@ def _sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Section]:
     ]
 
 
-def _snow() -> Markup:
+def _snow_method() -> Markup:
     return prose(
         "H_V is the geometric mean over the used penetration experiments of the site, S_f the mean over its used shear "
         "experiments, each with its 95 % interval by Student's t. Where they were measured, k_u / H_V is the harmonic "
@@ -257,7 +259,7 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
             Column("grip", Message("Grip utilisation")),
             Column("slides", Message("Share of time side-slipping")),
         ),
-        [_contact(name, run) for name, run in runs.items()],
+        [_contact_row(name, run) for name, run in runs.items()],
         note=Message(
             "Afterbody / forebody: edge-depth ratio, the mean edge depth of the contact behind the boot over that "
             "before it, of the more heavily loaded (outer) ski, median over the second half. Grip utilisation: side "
@@ -267,7 +269,7 @@ def contacts_table(runs: Mapping[str, Run]) -> Table:
     )
 
 
-def _contact(name: str, run: Run) -> tuple[Any, ...]:
+def _contact_row(name: str, run: Run) -> tuple[Any, ...]:
     heading = np.unwrap(run.heading)
     return (
         name,
@@ -317,7 +319,7 @@ def shares_table(chain: TurnChain) -> Table:
             Column("aside_percent", Message("Share of the offset across"), "estimate", unit="%", digits=2),
             Column("ahead_percent", Message("Share of the offset along"), "estimate", unit="%", digits=2),
         ),
-        [*_inputs(chain, shares), *_unexplained(shares)],
+        [*_inputs(chain, shares), *_unexplained_rows(shares)],
         note=Message(
             "Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
             "intervals. The rest is proportional to no input: curvature, thresholds such as an edge that loses its "
@@ -349,7 +351,7 @@ def _shares_of(key: str, shares: BandShares | None) -> tuple[Any, Any]:
     return across, along
 
 
-def _unexplained(shares: BandShares | None) -> list[tuple[Any, ...]]:
+def _unexplained_rows(shares: BandShares | None) -> list[tuple[Any, ...]]:
     if shares is None:
         return []
     across, along = ((100.0 * direction.left, None) for direction in (shares.aside, shares.ahead))

@@ -58,14 +58,14 @@ _FURTHER: Final = {
 def key_sentences(chain: TurnChain) -> list[Markup]:
     """Key sentences: snow, contacts, band, and warnings near the limit of grip."""
     contacts = [_contact_sentence(name, run) for name, run in chain.runs.items()]
-    spreads = [_band(chain), *_spreads(chain), *_largest_share(chain)]
-    return [_snow(chain), *contacts, *contrast(chain), *spreads, *_warnings(chain)]
+    spreads = [_band_sentence(chain), *_spreads(chain), *_largest_share(chain)]
+    return [_snow_sentence(chain), *contacts, *contrast(chain), *spreads, *_warning_sentences(chain)]
 
 
 def headline(chain: TurnChain) -> Markup:
     """Sentence with the turn radius and the precision of the end of the run."""
     radius = median_radius(chain.nominal)
-    aside, ahead = _widths(chain)
+    aside, ahead = _band_widths(chain)
     fields = {
         "aside": significant(aside, 2),
         "ahead": significant(ahead, 2),
@@ -111,7 +111,7 @@ def _key_list(keys: Sequence[str]) -> Markup:
     return prose("{before} and {last}", before=Markup(", ").join(before), last=last) if before else last
 
 
-def _warnings(chain: TurnChain) -> list[Markup]:
+def _warning_sentences(chain: TurnChain) -> list[Markup]:
     return [prose("Warning: {text}.", text=text) for text in chain.warnings]
 
 
@@ -149,7 +149,7 @@ def _shares(chain: TurnChain) -> BandShares | None:
     return shares if shares is not None and shares.aside.share.any() else None
 
 
-def _snow(chain: TurnChain) -> Markup:
+def _snow_sentence(chain: TurnChain) -> Markup:
     snow = chain.snow
     of_hardness, of_stress = snow.snow_hardness_interval, snow.failure_shear_stress_interval
     return prose(
@@ -203,11 +203,11 @@ def contrast(chain: TurnChain) -> list[Markup]:
 def _contrast(name: Markup, run: Run, first: Markup, reference: Run) -> list[Markup]:
     grips = used_grip(run)[0], used_grip(reference)[0]
     ratios = afterbody_depth_ratio(run), afterbody_depth_ratio(reference)
-    grip = prose(_GRIPS[_compared(*grips)], values=_both(*grips))
+    grip = prose(_GRIPS[_compared(*grips)], values=_value_against_other(*grips))
     return [
         _compare_radii(name, median_radius(run), first, reference),
         Markup(" ").join([grip, _compare_slip(name, run, first, reference)]),
-        prose(_DEPTH_RATIOS[_compared(*ratios)], values=_both(*ratios)),
+        prose(_DEPTH_RATIOS[_compared(*ratios)], values=_value_against_other(*ratios)),
         prose("The tracks lie up to {distance} m apart.", distance=significant(maximum_distance(run, reference))),
     ]
 
@@ -265,12 +265,12 @@ def _compared(value: float | None, other: float | None) -> int:
     return 2 if value > other else 0
 
 
-def _both(value: float | None, other: float | None) -> str:
+def _value_against_other(value: float | None, other: float | None) -> str:
     return str(Message("{value} against {other}", value=significant(value), other=significant(other)))
 
 
-def _band(chain: TurnChain) -> Markup:
-    aside, ahead = _widths(chain)
+def _band_sentence(chain: TurnChain) -> Markup:
+    aside, ahead = _band_widths(chain)
     return prose(
         "Over all that is not known, 90 % of {runs} end within {aside} m across and {ahead} m along the track.",
         runs=counted(len(chain.ensemble), "{count} run", "{count} runs"),
@@ -279,7 +279,7 @@ def _band(chain: TurnChain) -> Markup:
     )
 
 
-def _widths(chain: TurnChain) -> tuple[float, float]:
+def _band_widths(chain: TurnChain) -> tuple[float, float]:
     nominal = next(iter(chain.runs.values()))
     return band_width(middle_track(nominal), [run.track for run in chain.ensemble])
 
@@ -316,7 +316,7 @@ def ensemble_accuracy(chain: TurnChain) -> list[Markup]:
 def meaning(chain: TurnChain) -> list[Markup]:
     """Effects of the contact and of the unknown inputs on the track, and the measurement that would help most."""
     reference, *others = chain.runs.values()
-    aside, _ = _widths(chain)
+    aside, _ = _band_widths(chain)
     far = max(maximum_distance(run, reference) or 0.0 for run in others)  # a run without a step moved nowhere
     contacts = prose(
         "The choice of the contact moves the track by up to {far} m, the unknown inputs of the turn move it by "

@@ -156,7 +156,7 @@ class Course(Shown):
     @property
     def lines(self) -> tuple[GateLine, ...]:
         """Line of each gate: from the turning pole to the outer one, else perpendicular to the course at the pole."""
-        return tuple(_line(gate, along) for gate, along in zip(self.gates, self._chords(), strict=True))
+        return tuple(_gate_line(gate, along) for gate, along in zip(self.gates, self._chords(), strict=True))
 
     def _chords(self) -> FloatArray:
         """Direction of the course at each gate (n, 2): from the pole before to the pole behind it."""
@@ -180,7 +180,7 @@ class Course(Shown):
         return Facts(f"{kind}{len(self.gates)} gates, {amount(self.length, 'm')} from pole to pole: {self.source}")
 
 
-def _line(gate: Gate, along: FloatArray) -> GateLine:
+def _gate_line(gate: Gate, along: FloatArray) -> GateLine:
     turn = 1.0 if gate.side == "left" else -1.0
     pole = np.array(gate.turning)
     if gate.outer is None:

@@ -245,13 +245,13 @@ def _waypoint(path: str | Path, row: int, point: Element) -> Waypoint:
     name = point.text_of("name") or str(row)
     words = (_SIDE.search(point.text_of(key)) for key in _SAYS)
     side = next((word[1].lower() for word in words if word), None)
-    latitude = _number(path, row, "lat", point.attributes.get("lat"), 90.0)
-    longitude = _number(path, row, "lon", point.attributes.get("lon"), 180.0)
-    height = _number(path, row, "ele", point.text_of("ele") or "nan", 1e5)
+    latitude = _waypoint_number(path, row, "lat", point.attributes.get("lat"), 90.0)
+    longitude = _waypoint_number(path, row, "lon", point.attributes.get("lon"), 180.0)
+    height = _waypoint_number(path, row, "ele", point.text_of("ele") or "nan", 1e5)
     return Waypoint(row, name, latitude, longitude, height, cast("Side | None", side))
 
 
-def _number(path: str | Path, row: int, what: str, text: str | None, limit: float) -> float:
+def _waypoint_number(path: str | Path, row: int, what: str, text: str | None, limit: float) -> float:
     try:
         value = float(text or "")
     except ValueError:
@@ -302,10 +302,10 @@ def course_warnings(course: Course, *, drop: float | None = None) -> tuple[str, 
     changes of direction for 11 to 15 % of the metres of drop (901.2.4; of the whole course, start to finish).
     """
     rules = None if course.discipline is None else RULES[course.discipline]
-    return () if rules is None else tuple(_departures(course, rules, drop))
+    return () if rules is None else tuple(_departures_from_rules(course, rules, drop))
 
 
-def _departures(course: Course, rules: Rules, drop: float | None) -> Iterator[str]:
+def _departures_from_rules(course: Course, rules: Rules, drop: float | None) -> Iterator[str]:
     low, high = rules.width
     for gate in course.gates:
         if gate.outer is not None and not low <= gate.width <= high:

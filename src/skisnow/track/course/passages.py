@@ -137,13 +137,13 @@ def passages(course: Course, middle: MovingPoint, parts: Mapping[str, MovingPoin
     results: list[Passage] = []
     after = float("-inf")
     for gate, line in zip(course.gates, course.lines, strict=True):
-        passage = _passage(gate, line, after, middle, parts or {"track": middle})
+        passage = _find_passage(gate, line, after, middle, parts or {"track": middle})
         after = after if passage.time is None else max(after, passage.time)
         results.append(passage)
     return CourseResult(course=course, passages=tuple(results), start_time=float(middle.time[0]))
 
 
-def _passage(
+def _find_passage(
     gate: Gate, line: GateLine, after: float, middle: MovingPoint, parts: Mapping[str, MovingPoint]
 ) -> Passage:
     crossings = middle.crossings(line.pole, line.along, line.across)
@@ -157,11 +157,11 @@ def _passage(
             return Passage(gate=gate, outcome="backwards", words=words)
         words = Message("Gate {gate} was not reached.", gate=gate.name)
         return Passage(gate=gate, outcome="not_reached", words=words)
-    results = [_judge(gate, line, crossing, parts) for crossing in tried]
+    results = [_judge_crossing(gate, line, crossing, parts) for crossing in tried]
     return next((crossing for crossing in results if crossing.outcome == "passed"), results[0])
 
 
-def _judge(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingPoint]) -> Passage:
+def _judge_crossing(gate: Gate, line: GateLine, at: Crossing, parts: Mapping[str, MovingPoint]) -> Passage:
     aside = {name: _lateral_position(line, at, part) for name, part in parts.items()}
     low, high = min(aside.values()), max(aside.values())
     clearance = min(low, line.width - high)

@@ -58,7 +58,7 @@ def build_track(
         place=place,
         speed=speed,
         time_scale=recording.time_scale,
-        frame=_frame(recording, at),
+        frame=_frame_text(recording, at),
         velocity=velocity,
         place_sd=recording.place_sd,
         speed_sd=recording.speed_sd,
@@ -163,7 +163,7 @@ def _first(points: FloatArray) -> GeodeticPoint:
     return GeodeticPoint(float(points[0, 0]), float(points[0, 1]), float(heights[0]) if len(heights) else 0.0)
 
 
-def _frame(recording: Recording, at: GeodeticPoint | None) -> str:
+def _frame_text(recording: Recording, at: GeodeticPoint | None) -> str:
     if at is None:
         return recording.axes_in_words
     return f"east, north, up in m from {at}: the plane that touches WGS84 there; heights {recording.heights}"

@@ -169,10 +169,10 @@ def changes(
             asking_button(Message("Undo: {done}", done=_entry_words(test.undoable, view)), undo)
         if not test.cancelled and not cancelled and test.rows:
             asks = asking_button(Message("Cancel this test"), ask_cancel)
-    _history(test, view)
+    _add_history(test, view)
 
 
-def _history(test: ReplayedTest, view: TableView) -> None:
+def _add_history(test: ReplayedTest, view: TableView) -> None:
     if not test.history:
         return
     lines = []

@@ -51,7 +51,7 @@ class SeriesForm:
         self._places.clear()
         with self._places.form:
             heading(Message("New series"))
-            with form(sends=lambda: self._begun(typed)):
+            with form(sends=lambda: self._begin_series(typed)):
                 name = field(label("experiment"), self._view.next_name())
                 site = field(label("site"), before.get("site", ""))
                 tools = sorted(described.tools)
@@ -60,12 +60,12 @@ class SeriesForm:
                 angle = field(label("edge_angle_deg"), before.get("edge_angle_deg", ""), numeric=True)
                 spot = field(Message("Measurement point, if sheared there"), optional=True)
             typed: dict[str, Field] = dict(zip(HEAD, (name, site, spot, tool, angle), strict=True))
-            asking_button(Message("Begin the series"), lambda: self._begun(typed), "main")
+            asking_button(Message("Begin the series"), lambda: self._begin_series(typed), "main")
         first = angle if site.value else site
         first.run_method("focus")
         first.run_method("select")  # typing replaces the value of the last series
 
-    def _begun(self, typed: dict[str, Field]) -> bool:
+    def _begin_series(self, typed: dict[str, Field]) -> bool:
         head = checked_fields(self._view.form, typed)
         if head is not None and self._view.test(head["experiment"]).history:
             refuse(
@@ -150,7 +150,7 @@ class SeriesForm:
         with ui.element("div").classes("readings") as readings:
             readings.props["data-head"] = json.dumps(self._head)
             for step in steps:
-                self._readings[step] = self._reading(test, step, unstored.get(step))
+                self._readings[step] = self._add_reading(test, step, unstored.get(step))
 
     def _unloading_fields(self, test: ReplayedTest, steps: list[Step], unstored: Mapping[Step, str]) -> None:
         """Fields for the depths of unloading, folded without a reading."""
@@ -217,7 +217,7 @@ class SeriesForm:
         also = [load for load in steps if test.row_under(load) is None]
         return sorted(dict.fromkeys([*entered, *also]), key=float)
 
-    def _reading(self, test: ReplayedTest, step: Step, unstored: str | None) -> ReadingField:
+    def _add_reading(self, test: ReplayedTest, step: Step, unstored: str | None) -> ReadingField:
         row = test.row_under(*step)
         with ui.element("div").classes("reading") as holder:
             holder.props["data-load"] = step.load

@@ -96,7 +96,7 @@ class SeriesCorrections:
             for step, depth in depths.items()
             for stored in [stored_depth(test.row_under(*step))]
         ]
-        act = (Message("Correct it"), lambda why: self._correct(depths, why))
+        act = (Message("Correct it"), lambda why: self._store_corrections(depths, why))
         ask_reason(self._place, lines, act, usual=USUAL_REASON, leave=self._leave, focus=focus)
         if is_said:
             self._view.say(ASKED, "")
@@ -113,7 +113,7 @@ class SeriesCorrections:
         else:
             self._view.say(LEFT_AS_IT_WAS)
 
-    def _correct(self, depths: Mapping[Step, str], why: str) -> bool:
+    def _store_corrections(self, depths: Mapping[Step, str], why: str) -> bool:
         for step, depth in depths.items():
             test = self._test
             row = test.row_under(*step)
@@ -166,7 +166,7 @@ class DepthsAfterWaiting:
         ):
             for load, text in stored.items():
                 typed = unstored.get(load, number_text(text))
-                self._fields[load] = self._field(load, text, typed, closed=bool(test.cancelled))
+                self._fields[load] = self._add_depth_field(load, text, typed, closed=bool(test.cancelled))
             if not test.cancelled:
                 asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
 
@@ -174,7 +174,7 @@ class DepthsAfterWaiting:
         """Put the focus on the first unstored field."""
         self._fields[next(iter(self.unstored))].run_method("focus")
 
-    def _field(self, load: str, stored: str, text: str, *, closed: bool) -> ui.input:
+    def _add_depth_field(self, load: str, stored: str, text: str, *, closed: bool) -> ui.input:
         with ui.element("div").classes("reading") as made:
             add_load(load)
             depth = field(label(AFTER), text, numeric=True, optional=True)
@@ -204,7 +204,7 @@ class DepthsAfterWaiting:
             Message("{depth} mm under {load} N", depth=number_text(text), load=number_text(load))
             for load, text in new.items()
         ]
-        if not self._correct(new, WAITED, Message("Stored after waiting: {listed}.", listed=listed)):
+        if not self._store_corrections(new, WAITED, Message("Stored after waiting: {listed}.", listed=listed)):
             return False
         if others:
             self._ask_correction(ask, others)
@@ -231,7 +231,7 @@ class DepthsAfterWaiting:
         self._view.say(Message("Not stored:"), "bad", faults(typed.values()))
         return None
 
-    def _correct(self, depths: dict[str, str], why: str, said: str) -> bool:
+    def _store_corrections(self, depths: dict[str, str], why: str, said: str) -> bool:
         for load, text in depths.items():
             test = self._test
             row = test.row_under(load)
@@ -241,7 +241,7 @@ class DepthsAfterWaiting:
 
     def _ask_correction(self, ask: ui.element, depths: dict[str, str]) -> None:
         def correct(why: str) -> bool:
-            if not self._correct(depths, why, Message("Corrected; the first reading is kept.")):
+            if not self._store_corrections(depths, why, Message("Corrected; the first reading is kept.")):
                 return False
             self._shown()
             return True

@@ -45,7 +45,7 @@ class SingleForm:
 
     def begin(self) -> None:
         """Show the form of a new row, with texts that were typed before."""
-        self._draw(self._begun or self._prefilled(), None)
+        self._draw(self._begun or self._prefilled_cells(), None)
 
     def _leave_for_new(self) -> bool:
         if self._is_unanswered():
@@ -69,7 +69,7 @@ class SingleForm:
         self._draw(chosen.cells, (test, chosen))
         self._live_results.follow(name, chosen.cells["site"])
 
-    def _prefilled(self) -> dict[str, str]:
+    def _prefilled_cells(self) -> dict[str, str]:
         tests, key = self._view.tests(), self._view.form.key
         before = tests[-1].rows[-1].cells if tests else {}
         cells = {column: before.get(column, "") for column in KEPT}
@@ -84,15 +84,15 @@ class SingleForm:
     def _draw(self, cells: dict[str, str], correcting: tuple[ReplayedTest, Reading] | None) -> None:
         if self._is_new and correcting is not None:
             typed = {column: str(field_.value) for column, field_ in self._fields.items() if field_.value}
-            self._begun = typed if typed.items() - self._prefilled().items() else None
+            self._begun = typed if typed.items() - self._prefilled_cells().items() else None
         self._is_new, self._correcting = correcting is None, correcting
-        ui.navigate.history.replace(self._address())  # the browser keeps typed texts by address: each row has one
+        ui.navigate.history.replace(self._page_address())  # the browser keeps typed texts by address: each row has one
         self._places.clear()
         with self._places.form:
             heading(Message("Correct a test") if correcting else Message("New test"))
             if correcting and correcting[0].cancelled:
                 sentence(Message("Cancelled: {cancelled}", cancelled=correcting[0].cancelled), "bad")
-            sends = self._store if correcting is None else lambda: self._ask_correction(*correcting)
+            sends = self._store_test if correcting is None else lambda: self._ask_correction(*correcting)
             with form(sends=sends):
                 self._fields = {column: self._field(column, cells, fixed=bool(correcting)) for column in self._columns}
             self._ask = ui.element("div")
@@ -112,7 +112,7 @@ class SingleForm:
         self._list.show(correcting[0].name if correcting else "")
         self._focus_first()
 
-    def _address(self) -> str:
+    def _page_address(self) -> str:
         test, row = self._correcting or (None, None)
         head = {"row": _entry_number(row)} if row is not None else {}
         return entering(self._view.session.id, table=self._view.file, test=test.name if test else "", head=head)
@@ -137,14 +137,14 @@ class SingleForm:
         if candidates:
             candidates[0].run_method("focus")
 
-    def _cells(self, rejected: str = Message("Not stored:")) -> dict[str, str] | None:
+    def _checked_cells(self, rejected: str = Message("Not stored:")) -> dict[str, str] | None:
         cells = checked_fields(self._view.form, self._fields)
         if cells is None:
             self._view.say(rejected, "bad", faults(self._fields.values()))
         return cells
 
-    def _store(self) -> bool:
-        cells = self._cells()
+    def _store_test(self) -> bool:
+        cells = self._checked_cells()
         if cells is None:
             return False
         key = self._view.form.key
@@ -196,7 +196,7 @@ class SingleForm:
         return True
 
     def _ask_correction(self, test: ReplayedTest, row: Reading) -> bool:
-        cells = self._cells(Message("Not corrected:"))
+        cells = self._checked_cells(Message("Not corrected:"))
         if cells is None:
             return False
         stored = row.cells
@@ -207,7 +207,8 @@ class SingleForm:
         ]
         return ask_correction(
             self._view, self._ask, (test, row), changed, lines=lines,
-            show=lambda: self.show(test.name, row=_entry_number(row)), leave=lambda: self._draw(row.cells, (test, row)),
+            show=lambda: self.show(test.name, row=_entry_number(row)),
+            leave=lambda: self._draw(row.cells, (test, row))
         )  # fmt: skip
 
 

@@ -96,7 +96,7 @@ class TableView:
     def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
         """Store a row; True if it is stored, now or by an earlier request with the same key."""
         once = current_request().once
-        return self.write(self._entry("add", name, cells=cells, position=position, once=once), seen, said)
+        return self.write(self._make_entry("add", name, cells=cells, position=position, once=once), seen, said)
 
     def stored_before(self) -> str | None:
         """Name of the test that an earlier request with the same key stored; None without one."""
@@ -117,7 +117,7 @@ class TableView:
         if not why.strip():
             self.say(Message("A correction needs a reason."), "bad")
             return False
-        entry = self._entry("correct", test.name, about=row, cells=cells, why=why.strip())
+        entry = self._make_entry("correct", test.name, about=row, cells=cells, why=why.strip())
         return self.write(entry, test.last, said)
 
     def cancel(self, test: ReplayedTest, why: str) -> bool:
@@ -125,7 +125,7 @@ class TableView:
         if not why.strip():
             self.say(Message("A test is cancelled with a reason."), "bad")
             return False
-        entry = self._entry("cancel", test.name, why=" ".join(why.split()))
+        entry = self._make_entry("cancel", test.name, why=" ".join(why.split()))
         return self.write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
 
     def undo(self, test: ReplayedTest) -> bool:
@@ -134,14 +134,14 @@ class TableView:
         if last is None:
             self.say(Message("There is nothing to undo."), "bad")
             return False
-        entry = self._entry("undo", test.name, about=last.sequence)
+        entry = self._make_entry("undo", test.name, about=last.sequence)
         return self.write(entry, test.last, Message("Undone."))
 
     def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
         """Show the outcome of the last action; ``items``: problems in the language of the page."""
         self._status.say(in_words(text), kind, items)
 
-    def _entry(self, action: Action, test: str, **fields: Any) -> NewEntry:
+    def _make_entry(self, action: Action, test: str, **fields: Any) -> NewEntry:
         return NewEntry(action=action, file=self.file, test=test, who=self.writer, **fields)
 
     def write(self, entry: NewEntry, seen: int, said: str) -> bool:
@@ -179,7 +179,7 @@ class EntryList:
 
     async def _load(self) -> None:
         """Compute the results of each site once."""
-        for site in dict.fromkeys(test.rows[0].cells["site"] for test in self._shown()):
+        for site in dict.fromkeys(test.rows[0].cells["site"] for test in self._shown_tests()):
             try:
                 results = await run.io_bound(self._view.session.quick_results, site)
             except (FieldDataError, StoreError):  # the form shows the error
@@ -198,7 +198,7 @@ class EntryList:
                 self._results[name] = short, list(results.flags.get((file, name), {}))
         self.show(self.current)
 
-    def _shown(self) -> list[ReplayedTest]:
+    def _shown_tests(self) -> list[ReplayedTest]:
         return [test for test in self._view.tests()[-MOST:] if test.rows]
 
     def show(self, current: str) -> None:
@@ -206,7 +206,7 @@ class EntryList:
         self.current = current
         lines = [
             (test.name, row.cells["site"], str(row.entered.sequence), *self._words(test, row))
-            for test in reversed(self._shown())
+            for test in reversed(self._shown_tests())
             for row in (reversed(test.rows) if self.open_row else test.rows[:1])
         ]
         if self._drawn == (current, lines):
@@ -222,9 +222,9 @@ class EntryList:
                 with ui.element("ul").classes("so-far"):
                     for name, _, row, text, about in (line for line in lines if line[1] == site):
                         with ui.element("li"):
-                            self._add(name, row, text, about)
+                            self._add_item(name, row, text, about)
 
-    def _add(self, name: str, row: str, text: str, about: str) -> None:
+    def _add_item(self, name: str, row: str, text: str, about: str) -> None:
         made: ui.element
         if (open_row := self.open_row) is not None:
             made = asking_button(text, lambda: open_row(name, row), "small")

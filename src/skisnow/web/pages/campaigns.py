@@ -136,7 +136,7 @@ def _list_imported(lab: Lab) -> None:
                 link(Message("Analysis"), analysis("kept", campaign.id))
                 link(Message("Export"), export("kept", campaign.id))
                 if _is_undoable(lab, campaign):
-                    button(Message("Undo the import"), partial(_undo, lab, campaign.id), once=True)
+                    button(Message("Undo the import"), partial(_remove_campaign, lab, campaign.id), once=True)
 
 
 def _is_undoable(lab: Lab, campaign: StoredCampaign) -> bool:
@@ -145,7 +145,7 @@ def _is_undoable(lab: Lab, campaign: StoredCampaign) -> bool:
     return is_import and not Journals(lab.store).corrections(campaign.id)
 
 
-def _undo(lab: Lab, id_: str) -> None:
+def _remove_campaign(lab: Lab, id_: str) -> None:
     lab.store.remove(id_)
     ui.navigate.to(PATH)
 

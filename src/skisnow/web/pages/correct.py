@@ -95,7 +95,7 @@ class ImportedTestForm:
             if test.cancelled or cancelled:
                 sentence(Message("Cancelled: {value}", value=test.cancelled or cancelled), "bad")
             with form("", sends=lambda: self._ask_correction(name)):
-                self._draw(tuple(rows), cells)
+                self._draw_fields(tuple(rows), cells)
             self._ask = ui.element("div")
             asking_button(Message("Correct"), lambda: self._ask_correction(name), "main")
         with self._places.below:
@@ -109,24 +109,24 @@ class ImportedTestForm:
             )
         self._live_results.follow(name, cells.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
 
-    def _draw(self, lines: tuple[int, ...], cells: Mapping[str, str]) -> None:
+    def _draw_fields(self, lines: tuple[int, ...], cells: Mapping[str, str]) -> None:
         once = [column for column in self._columns if column in ONCE and self._is_once(lines, column, cells)]
         self._fields = {lines: {}}
         with ui.element("div").classes("fields"):
             for column in once:
-                self._fields[lines][column] = self._field(column, cells[cell_key(lines[0], column)])
+                self._fields[lines][column] = self._make_field(column, cells[cell_key(lines[0], column)])
         for line in lines:
             own = self._fields.setdefault((line,), {})
             with ui.element("div").classes("fields row"):
                 for column in self._columns:
                     if column not in once:
                         row = line if len(lines) > 1 else None
-                        own[column] = self._field(column, cells[cell_key(line, column)], row=row)
+                        own[column] = self._make_field(column, cells[cell_key(line, column)], row=row)
 
     def _is_once(self, lines: Iterable[int], column: str, cells: Mapping[str, str]) -> bool:
         return len({cells[cell_key(line, column)] for line in lines}) == 1
 
-    def _field(self, column: str, text: str, *, row: int | None = None) -> Field:
+    def _make_field(self, column: str, text: str, *, row: int | None = None) -> Field:
         words = self._view.label(column)
         if row is not None:
             words = Message("{column}, row {row}", column=words, row=row)

@@ -63,7 +63,7 @@ def add_page(lab: Lab) -> None:
 
             def done() -> bool:
                 try:
-                    id_ = _store(lab, session, described.text(), current_request().once)
+                    id_ = _store_description(lab, session, described.text(), current_request().once)
                 except SkisnowError as error:
                     _show_refusal(status, error)
                     return False
@@ -96,7 +96,7 @@ def _restore_rows_on_reload(described: DescriptionForm) -> None:
     ui.on("grow", grow)
 
 
-def _store(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
+def _store_description(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
     if session is None:
         return Journals(lab.store).begin(text, once=once)
     described = toml_values(text)
@@ -186,13 +186,13 @@ class EntryRows:
         heading(title)
         self._place = ui.element("div").props(f"data-rows={kind}")
         for entry in list(entries) or [dict[str, Any]()]:
-            self._add(entry)
+            self._add_row(entry)
         row_button(_ANOTHER[kind], self._add_focused_row)
 
     def grow(self, count: Any, choices: dict[Any, Any]) -> None:
         """Add rows up to a count, and set shapes by the names of their fields."""
         while isinstance(count, int) and len(self._rows) < min(count, MOST_ROWS):
-            self._add({})
+            self._add_row({})
         shapes = {said(words): shape for shape, words in SHAPE_WORDS.items()}
         for number, (_, shape, _) in enumerate(self._rows, start=1):
             word = choices.get(said(Message(_SHAPE, number=number)))
@@ -200,11 +200,11 @@ class EntryRows:
                 shape.set_value(shapes[word])
 
     def _add_focused_row(self) -> None:
-        self._add({})
+        self._add_row({})
         name = self._rows[-1][0]
         name.client.run_javascript(f"getHtmlElement({name.id}).focus()")  # focus() waits for a menu to close
 
-    def _add(self, values: dict[str, Any]) -> None:
+    def _add_row(self, values: dict[str, Any]) -> None:
         number = len(self._rows) + 1
         with self._place, ui.element("div").classes("fields row"):
             name = field(Message(_NAME_OF[self.kind], number=number), values.get("name", ""))

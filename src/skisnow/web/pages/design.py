@@ -120,7 +120,7 @@ class _DesignPage(CarvedTurn):
             with ui.element("section"):
                 with ui.element("div").classes("fields large"):
                     self._ski = choice(Message("Ski"), list(own), first if first in own else next(iter(own)))
-                    others = _others(skis)
+                    others = _other_skis(skis)
                     self._other = choice(
                         Message("Compared with"), others, other if other in others else str(self._ski.value)
                     )
@@ -133,28 +133,28 @@ class _DesignPage(CarvedTurn):
                 self.add_facts()
                 self.add_charts()
                 self.add_download_buttons("design")
-        self._ski.on_value_change(self._begin)
+        self._ski.on_value_change(self._reset_sliders)
         self._other.on_value_change(self.ask)
 
     def _add_search(self) -> None:
         with ui.element("div").classes("acts"):
             self._target = field(Message("Wanted radius (m)"), "12", numeric=True)
-            self._search = button(Message("Find the design"), self._find, "main")
+            self._search = button(Message("Find the design"), self._find_radius, "main")
         self._found = Outcome()
 
     def _add_saving(self) -> None:
         with ui.element("div").classes("acts"):
             self._name = field(Message("New name"))
-            button(Message("Save in the lab"), self._save, once=True)
-            button(Message("Download the file"), self._export)
+            button(Message("Save in the lab"), self._save_ski, once=True)
+            button(Message("Download the file"), self._download_ski)
         self._saved = Outcome()
 
-    def _begin(self) -> None:
+    def _reset_sliders(self) -> None:
         for key, (_, _, start) in SHAPES.items():
             self.sliders[key].put(float(start), "+g" if start == "+0" else "g")
         self.ask()
 
-    def _keys(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
+    def _designed_keys(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
         name = str(self._ski.value)
         changes = {key: float(SHAPES[key][2] if key in without else self.sliders[key].value) for key in SHAPES}
         source = said(Message("designed in the lab from the ski {name}", name=name))
@@ -165,7 +165,7 @@ class _DesignPage(CarvedTurn):
         """The designed ski and its competitor in the same turn."""
         snow = self.snow.chosen()
         turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
-        skis: list[Any] = [self._keys()]
+        skis: list[Any] = [self._designed_keys()]
         if self._other.value != NOTHING:
             skis.append(self._skis.word(str(self._other.value)))
         return CarveInputs([{"ski": ski, **turn} for ski in skis], snow)
@@ -179,14 +179,14 @@ class _DesignPage(CarvedTurn):
             return answer[BENT][distance.index(min(distance))] if answer[BENT] else None
         return super().fact(key, answer)
 
-    async def _find(self) -> None:
+    async def _find_radius(self) -> None:
         self._found.say(Message("Searching …"))
         self._search.disable()
         try:
             target = typed_number(Message("the wanted radius"), str(self._target.value or ""))
             snow = self.snow.chosen()
             turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
-            inputs = CarveInputs([{"ski": self._keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
+            inputs = CarveInputs([{"ski": self._designed_keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
             design = await run.io_bound(found_design, inputs, target)
         except SkisnowError as error:
             self._found.say(error_sentence(error), bad=True)
@@ -201,19 +201,19 @@ class _DesignPage(CarvedTurn):
         self._found.say(done if design.reached else joined(design.remarks[:-1]), bad=not design.reached)
         self.ask()
 
-    async def _save(self) -> None:
+    async def _save_ski(self) -> None:
         name = " ".join(str(self._name.value or "").split())
         try:
-            await run.io_bound(self._skis.save_texts, name, keys_text(self._keys()), "")
+            await run.io_bound(self._skis.save_texts, name, keys_text(self._designed_keys()), "")
         except SkisnowError as error:
             self._saved.say(Message("Not saved: {error}", error=error_sentence(error)), bad=True)
             return
-        self._other.set_options(option_texts(_others(self._skis)))
+        self._other.set_options(option_texts(_other_skis(self._skis)))
         self._saved.say(Message("Saved: {name}. Carve and Simulate have it too.", name=name))
 
-    def _export(self) -> None:
-        ui.download(keys_text(self._keys()).encode(), FILE)
+    def _download_ski(self) -> None:
+        ui.download(keys_text(self._designed_keys()).encode(), FILE)
 
 
-def _others(skis: LabSkis) -> dict[str, str]:
+def _other_skis(skis: LabSkis) -> dict[str, str]:
     return {NOTHING: Message("nothing"), **{name: name for name in skis.names()}}

@@ -102,9 +102,9 @@ class _ImportPage:
             return
         if self.tried is None:  # the server ends
             return
-        self._show(self.tried)
+        self._show_proposal(self.tried)
 
-    def _show(self, tried: TriedImport) -> None:
+    def _show_proposal(self, tried: TriedImport) -> None:
         proposal = tried.proposal
         self._tables.clear()
         with self._tables:
@@ -113,7 +113,7 @@ class _ImportPage:
             if questions:
                 heading(Message("Questions"))
                 for question in reversed(questions.values()):
-                    self._question(question)
+                    self._add_question(question)
             _list_problems(proposal)
             for table in proposal.tables:
                 self._table(table, proposal.tables)
@@ -129,7 +129,7 @@ class _ImportPage:
         else:
             self._status.say(Message("Ready."))
 
-    def _question(self, question: Question) -> None:
+    def _add_question(self, question: Question) -> None:
         words = _question_words(question)
         with ui.element("div").classes("card ask"):
             if question.choices:
@@ -142,13 +142,13 @@ class _ImportPage:
                 made = choice(Message("Answer"), options, None)
                 made.on_value_change(lambda event: self._answer(question.option, question.key, event.value))
                 if question.proposed:
-                    self._proposal(question)
+                    self._add_proposal_button(question)
             else:
                 typed = field(words, question.proposed)
                 with ui.element("div").classes("acts"):
                     button(Message("Use this"), lambda: self._answer(question.option, question.key, str(typed.value)))
 
-    def _proposal(self, question: Question) -> None:
+    def _add_proposal_button(self, question: Question) -> None:
         words = Message("Proposal: {text}", text=_choice_words(question.proposed))
         button(words, lambda: self._answer(question.option, question.key, question.proposed), "small")
 

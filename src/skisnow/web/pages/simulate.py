@@ -119,7 +119,7 @@ class _Form:
             )
             self._ski = choice(Message("Ski"), menu_with_default(self._skis.names()), GIVEN)
             self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
-        self._scenario.on_value_change(self._draw)
+        self._scenario.on_value_change(self._draw_fields)
         with redrawn_by(self._scenario):
             self._basic = ui.element("div").classes("inputs")
         with ui.element("div").classes("acts"):
@@ -128,9 +128,9 @@ class _Form:
         self._status = Outcome()
         with ui.element("fieldset").classes("redrawn"):
             self._expert = ui.element("div")
-        self._draw()
+        self._draw_fields()
 
-    def _draw(self) -> None:
+    def _draw_fields(self) -> None:
         from ...scenario import scenario_file
         from ...scenario.keys import SCENARIO_KEYS, SECTIONS
 
@@ -325,7 +325,7 @@ def _changes_in_words(changes: dict[str, str]) -> str:
     return ", ".join(f"{field_label(SCENARIO_KEYS[key])}: {number_text(value)}" for key, value in changes.items())
 
 
-def _rename(runs: Runs, title: ui.input, name: str) -> None:
+def _rename_run(runs: Runs, title: ui.input, name: str) -> None:
     runs.rename(name, str(title.value))
 
 
@@ -336,7 +336,7 @@ class _Card(JobCard):
         super().__init__(runs, job, act)
         with self.place, folded(Message("Rename")):
             title = field(Message("Name of the run"), job.shown_name)
-            button(Message("Use this name"), lambda: act(partial(_rename, runs, title), job.name))
+            button(Message("Use this name"), lambda: act(partial(_rename_run, runs, title), job.name))
 
     def add_buttons(self, job: Job, act: Act) -> None:  # noqa: ARG002
         """Add the link to the replay."""

@@ -93,17 +93,17 @@ class _SkisPage:
 
     def _add_saving(self) -> None:
         with ui.element("div").classes("acts"):
-            button(Message("Begin again from the ski above"), self._begin)
+            button(Message("Begin again from the ski above"), self._begin_edit)
         heading(Message("Save it"), 3)
         with ui.element("div").classes("fields"):
             self._name = field(Message("New name"))
         with ui.element("div").classes("acts"):
-            button(Message("Save in the lab"), self._save, "main", once=True)
+            button(Message("Save in the lab"), self._save_ski, "main", once=True)
             button(Message("Download the file"), self._download)
         self._saved = Outcome()
         self._next = ui.element("div").classes("acts")
 
-    async def _begin(self) -> None:
+    async def _begin_edit(self) -> None:
         await self._editor.begin(str(self._first.value))
 
     async def _follow(self) -> None:
@@ -120,7 +120,7 @@ class _SkisPage:
         words = [str(item) for item in (self._first.value, self._second.value) if item != NOTHING]
         try:
             await self._check(edit)
-            loaded = await run.io_bound(self._load, words, edit)
+            loaded = await run.io_bound(self._edited_skis, words, edit)
         except SkisnowError as error:
             if number == self._asked:
                 self._status.say(error_sentence(error), bad=True)
@@ -130,7 +130,7 @@ class _SkisPage:
         skis, edited = loaded
         self._status.say(" ".join(item.warned for item in skis if item.warned))
         self._editor.show(edited.station, edited.cells)
-        self._show([ski_drawing(item.ski) for item in skis])
+        self._show_skis([ski_drawing(item.ski) for item in skis])
 
     async def _check(self, edit: SkiEditInput) -> None:
         """Check a new text of a ski in a separate process with limits."""
@@ -139,12 +139,12 @@ class _SkisPage:
             await run.io_bound(_check_confined, *texts)
             self._checked = texts
 
-    def _load(self, words: list[str], edit: SkiEditInput) -> tuple[list[EditedSki], EditedSki]:
+    def _edited_skis(self, words: list[str], edit: SkiEditInput) -> tuple[list[EditedSki], EditedSki]:
         edited = edit_ski_texts(edit)
         others = (edited if word == EDITED else edit_ski_texts(SkiEditInput(*self._skis.texts(word))) for word in words)
         return list(others), edited
 
-    def _show(self, drawn: list[SkiDrawing]) -> None:
+    def _show_skis(self, drawn: list[SkiDrawing]) -> None:
         self._facts.clear()
         with self._facts:
             cells = add_ski_table([ski.name for ski in drawn], {fact: fact for fact in drawn[0].facts})
@@ -157,9 +157,9 @@ class _SkisPage:
                 source = translations(current_language()).gettext(ski.source) if ski.source else ""
                 sentence(f"{ski.name}: {source}", "quiet")
         for key, chart in self._charts.items():
-            chart.show(list(_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
+            chart.show(list(_chart_lines(key, drawn)), from_zero="y" if key in STIFFNESSES else "")
 
-    async def _save(self) -> None:
+    async def _save_ski(self) -> None:
         name, edit = " ".join(str(self._name.value or "").split()), self._editor.edit()
         try:
             self._editor.require_drawn()
@@ -211,7 +211,7 @@ def _files(edit: SkiEditInput) -> dict[str, str]:
     return {FILE: text, **({TABLE: table} if table else {})}
 
 
-def _lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
+def _chart_lines(key: str, drawn: list[SkiDrawing]) -> Iterator[ChartLine]:
     for number, ski in enumerate(drawn):
         values = getattr(ski, key)
         yield ChartLine(ski.station_m, values, number, name=ski.name)

@@ -85,7 +85,7 @@ class _Form:
             self._ski = choice(Message("Ski"), self._skis.names(), self._skis.names()[0])
             self._further = choice(Message("Further skis"), self._skis.names(), []).props("use-chips")
             self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
-        self._of.on_value_change(self._draw)
+        self._of.on_value_change(self._draw_fields)
         self._further.on_value_change(self._follow)
         with redrawn_by(self._of):
             heading(Message("What varies"), 2)
@@ -98,13 +98,13 @@ class _Form:
         self._status = Outcome()
         if studies.elsewhere:
             sentence(Message("The workers of {elsewhere} compute.", elsewhere=studies.elsewhere), "quiet")
-        self._draw()
+        self._draw_fields()
 
     @property
     def _is_carve(self) -> bool:
         return self._of.value == CARVE
 
-    def _draw(self) -> None:
+    def _draw_fields(self) -> None:
         of = str(self._of.value)
         skis = self._skis.names()
         names = {name: name for name in skis} if self._is_carve else menu_with_default(skis)
@@ -131,7 +131,7 @@ class _Form:
         with ui.element("div").classes("inputs"):
             starts = {**{name: start for name, (_, _, start) in SLIDERS.items()}, UNLOADING: "10"}
             for name, start in starts.items():
-                self._add(_CarveField(study_keys(CARVE)[name], float(start), None))
+                self._add_field(_CarveField(study_keys(CARVE)[name], float(start), None))
 
     def _draw_scenario(self) -> None:
         from ...scenario.keys import SCENARIO_KEYS
@@ -141,7 +141,7 @@ class _Form:
         def draw(names: list[str]) -> None:
             with ui.element("div").classes("inputs"):
                 for name in names:
-                    self._add(ScenarioField(SCENARIO_KEYS[name], values.get(name), None))
+                    self._add_field(ScenarioField(SCENARIO_KEYS[name], values.get(name), None))
 
         draw(basic(values))
         with folded(Message("Expert inputs")).classes("expert"):
@@ -150,7 +150,7 @@ class _Form:
                     heading(words, 3)
                     draw(names)
 
-    def _add(self, made: ScenarioField) -> None:
+    def _add_field(self, made: ScenarioField) -> None:
         self._fields[made.key.name] = made
         made.element.on_value_change(self._follow)
 

@@ -125,17 +125,17 @@ class _ResultsView:
         self._results = dict(OF_CARVES if of == CARVE else OF_RUNS)
         self._shown = choice(Message("Result"), self._results, next(iter(self._results)))
         self._chart = ui.element("div")
-        self._shown.on_value_change(self._draw)
-        self._draw()
-        self._rows(study)
+        self._shown.on_value_change(self._draw_chart)
+        self._draw_chart()
+        self._add_table(study)
 
-    def _draw(self) -> None:
+    def _draw_chart(self) -> None:
         result = str(self._shown.value)
         x, y = field_label(self._keys[self._x]), self._results[result]
         self._chart.clear()
         with self._chart:
             chart = LineChart(x, y, Message("Chart of {y} over {x}", y=y, x=x), height=320)
-        chart.show([self._line(number, result) for number in self._order()])
+        chart.show([self._chart_line(number, result) for number in self._order()])
 
     def _line_of(self, row: dict[str, Any]) -> tuple[Any, ...]:
         """Values that the points of a line share."""
@@ -150,7 +150,7 @@ class _ResultsView:
         named = list(dict.fromkeys((0, count // 2, count - 1)))
         return [*(number for number in range(count) if number not in named), *named]
 
-    def _line(self, number: int, result: str) -> ChartLine:
+    def _chart_line(self, number: int, result: str) -> ChartLine:
         values, count = self._lines[number], len(self._lines)
         rows = [row for row in self._table.rows if self._line_of(row) == values]
         rows.sort(key=lambda row: row[self._x])
@@ -163,7 +163,7 @@ class _ResultsView:
         x, y = ([row[column] for row in rows] for column in (self._x, result))
         return ChartLine(x, y, styles.get(number, BEHIND), name=name)
 
-    def _rows(self, study: Study) -> None:
+    def _add_table(self, study: Study) -> None:
         heading(Message("Table"))
         columns = {name: self._input_name(name) for name in study.varied} | self._results
         place = named(ui.element("div").classes("table").props("tabindex=0 role=region"), Message("Table"))
