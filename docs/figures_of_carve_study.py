@@ -11,7 +11,7 @@ from pathlib import Path
 
 from fewer_colours import write_fewer_colours
 
-from skisnow.carving.answer import answered, answers_dict
+from skisnow.carving.answer import answer_question, answers_dict
 from skisnow.carving.question import carve_question
 from skisnow.report.carving_figure import carved_skis
 from skisnow.report.figures.figure_files import write_figure
@@ -30,7 +30,7 @@ def main() -> None:
     write_figure(GALLERY / "carve-study-radius.png", lambda: radius_map(table))
     write_figure(GALLERY / "carve-study-grip.png", lambda: grip_map(table))
     asked = {"edge_angle_deg": 45, "load_N": 800, "H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.35, "unloading_ratio": 10}
-    found = answers_dict([answered(carve_question(asked | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
+    found = answers_dict([answer_question(carve_question(asked | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
     write_figure(GALLERY / "two-skis.png", lambda: carved_skis(found))
     for name in ("carve-study-radius", "carve-study-grip", "two-skis"):
         write_fewer_colours(GALLERY / f"{name}.png", colours=128)

@@ -12,7 +12,7 @@ import pytest
 
 from skisnow import carve, load_snow, read_ski
 from skisnow._support.errors import ParameterError
-from skisnow.carving.answer import answer_dict, answered, answers_dict, equilibrium_dict
+from skisnow.carving.answer import answer_dict, answer_question, answers_dict, equilibrium_dict
 from skisnow.carving.equilibrium import rest
 from skisnow.carving.question import SKI_FACTORS, CarveQuestion, carve_question, implausible_values, require_clamp
 from skisnow.carving.result import Equilibrium
@@ -137,12 +137,12 @@ def is_same(one: Equilibrium, other: Equilibrium) -> bool:
 def test_every_input_reaches_the_turn() -> None:
     ski, angle = read_ski("slalom"), math.radians(45.0)
     plain = carve(ski, FIRM, edge_angle=angle, load=800.0, unloading_ratio=10.0, elements=80)
-    assert is_same(answered(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 10.0})).equilibrium, plain)
+    assert is_same(answer_question(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 10.0})).equilibrium, plain)
     chosen = carve(
         ski, FIRM, edge_angle=angle, load=800.0, unloading_ratio=10.0, elements=80, moment=20.0, clamp_length=0.2,
         side_force_bending=False, groove="path", moment_balance="free", twist=False,
     )  # fmt: skip
-    answer = answered(carve_question(REQUEST | NUMBERS | CHOSEN | {"unloading_ratio": 10.0}))
+    answer = answer_question(carve_question(REQUEST | NUMBERS | CHOSEN | {"unloading_ratio": 10.0}))
     assert is_same(answer.equilibrium, chosen)
     assert not is_same(chosen, plain)
 
@@ -172,13 +172,13 @@ def test_every_input_reaches_the_ski_at_rest() -> None:
         read_ski("slalom"), FIRM, edge_angle=math.radians(45.0), load=800.0, elements=80, moment=20.0,
         clamp_length=0.2, twist=False,
     )  # fmt: skip
-    answer = answered(carve_question(REQUEST | CHOSEN | {"H_V_N_per_mm3": 0.2, "at_rest": True}))
+    answer = answer_question(carve_question(REQUEST | CHOSEN | {"H_V_N_per_mm3": 0.2, "at_rest": True}))
     assert answer.equilibrium.side_force == 0.0
     assert is_same(answer.equilibrium, replace(chosen, side_force_limit=None))
 
 
 def test_the_units_of_the_names() -> None:
-    answer = answered(carve_question(REQUEST | NUMBERS | {"unloading_ratio": math.inf}))
+    answer = answer_question(carve_question(REQUEST | NUMBERS | {"unloading_ratio": math.inf}))
     found, same = answer.equilibrium, answer_dict(answer)
     assert same == json.loads(json.dumps(same, allow_nan=False))
     for key, values, factor in (
@@ -201,38 +201,38 @@ def test_the_units_of_the_names() -> None:
 def test_the_inputs_of_a_named_snow_are_its_numbers() -> None:
     snow = load_snow("race-piste")
     asked = REQUEST | {"published": "race-piste"}
-    told = answer_dict(answered(carve_question({**asked, "unloading_ratio": 10.0})))["inputs"]
+    told = answer_dict(answer_question(carve_question({**asked, "unloading_ratio": 10.0})))["inputs"]
     assert told["H_V_N_per_mm3"] == pytest.approx(snow.snow_hardness / 1e9, rel=1e-12)
     assert told["S_f_N_per_mm2"] == pytest.approx((snow.failure_shear_stress or 0.0) / 1e6, rel=1e-12)
     assert told["unloading_ratio"] == 10.0
-    assert answer_dict(answered(carve_question({**asked, "at_rest": True})))["inputs"]["unloading_ratio"] is None
+    assert answer_dict(answer_question(carve_question({**asked, "at_rest": True})))["inputs"]["unloading_ratio"] is None
     with raises(ParameterError, "contradiction"):
-        answered(carve_question({**asked, "unloading_ratio": 10.0, "S_f_N_per_mm2": 0.3}))
+        answer_question(carve_question({**asked, "unloading_ratio": 10.0, "S_f_N_per_mm2": 0.3}))
 
 
 def test_numbers_that_do_not_exist_are_none() -> None:
     asked = {**REQUEST, "H_V_N_per_mm3": 1e-6, "S_f_N_per_mm2": 0.5, "unloading_ratio": 1.0}
-    sunk = answer_dict(answered(carve_question(asked)))
+    sunk = answer_dict(answer_question(carve_question(asked)))
     assert sunk["outcome"] == "sinks"
     assert {sunk[key] for key in ("holds", "turn_radius_boot_m", "edge_depth_mm", "residual_moment_Nm")} == {None}
     assert len(sunk["station_m"]) > 80
-    found = answered(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 1.0})).equilibrium
+    found = answer_question(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 1.0})).equilibrium
     holed = equilibrium_dict(replace(found, twist=np.array([0.0, math.nan, math.pi])))
     assert holed["twist_deg"] == [0.0, None, 180.0]
 
 
 def test_one_answer_stands_alone_and_several_under_skis() -> None:
-    answer = answered(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 1.0}))
+    answer = answer_question(carve_question(REQUEST | NUMBERS | {"unloading_ratio": 1.0}))
     assert answers_dict([answer]) == answer_dict(answer)
     assert answers_dict([answer, answer]) == {"skis": [answer_dict(answer)] * 2}
 
 
 def test_a_shear_stress_beyond_what_was_measured_counts_in_a_turn_alone() -> None:
     strong = REQUEST | {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.9}
-    (told,) = answered(carve_question({**strong, "unloading_ratio": 1.0})).warnings
+    (told,) = answer_question(carve_question({**strong, "unloading_ratio": 1.0})).warnings
     assert "S_f 0.9 N/mm² is outside" in told
-    assert answered(carve_question({**strong, "at_rest": True})).warnings == ()
-    assert answered(carve_question({**REQUEST, "H_V_N_per_mm3": 0.2, "at_rest": True})).warnings == ()
+    assert answer_question(carve_question({**strong, "at_rest": True})).warnings == ()
+    assert answer_question(carve_question({**REQUEST, "H_V_N_per_mm3": 0.2, "at_rest": True})).warnings == ()
 
 
 @pytest.mark.parametrize(
@@ -257,7 +257,7 @@ def test_a_factor_of_a_question_is_that_of_an_edit(name: str) -> None:
     ski = read_ski("slalom")
     edit = SkiEdit(edit_stations(ski), {SKI_FACTORS[name]: 1.1})
     asked = REQUEST | {"published": "race-piste", "unloading_ratio": 10.0}
-    found, before = (answered(carve_question(asked | {name: factor})) for factor in (1.1, 1.0))
+    found, before = (answer_question(carve_question(asked | {name: factor})) for factor in (1.1, 1.0))
     edited = edited_ski(ski, edit, name="edited", source="test")
     wanted = carve(
         edited, load_snow("race-piste"), edge_angle=math.radians(45.0), load=800.0, unloading_ratio=10.0, elements=80

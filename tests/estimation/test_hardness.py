@@ -13,7 +13,12 @@ import skisnow
 from skisnow._support.units import N_PER_MM, N_PER_MM2, N_PER_MM3
 from skisnow.campaign import reference_campaign
 from skisnow.estimation.campaign_model import CampaignModel, fit_campaign
-from skisnow.estimation.errors_in_depth import FittedHardness, _weights, fit_models_with_depth_errors, fitted_hardness
+from skisnow.estimation.errors_in_depth import (
+    FittedHardness,
+    _effective_weights,
+    fit_models_with_depth_errors,
+    fitted_hardness,
+)
 from skisnow.estimation.hardness import (
     DEFINITIONS,
     Hardness,
@@ -237,7 +242,7 @@ def test_weights_of_small_uncertainties_are_one_over_their_squares() -> None:
     """(0.1 · 2 N)² + (0.3 N)² + (400 N/m · 0.001 m)² = 0.29 N²; of a force of 0: 0.09 N²."""
     readings: Any = None  # asked for their number alone, where all is exact
     uncertainty = ReadingUncertainty(load=0.3, depth=0.001)
-    found = _weights(readings, np.array([2.0, 0.0]), np.array([400.0, 0.0]), uncertainty, 0.1)
+    found = _effective_weights(readings, np.array([2.0, 0.0]), np.array([400.0, 0.0]), uncertainty, 0.1)
     assert found == pytest.approx([1.0 / 0.29, 1.0 / 0.09])
 
 

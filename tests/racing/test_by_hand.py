@@ -18,7 +18,7 @@ from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate
 from skisnow.racing.line import first_gates, turn_lengths
 from skisnow.racing.point import Racer, run_score, ski_line
-from skisnow.racing.quickest import _require, _search, _start_line, _window_and_step
+from skisnow.racing.quickest import _method, _require, _start_line, _window_and_step
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.surrogate import BATCH, PointChoice, SurrogateSearch, _best_within
@@ -219,7 +219,7 @@ def test_values_at_the_limits_are_accepted() -> None:
     for window, step in ((1, 1), (7, 1), (3, 0)):
         with pytest.raises(ParameterError):
             _window_and_step(6, window, step, 0)
-    assert (_search(None, "skier"), _search(None, "point"), _search("cma", "skier")) == ("surrogate", "cma", "cma")
+    assert (_method(None, "skier"), _method(None, "point"), _method("cma", "skier")) == ("surrogate", "cma", "cma")
 
 
 def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:

@@ -164,7 +164,7 @@ def test_an_unforeseen_error_is_the_reason_of_its_point(study_file: Path, monkey
     def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by nothing")
 
-    monkeypatch.setattr("skisnow.studies.subjects.answered", broken)
+    monkeypatch.setattr("skisnow.studies.subjects.answer_question", broken)
     (row, *_) = run_study(read_study(study_file), workers=1).rows
     assert (row["outcome"], row["reason"]) == ("error", "unexpected " + "ZeroDivisionError: by nothing")
     assert (row["ski"], row["load_N"]) == ("slalom", 400.0)

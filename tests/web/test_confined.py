@@ -13,7 +13,7 @@ import pytest
 from skisnow._support.errors import FieldDataError, ParameterError, StoreError
 from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.studies import read_study
-from skisnow.web.page_requests import analysis, carving, correcting, entering, export, required_id
+from skisnow.web.page_requests import analysis, carve_address, correction_address, entry_address, export, required_id
 from skisnow.web.studies import CARVE_S
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from skisnow.web.subprocesses import BOUNDS, Bounds, confined
@@ -57,14 +57,14 @@ def test_memory_has_an_end() -> None:
 @pytest.mark.parametrize(
     ("address", "path", "query"),
     [
-        (entering("ab12"), "/enter/ab12", {}),
-        (entering("ab12", table="shear", test="s 1&2"), "/enter/ab12", {"table": ["shear"], "test": ["s 1&2"]}),
-        (entering("a", table="b", head={"site": "A/B"}), "/enter/a", {"table": ["b"], "site": ["A/B"]}),
-        (correcting("ab12", test="7"), "/correct/ab12", {"test": ["7"]}),
+        (entry_address("ab12"), "/enter/ab12", {}),
+        (entry_address("ab12", table="shear", test="s 1&2"), "/enter/ab12", {"table": ["shear"], "test": ["s 1&2"]}),
+        (entry_address("a", table="b", head={"site": "A/B"}), "/enter/a", {"table": ["b"], "site": ["A/B"]}),
+        (correction_address("ab12", test="7"), "/correct/ab12", {"test": ["7"]}),
         (analysis("kept", "ab12"), "/analysis/kept/ab12", {}),
         (export("entry", "ab12"), "/export/entry/ab12.zip", {}),
-        (carving("my ski"), "/carve", {"ski": ["my ski"]}),
-        (carving("a/b", "c&d"), "/carve", {"ski": ["a/b"], "other": ["c&d"]}),
+        (carve_address("my ski"), "/carve", {"ski": ["my ski"]}),
+        (carve_address("a/b", "c&d"), "/carve", {"ski": ["a/b"], "other": ["c&d"]}),
     ],
 )
 def test_what_is_asked_is_in_the_address(address: str, path: str, query: dict[str, list[str]]) -> None:

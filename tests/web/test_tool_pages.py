@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from skisnow.carving.answer import answer_dict, answered
+from skisnow.carving.answer import answer_dict, answer_question
 from skisnow.carving.question import CARVE_KEYS, carve_question
 from skisnow.report.formatting import significant
 from skisnow.web.carved_turn import PANELS, RATIOS, SLIDERS
@@ -27,7 +27,7 @@ SNOW = {"H_V_N_per_mm3": 0.2, "S_f_N_per_mm2": 0.5}
 def carve_answer(edge_angle_deg: float, snow: Mapping[str, object] = SNOW, *, ski: str = "carver") -> dict[str, Any]:
     """The library's answer."""
     asked = {"ski": ski, "edge_angle_deg": edge_angle_deg, "load_N": 800.0, "unloading_ratio": 10.0}
-    return answer_dict(answered(carve_question({**asked, **snow})))
+    return answer_dict(answer_question(carve_question({**asked, **snow})))
 
 
 def test_the_sliders_are_inputs_of_a_carved_turn() -> None:

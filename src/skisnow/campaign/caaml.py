@@ -213,13 +213,13 @@ class _Profile:
 
     def _density(self, profile: Element, layer: Element) -> LayerDensity:
         top, thickness = self._top_and_thickness(profile, layer)
-        density = self._required(DENSITY, profile, layer, "density")
+        density = self._required_number(DENSITY, profile, layer, "density")
         self._require_within("density", density, _DENSITIES, "kg/m³")
         return LayerDensity(top, density, thickness)
 
     def _temperature(self, profile: Element, observed: Element) -> DepthTemperature:
-        depth = self._down("depth", self._required(LENGTH, profile, observed, "depth"))
-        temperature = self._required(TEMPERATURE, profile, observed, "snowTemp")
+        depth = self._down("depth", self._required_number(LENGTH, profile, observed, "depth"))
+        temperature = self._required_number(TEMPERATURE, profile, observed, "snowTemp")
         self._require_within("snowTemp", temperature, _TEMPERATURES, "°C")
         return DepthTemperature(depth, temperature)
 
@@ -230,7 +230,7 @@ class _Profile:
         if not rows:
             layers = list(profile.named("Layer"))
             depths = [self._top_and_thickness(profile, layer)[0] for layer in layers]
-            forces = [self._required(FORCE, profile, layer, "hardness") for layer in layers]
+            forces = [self._required_number(FORCE, profile, layer, "hardness") for layer in layers]
             return ForceProfile(method, np.array(depths, dtype=float), np.array(forces, dtype=float))
         pairs = [[self._finite("tupleList", number) for number in row.split(",")] for row in rows]
         if any(len(pair) != 2 for pair in pairs):
@@ -256,7 +256,7 @@ class _Profile:
     def _top_and_thickness(self, profile: Element, layer: Element) -> tuple[float, float | None]:
         thickness = self._quantity(LENGTH, layer, "thickness", profile=profile)
         self._require_within("thickness", thickness or 0.0, (0.0, _DEEPEST), "m")
-        top = self._required(LENGTH, profile, layer, "depthTop")
+        top = self._required_number(LENGTH, profile, layer, "depthTop")
         if self._from_ground:
             self._require_within("thickness", thickness or 0.0, (0.0, top + _SLACK), "m")
         return self._down("depthTop", top), thickness
@@ -277,7 +277,7 @@ class _Profile:
                 Message("Correct the number or its unit."),
             )
 
-    def _required(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
+    def _required_number(self, units: CaamlUnits, profile: Element, parent: Element, name: str) -> float:
         value = self._quantity(units, parent, name, profile=profile)
         if value is None:
             self._refuse(

@@ -170,7 +170,7 @@ class _Reading:
         if _TIME not in names or len(set(names)) != len(names):
             self._refuse(line, "fields", listed[:80], f"different names, {_TIME} among them", "Correct the header.")
         offset = self._zone()
-        times, table = self._rows(names, offset)
+        times, table = self._times_and_values(names, offset)
         nodata = self._number_of("nodata", -999.0)
         values = self._in_si(np.where(table == nodata, math.nan, table), names)
         self._require_no_gap(names, table, values)
@@ -254,7 +254,7 @@ class _Reading:
             )
         return numbers
 
-    def _rows(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:
+    def _times_and_values(self, names: Sequence[str], offset: float) -> tuple[FloatArray, FloatArray]:
         zone, place = timezone(timedelta(hours=offset)), names.index(_TIME)
         times: list[float] = []
         table: list[list[float]] = []

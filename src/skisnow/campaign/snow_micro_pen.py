@@ -173,7 +173,7 @@ def parse_snow_micro_pen(name: str, data: bytes) -> SnowMicroPenProfile:
         )
         _refuse(name, f"{len(data)} bytes", allowed, "Copy the file from the instrument again.")
     header = {key: _unpack_value(data, offset, form) for key, offset, form in _FIELDS}
-    _check(name, header, len(data))
+    _require_plausible_header(name, header, len(data))
     counts = np.frombuffer(data, dtype=">i2", count=header["samples"], offset=HEADER_BYTES)
     return _make_profile(name, header, counts.astype(np.float64))
 
@@ -187,8 +187,8 @@ def _refuse(name: str, value: str, allowed: str, action: str, code: str = "unrea
     raise FieldDataError([error(code, name, value=value, allowed=allowed, action=action)])
 
 
-def _check(file: str, header: dict[str, Any], size: int) -> None:
-    """Check that the header has plausible numbers; the format has no signature."""
+def _require_plausible_header(file: str, header: dict[str, Any], size: int) -> None:
+    """Check the header's numbers, because the format has no signature."""
     limits = {
         "sample_distance_mm": (1e-4, 1.0),
         "force_per_count": (1e-6, 1.0),

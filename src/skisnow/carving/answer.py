@@ -39,7 +39,7 @@ class CarveAnswer:
     warnings: tuple[str, ...]
 
 
-def answered(question: CarveQuestion, *, sources: Sources | None = None) -> CarveAnswer:
+def answer_question(question: CarveQuestion, *, sources: Sources | None = None) -> CarveAnswer:
     """Read ski and snow and find the equilibrium.
 
     Parameters

@@ -153,7 +153,9 @@ def carve(
         require_strength(snow)
     model = clamped(ski, clamp_length, elements, footprint_stiffness)
     forms = side_force_bending, twist, side_force_spread, moment_balance
-    conditions = _under(laws, ski, _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms))
+    conditions = _with_laws(
+        laws, ski, _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
+    )
     find = solved if groove == "edge" else _following_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
@@ -267,8 +269,8 @@ def _unloading_ratio(snow: SnowProperties, stated: float | None, penetration: ob
     return 1.0
 
 
-def _under(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
-    """The conditions with laws, and the linear snow where a penetration law's search begins."""
+def _with_laws(laws: SnowLaws | None, ski: Ski, conditions: Conditions) -> Conditions:
+    """The conditions with laws; with a penetration law also the linear snow from which the search begins."""
     if laws is None or laws.penetration is None:
         return conditions._replace(laws=laws)
     hardness, ratio = equivalent_snow(laws.penetration, ski, conditions.edge_angle, conditions.load)

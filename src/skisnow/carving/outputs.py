@@ -23,8 +23,8 @@ AT_BOOT: Final = np.array([[BOOT_REACH], [0.0], [-BOOT_REACH]])
 _NEAR: Final = 1e-7  # m, over which the slope of the edge line is taken
 
 
-class At(NamedTuple):
-    """A refined equilibrium; `strength`: S_f (N/m²)."""
+class RefinedCarve(NamedTuple):
+    """Equilibrium of a carve, solved to the last digits; `strength`: S_f (N/m²)."""
 
     model: ClampedSki
     conditions: Conditions
@@ -34,18 +34,18 @@ class At(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class OutputGrowth:
-    """An output, and its growth with each of the numbers that it is computed from, all others held.
+    """An output, and its derivatives by each of the numbers that it is computed from, all others held.
 
     Attributes
     ----------
     value
         The output.
     depth, force, weight, place
-        With depth (m) and force (N/m) of the stations, their length and place (m); None: none.
+        By depth (m) and force (N/m) of the stations, their length and place (m); None: none.
     edge_angle, load, strength
-        With ϑ (rad), load (N), S_f (N/m²).
+        By ϑ (rad), load (N), S_f (N/m²).
     edge, edge_by
-        Places of the edge line (m), and the growth with the ski's section there, shape (4, k): width, height of the
+        Places of the edge line (m), and the derivatives by the ski's section there, shape (4, k): width, height of the
         base, deflection (m), twist (rad).
     """
 
@@ -80,7 +80,7 @@ class OutputGrowth:
         )
 
     def by_unknowns(self, model: ClampedSki) -> FloatArray:
-        """Growth with the unknowns of the beam (size,)."""
+        """Derivatives by the unknowns of the beam (size,)."""
         out = np.zeros(model.size)
         if len(self.edge):
             dof, deflection, twist = sections_at(model, tuple(self.edge.tolist()))[2]
@@ -90,7 +90,7 @@ class OutputGrowth:
 
 
 def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Radii of circles through front, boot and rear (m), and their growth with these x and y, all (3, k).
+    """Radii of circles through front, boot and rear (m), and their derivatives by these x and y, all (3, k).
 
     It is -a b c/(2 T), of the sides a, b, c and twice the area T: each factor adds its relative growth.
     """
@@ -109,9 +109,9 @@ def _circle_gradient(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArr
 
 
 def _radius_over(
-    at: At, x: FloatArray, weight: float | FloatArray = 1.0, *, moves: bool = False
+    at: RefinedCarve, x: FloatArray, weight: float | FloatArray = 1.0, *, moves: bool = False
 ) -> tuple[OutputGrowth, FloatArray] | None:
-    """Growth of the radii of circles through the edge at (3, k) places, each times its weight, and that with places."""
+    """Derivatives of the radii of circles through the edge at (3, k) places, times a weight, and by the places."""
     angle = at.conditions.edge_angle
     line = EdgeLine(at.model, angle, at.solution)
     width, height, deflection, twist = sections = line.sections(x.ravel())
@@ -135,12 +135,12 @@ def _radius_over(
     return growth, by_x
 
 
-def _radius_at_boot(at: At) -> OutputGrowth | None:
+def _radius_at_boot(at: RefinedCarve) -> OutputGrowth | None:
     circle = _radius_over(at, AT_BOOT)
     return None if circle is None else circle[0]
 
 
-def _radius_of_chord(at: At) -> OutputGrowth | None:
+def _radius_of_chord(at: RefinedCarve) -> OutputGrowth | None:
     ends = _contact_ends(at)
     if ends is None:
         return None
@@ -149,7 +149,7 @@ def _radius_of_chord(at: At) -> OutputGrowth | None:
     return None if circle is None else _with_ends(circle[0], ends, float(circle[1][0, 0]), float(circle[1][2, 0]))
 
 
-def _radius_median(at: At) -> OutputGrowth | None:
+def _radius_median(at: RefinedCarve) -> OutputGrowth | None:
     ends = _contact_ends(at)
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
     circles = None if ends is None else line.median_circles(ends[0].value, ends[1].value)
@@ -162,14 +162,14 @@ def _radius_median(at: At) -> OutputGrowth | None:
 def _with_ends(
     growth: OutputGrowth, ends: tuple[OutputGrowth, OutputGrowth], by_front: float, by_rear: float
 ) -> OutputGrowth:
-    """The growth, together with that by the moving ends of the contact."""
+    """Derivatives with the part of the moving ends of the contact."""
     depth, place = (
         np.asarray(by_front * getattr(ends[0], name) + by_rear * getattr(ends[1], name)) for name in ("depth", "place")
     )
     return replace(growth, depth=depth, place=place)
 
 
-def _contact_ends(at: At) -> tuple[OutputGrowth, OutputGrowth] | None:
+def _contact_ends(at: RefinedCarve) -> tuple[OutputGrowth, OutputGrowth] | None:
     """Stations at which the depth of the edge passes zero, front first; None where the contact reaches tip or tail."""
     depth, station = at.solution.edge_depth, at.model.stations.station
     below = np.flatnonzero(depth > 0.0)
@@ -187,7 +187,7 @@ def _contact_ends(at: At) -> tuple[OutputGrowth, OutputGrowth] | None:
     return end(int(below[0]), int(below[0]) - 1), end(int(below[-1]), int(below[-1]) + 1)
 
 
-def _contact_length(at: At) -> OutputGrowth | None:
+def _contact_length(at: RefinedCarve) -> OutputGrowth | None:
     ends = _contact_ends(at)
     if ends is None:
         return None
@@ -200,24 +200,24 @@ def _mask_of_largest(values: FloatArray) -> FloatArray:
     return np.asarray(np.eye(1, len(values), int(np.argmax(values)))[0])
 
 
-def _largest_depth(at: At) -> OutputGrowth | None:
+def _largest_depth(at: RefinedCarve) -> OutputGrowth | None:
     depth = at.solution.edge_depth
     return OutputGrowth(value=float(depth.max()), depth=_mask_of_largest(depth))
 
 
-def _largest_force(at: At) -> OutputGrowth | None:
+def _largest_force(at: RefinedCarve) -> OutputGrowth | None:
     force = at.solution.force_per_length
     return OutputGrowth(value=float(force.max()), force=_mask_of_largest(force))
 
 
-def _deflection_at_boot(at: At) -> OutputGrowth | None:
+def _deflection_at_boot(at: RefinedCarve) -> OutputGrowth | None:
     x = np.array([BOOT_REACH])
     by = np.array([[0.0], [0.0], [1.0], [0.0]])
     line = EdgeLine(at.model, at.conditions.edge_angle, at.solution)
     return OutputGrowth(value=float(line.sections(x)[2][0]), edge=x, edge_by=by)
 
 
-def _grip_utilisation(at: At) -> OutputGrowth | None:
+def _grip_utilisation(at: RefinedCarve) -> OutputGrowth | None:
     weight, depth, conditions = at.model.stations.weight, at.solution.edge_depth, at.conditions
     if at.strength is None or conditions.side_force == 0.0:
         return None
@@ -234,7 +234,7 @@ def _grip_utilisation(at: At) -> OutputGrowth | None:
     )
 
 
-OUTPUTS: Final[dict[str, tuple[Callable[[At], OutputGrowth | None], float, str]]] = {
+OUTPUTS: Final[dict[str, tuple[Callable[[RefinedCarve], OutputGrowth | None], float, str]]] = {
     "turn_radius_boot_m": (_radius_at_boot, 1.0, "circle through the edge at the boot and 0.4 m before and behind"),
     "turn_radius_chord_m": (_radius_of_chord, 1.0, "circle through the edge at the boot and both ends of the contact"),
     "turn_radius_median_m": (_radius_median, 1.0, "median over the contact of circles through 0.2 m of the edge"),
@@ -251,7 +251,7 @@ FORCE_ALONG_EDGE: Final = "force_along_edge_N_per_m"
 """Goal for the force per length at several places."""
 
 
-def output_growth(name: str, at: At) -> OutputGrowth | None:
+def output_growth(name: str, at: RefinedCarve) -> OutputGrowth | None:
     """An output in the unit of its name; None where it does not exist."""
     compute, unit, _ = OUTPUTS[name]
     growth = compute(at)

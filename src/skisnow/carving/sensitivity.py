@@ -1,6 +1,6 @@
 """Exact derivatives of a carve by the adjoint state: how an output grows with ski, snow, load and edge angle.
 
-Equations: docs/methods/carved-turn.md.
+Names with `growth` are derivatives. Equations: docs/methods/carved-turn.md.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .._support.units import DEGREE, N_PER_MM2, N_PER_MM3
 from ..parameters import suggest_and_list
 from ..ski.beam import clamped
 from ..ski.editing import LINEAR, shape_parameters, shape_value, table_growths, varied_ski
-from .outputs import OUTPUTS, At, OutputGrowth, output_growth
+from .outputs import OUTPUTS, OutputGrowth, RefinedCarve, output_growth
 from .shape import Shape, ShapeGradient, beam_gradients, bent_by, growth_by_tables, shape_growth, widest_station
 from .solve import Solution, refined, solved
 
@@ -97,14 +97,14 @@ class CarveRequest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Direction:
-    """Growth of the equations' numbers with a parameter, per its unit."""
+    """Derivatives of the equations' numbers by a parameter, per its unit."""
 
     numbers: FloatArray
     strength: float = 0.0
     shape: Shape | None = None
 
     def columns(self, model: ClampedSki) -> FloatArray:
-        """Growth of the stations' place, weight, width, base height, and of their element's length over itself."""
+        """Derivatives of the stations' place, weight, width, base height, and of their element's length over itself."""
         if self.shape is None:
             return np.zeros((5, len(model.stations.station)))
         stretch = self.shape.length / (model.node[:-1] - model.node[1:])
@@ -120,7 +120,7 @@ class _Direction:
 
 @dataclass(slots=True, eq=False)
 class _Gradient:
-    """An output, and its growth with the numbers of the equations.
+    """An output, and its derivatives by the numbers of the equations.
 
     With columns of the stations, and the core's numbers; `adjoint`: of the beam; `by_tables`: with the tables of the
     ski, where they were computed.
@@ -145,7 +145,7 @@ class CarveDerivatives:
 
     request: CarveRequest
     point: core.CarvePoint = field(init=False)
-    at: At = field(init=False)
+    at: RefinedCarve = field(init=False)
     _directions: dict[str, _Direction] = field(default_factory=dict)
     _neighbours: dict[tuple[str, float], CarveDerivatives | None] = field(default_factory=dict)
     _outputs: dict[str, OutputGrowth | None] = field(default_factory=dict)
@@ -156,7 +156,7 @@ class CarveDerivatives:
         self.point = refined(request.model, request.conditions, request.solution)
         _, u, (depth, slope, stress), edge_depth, force = self.point.state()
         solution = Solution(True, 0, u, depth, slope, stress, edge_depth, force)
-        self.at = At(request.model, request.conditions, request.strength, solution)
+        self.at = RefinedCarve(request.model, request.conditions, request.strength, solution)
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -207,7 +207,7 @@ class CarveDerivatives:
         growths = self.derivatives(output, (*values,)).tolist()
         for (name, value), growth in zip(values.items(), growths, strict=True):
             relative = growth * value / of_output if value and of_output else None
-            kink = self._kink(name) / (abs(value) or 1.0) if kinks else math.inf
+            kink = self._kink_distance(name) / (abs(value) or 1.0) if kinks else math.inf
             step = (2.0 * kink + _BESIDE) * (abs(value) or 1.0)
             sides = (self._beside(name, -step, output), self._beside(name, step, output)) if kink < AT_KINK else None
             out.append(Sensitivity(output, name, of_output, value, growth, relative, kink, sides))
@@ -223,7 +223,7 @@ class CarveDerivatives:
         return neighbour.derivative(output, name)
 
     def _moved(self, name: str, change: float) -> CarveDerivatives | None:
-        """The derivatives with a parameter changed a little."""
+        """The derivatives at a neighbouring equilibrium, with the parameter changed; None if it is not found."""
         request, direction = self.request, self._direction(name)
         given, model = request.conditions, request.model
         numbers = zip(_IN_CONDITIONS, direction.numbers[_OF_CONDITIONS], strict=True)
@@ -262,7 +262,7 @@ class CarveDerivatives:
         ]
 
     def force_growth(self, parameter: str) -> FloatArray:
-        """Growth of the force per length at each station (N/m) with a parameter, per its unit."""
+        """Derivatives of the force per length at each station (N/m) by a parameter, per its unit."""
         return self._growth(parameter)[3]
 
     def force_at(self, place: FloatArray) -> FloatArray:
@@ -270,7 +270,7 @@ class CarveDerivatives:
         return np.interp(place, self._rising, self.at.solution.force_per_length[::-1])
 
     def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
-        """Growth of `force_at` with a parameter, per its unit; stations may move with it."""
+        """Derivatives of `force_at` by a parameter, per its unit; stations may move with it."""
         force, rising, shape = (self.at.solution.force_per_length[::-1], self._rising, self._direction(parameter).shape)
         out = np.interp(place, rising, self.force_growth(parameter)[::-1])
         if shape is None or not shape.moves:
@@ -284,7 +284,7 @@ class CarveDerivatives:
         return self.request.model.stations.station[::-1]
 
     def fields(self, output: str) -> dict[str, FloatArray]:
-        """Growth of an output with the curves of the ski, per metre of ski.
+        """Derivatives of an output by the curves of the ski, per metre of ski.
 
         With width and base height (mm) at ``station_m``, and with EI and GJ (N m²) at ``beam_m``.
         """
@@ -322,11 +322,11 @@ class CarveDerivatives:
         return self._gradients[output]
 
     def _by_stiffness(self, gradient: _Gradient) -> FloatArray:
-        """Growth of an output with EI and GJ at the Gauss points (2, n, 4)."""
+        """Derivatives of an output by EI and GJ at the Gauss points (2, n, 4)."""
         return beam_gradients(self.request.model, self.at.solution.u[None], gradient.adjoint[None])[0]
 
     def derivative(self, output: str, name: str) -> float:
-        """Growth of an output with a parameter, in units of the output per unit of the parameter.
+        """Derivative of an output by a parameter, in units of the output per unit of the parameter.
 
         Raises
         ------
@@ -336,7 +336,7 @@ class CarveDerivatives:
         return float(self.derivatives(output, (name,))[0])
 
     def derivatives(self, output: str, names: tuple[str, ...]) -> FloatArray:
-        """Growth of an output with each parameter, as `derivative`: one adjoint for all."""
+        """Derivatives of an output by each parameter, as `derivative`: one adjoint for all."""
         gradient, out = self._gradient(output), np.zeros(len(names))
         growth, of_ski = gradient.output, tuple(name for name in names if name not in CONDITIONS)
         for row, name in enumerate(names):
@@ -349,7 +349,7 @@ class CarveDerivatives:
         return out
 
     def by_tables(self, output: str) -> FloatArray:
-        """Growth of an output with the tables of the ski, as of `TableGrowth` (5, rows)."""
+        """Derivatives of an output by the tables of the ski, as of `TableGrowth` (5, rows)."""
         gradient, model, u = self._gradient(output), self.request.model, self.at.solution.u
         growth = gradient.output
         if gradient.by_tables is None:
@@ -371,7 +371,7 @@ class CarveDerivatives:
             bent = bent_by(model, self.at.solution.u, direction.shape)
         return self.point.growth(direction.columns(model), direction.numbers, bent)
 
-    def _kink(self, name: str) -> float:
+    def _kink_distance(self, name: str) -> float:
         return math.inf if name == "snow.S_f_N_per_mm2" else self._growth(name)[4]
 
     def _direction(self, name: str) -> _Direction:
@@ -409,7 +409,7 @@ class CarveDerivatives:
 
 
 def ski_derivatives(asked: Sequence[tuple[CarveDerivatives, str]], names: tuple[str, ...]) -> FloatArray:
-    """Growth of outputs of carves with one ski, on one mesh, with parameters of that ski.
+    """Derivatives of outputs of carves with one ski, on one mesh, by parameters of that ski.
 
     Shape (outputs, parameters). Outputs together take far fewer operations than each for itself.
     """

@@ -1,4 +1,4 @@
-"""Growth of shape and stiffness of a clamped ski with its parameters, as the equations of a carve need it."""
+"""Derivatives of shape and stiffness of a clamped ski by its parameters, as the equations of a carve need it."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 
 Edges: TypeAlias = Sequence[tuple[FloatArray, FloatArray]]
-"""For each output: places of the edge (m), and growth with width, height, deflection, twist there (4, places)."""
+"""For each output: places of the edge (m), and derivatives by width, height, deflection, twist there (4, places)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shape:
-    """Growth of a ski's numbers in the equations with a parameter, SI per its unit.
+    """Derivatives of a ski's numbers in the equations by one parameter, in SI per unit of the parameter.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Shape:
     numbers
         Running length, greatest width at the stations, base bevel, edge width, angle of the side, radius of the edge.
     moves, widens, stiffens
-        Whether nodes, sections and stiffnesses grow at all.
+        True if nodes, sections and stiffnesses depend on the parameter.
     """
 
     node: FloatArray
@@ -74,19 +74,19 @@ class _Lines(NamedTuple):
         return np.asarray(here + self.share * (table.take(self.row + 1, axis=-1) - here))
 
     def moved(self, table: FloatArray, station: FloatArray, place: FloatArray) -> FloatArray:
-        """Growth of these where the tables' stations and the places grow; the rows stay the same."""
+        """Derivatives of these where the tables' stations and the places grow; the rows stay the same."""
         share = (self.along(station) - place) / self.spacing
         return np.asarray(share * (table[..., self.row + 1] - table[..., self.row]))
 
     def to_rows(self, by_value: FloatArray, rows: int) -> FloatArray:
-        """Growth with one or two tables, from that with their values at the places: the transpose of `along`."""
+        """Derivatives by one or two tables, from that with their values at the places: the transpose of `along`."""
         tables = len(by_value)
         pair = np.concatenate([(1.0 - self.share) * by_value, self.share * by_value], axis=1)
         ends = self.ends[: tables * pair.shape[1]]
         return np.asarray(np.bincount(ends, pair.ravel(), tables * rows), float).reshape(tables, rows)
 
     def by_station(self, table: FloatArray, by_value: FloatArray) -> FloatArray:
-        """Growth with the table's stations at the places, minus that with the places: the transpose of `moved`."""
+        """Derivatives by the table's stations at the places, minus that with the places: the transpose of `moved`."""
         return np.asarray(np.sum(by_value * (table[:, self.row + 1] - table[:, self.row]), axis=0) / self.spacing)
 
 
@@ -103,12 +103,13 @@ def _mesh(station: bytes, clamp_length: float, elements: int) -> _Mesh:
     node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
     return _Mesh(
         node,
-        _lines(station, element_places(node, STATION_POINTS).ravel()),
-        _lines(station, element_places(node, GAUSS_POINTS).ravel()),
+        _table_lines(station, element_places(node, STATION_POINTS).ravel()),
+        _table_lines(station, element_places(node, GAUSS_POINTS).ravel()),
     )
 
 
-def _lines(station: bytes, place: FloatArray) -> _Lines:
+def _table_lines(station: bytes, place: FloatArray) -> _Lines:
+    """Rows of a table, by the bytes of its stations, between which places are interpolated."""
     rows = np.frombuffer(station)
     row = np.clip(np.searchsorted(-rows, -place, side="right") - 1, 0, len(rows) - 2)
     spacing, pair = rows[row] - rows[row + 1], np.concatenate([row, row + 1])
@@ -117,11 +118,11 @@ def _lines(station: bytes, place: FloatArray) -> _Lines:
 
 @functools.lru_cache(maxsize=16)
 def _lines_at(station: bytes, place: tuple[float, ...]) -> _Lines:
-    return _lines(station, np.array(place))
+    return _table_lines(station, np.array(place))
 
 
 def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Shape:
-    """Growth of the shape with a parameter of the ski; elements and rows of the tables keep their numbers."""
+    """Derivatives of the shape by a parameter of the ski; elements and rows of the tables keep their numbers."""
     growth, station = table_growth(ski, name), ski.station.tobytes()
     widest = widest_station(ski, clamp_length, elements)
     fixed = _fixed_shape(growth, station, clamp_length, elements, widest)
@@ -149,7 +150,7 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
 
 @functools.lru_cache(maxsize=512)
 def _fixed_shape(growth: TableGrowth, station: bytes, clamp_length: float, elements: int, widest: int) -> Shape:
-    """Growth of the shape on fixed places between fixed rows."""
+    """Derivatives of the shape on fixed places between fixed rows."""
     mesh, tables = _mesh(station, clamp_length, elements), growth.tables
     widens, stiffens = bool(tables[1:3].any()), bool(tables[3:].any())
     stations = len(mesh.stations.row)
@@ -171,7 +172,7 @@ def widest_station(ski: Ski, clamp_length: float, elements: int) -> int:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeGradient:
-    """Growth of an output with the numbers of the equations that shape and stiffness of a ski give.
+    """Derivatives of an output by the numbers of the equations that shape and stiffness of a ski give.
 
     `stations`: with place, weight, width, height of the base, and the lengths of both elements' slopes over themselves
     (6, 2 n); `stiffness`: with EI and GJ at the Gauss points (2, n, 4); `widest`: with the greatest width; `edge`,
@@ -185,7 +186,7 @@ class ShapeGradient:
     by_edge: FloatArray
 
     def by_tables(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """Growth with the ski's tables, as of `TableGrowth` (5, rows)."""
+        """Derivatives by the ski's tables, as of `TableGrowth` (5, rows)."""
         station, rows = model.ski.station.tobytes(), len(model.ski.station)
         mesh, out = _mesh(station, model.clamp_length, elements), np.zeros((5, rows))
         out[0] = self._by_stations(model, elements, u, adjoint)
@@ -201,7 +202,7 @@ class ShapeGradient:
         return out
 
     def _by_stations(self, model: ClampedSki, elements: int, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-        """Growth with the stations of the ski's tables (rows,): places move, elements lengthen, lines shift."""
+        """Derivatives by the stations of the ski's tables (rows,): places move, elements lengthen, lines shift."""
         ski, half = model.ski, model.clamp_length / 2.0
         mesh, rows = _mesh(ski.station.tobytes(), model.clamp_length, elements), len(ski.station)
         shape, stiffness = (
@@ -232,7 +233,7 @@ class ShapeGradient:
         return out
 
     def _add_edge(self, model: ClampedSki, u: FloatArray, node: FloatArray) -> None:
-        """Add the growth with the nodes that deflection and twist at fixed places give, for the same unknowns."""
+        """Add the derivatives by the nodes that deflection and twist at fixed places give, for the same unknowns."""
         element = np.clip(np.searchsorted(-model.node, -self.edge, side="right") - 1, 0, len(model.dof) - 1)
         value, length = _by_node(model, u)[element], _element_lengths(model)[element]
         local, (by_deflection, by_twist) = (model.node[element] - self.edge) / length, self.by_edge[2:]
@@ -245,7 +246,7 @@ class ShapeGradient:
 
 
 def _by_stretch(model: ClampedSki, stiffness: FloatArray, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-    """Growth of λ·K u with each element's length over itself: shapes of curvature fall as 1/ℓ², of slopes as 1/ℓ."""
+    """Derivatives of λ·K u by each element's length over itself: shapes of curvature fall as 1/ℓ², of slopes as 1/ℓ."""
     length, curvature = _curvature(model)
     falls = -np.array([2.0, 1.0, 0.0, 2.0, 1.0, 0.0]) * curvature
     (own, turn), (back, turn_back) = (curvature_and_turn(model, unknowns) for unknowns in (u, adjoint))
@@ -267,7 +268,7 @@ def _curvature_between(nodes: bytes) -> tuple[FloatArray, FloatArray]:
 
 
 def bent_by(model: ClampedSki, u: FloatArray, growth: Shape) -> FloatArray:
-    """Growth of the beam's elastic forces at the same unknowns (size,)."""
+    """Derivatives of the beam's elastic forces at the same unknowns (size,)."""
     out, lengthens = np.zeros(model.size), growth.moves
     if not (lengthens or growth.stiffens):
         return out
@@ -299,7 +300,7 @@ def curvature_and_turn(model: ClampedSki, u: FloatArray) -> tuple[FloatArray, Fl
 
 
 def beam_gradients(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> FloatArray:
-    """Growth of λ·K u with EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist.
+    """Derivatives of λ·K u by EI and GJ at the Gauss points: w ℓ κ_u κ_λ, and with the rates of twist.
 
     For k pairs of u and λ, each (k, size); shape (k, 2, n, 4).
     """
@@ -318,7 +319,7 @@ def beam_gradients(model: ClampedSki, u: FloatArray, adjoint: FloatArray) -> Flo
 def growth_by_tables(
     model: ClampedSki, elements: int, tables: FloatArray, columns: FloatArray, stiffness: FloatArray, edges: Edges
 ) -> FloatArray:
-    """Growth of k outputs with parameters of the ski whose tables (parameters, 5, rows) grow on stations that stay.
+    """Derivatives of k outputs by parameters of the ski whose tables (parameters, 5, rows) grow on stations that stay.
 
     From the growth with width and height of the base at the stations (k, 2, 2 n), with EI and GJ at the Gauss points
     (k, 2, n, 4), and for each output with the first two at places of the edge.

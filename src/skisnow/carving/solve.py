@@ -154,9 +154,9 @@ def _mesh_rows(nodes: bytes, dofs: bytes) -> tuple[FloatArray, int]:
 
 
 def _bent_onto_snow(model: ClampedSki) -> tuple[FloatArray, FloatArray]:
-    """Unknowns of a ski bent onto the snow over most of its running length, and straight beyond.
+    """Beam unknowns of a ski that is bent onto the snow over most of its running length, and straight beyond.
 
-    By half its width, to be taken times tan ϑ, and by the height of its base, which is to be taken off.
+    Two parts: u = tan ϑ times the first (half the width) minus the second (height of the base).
     """
     ski, node = model.ski, model.node
     dof = np.vstack([model.dof[:, :3], model.dof[-1:, 3:]])

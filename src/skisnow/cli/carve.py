@@ -147,11 +147,11 @@ def _exit_status(answers: list[CarveAnswer]) -> int:
 
 def _compute_answers(options: argparse.Namespace) -> list[CarveAnswer]:
     with announced("loading"):
-        from ..carving.answer import answered
+        from ..carving.answer import answer_question
         from ..carving.question import CARVE_KEYS, carve_question
 
         question = {name: value for name, value in vars(options).items() if name in CARVE_KEYS and value is not None}
-        return [answered(carve_question(question | {"ski": ski})) for ski in options.ski]
+        return [answer_question(carve_question(question | {"ski": ski})) for ski in options.ski]
 
 
 def _print_warnings(answers: list[CarveAnswer]) -> None:
@@ -212,14 +212,14 @@ def design_ski(options: argparse.Namespace) -> int:
 
 def _draw_design(options: argparse.Namespace, task: DesignTask, design: Design) -> None:
     """Draw the initial ski and the design in the turn of the first condition."""
-    from ..carving.answer import answered, answers_dict
+    from ..carving.answer import answer_question, answers_dict
     from ..report.carving_figure import carved_skis
     from ..report.figures.figure_files import write_figure
 
     answers = []
     for name, keys in ((design.before.name, design.before.keys), (design.ski.name, design.keys)):
         task.sources.take_ski(name, keys or {})
-        answers.append(answered(replace(task.conditions[0], ski=name), sources=task.sources))
+        answers.append(answer_question(replace(task.conditions[0], ski=name), sources=task.sources))
     write_figure(options.figure, lambda: carved_skis(answers_dict(answers)), language=options.language)
 
 

@@ -125,9 +125,9 @@ class Progress:
         if time_s < self._next:
             return
         self._next = time_s + self._pause
-        self._line.show(text + self._left(text, time_s))
+        self._line.show(text + self._time_left(text, time_s))
 
-    def _left(self, text: str, time_s: float) -> str:
+    def _time_left(self, text: str, time_s: float) -> str:
         """The time left of work that is counted, "3 of 15", from the second text of its kind on."""
         counted = _COUNTED.search(text)
         if counted is None or "left" in text:
@@ -261,7 +261,7 @@ STATUS: Final = 70
 def report_failure(error: Exception) -> int:
     """Write the traceback to a file and print its path; returns the exit status."""
     reference = secrets.token_hex(4)
-    place = _write_log(f"error-{reference}.txt", _trace(error, reference))
+    place = _write_log(f"error-{reference}.txt", _error_report(error, reference))
     where = f"The trace is in {place}; please send it with what you did." if place else "The trace:"
     what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
     print(f"skisnow: an error that was not foreseen ({what}). Reference {reference}. {where}", file=sys.stderr)
@@ -270,7 +270,7 @@ def report_failure(error: Exception) -> int:
     return STATUS
 
 
-def _trace(error: Exception, reference: str) -> str:
+def _error_report(error: Exception, reference: str) -> str:
     from importlib.metadata import version
 
     head = (

@@ -138,7 +138,7 @@ def _write_and_print(
         if result.scenario.skier is not None and options.boots_out.suffix.lower() != ".csv":
             _write_joints(result, options.boots_out)
     if options.out is not None:
-        _write(options, result, summary, replay_title=scenario_input.title if options.replay else None)
+        _write_run(options, result, summary, replay_title=scenario_input.title if options.replay else None)
 
 
 def _write_joints(run: Run, boots: Path) -> None:
@@ -152,7 +152,7 @@ def _write_joints(run: Run, boots: Path) -> None:
     print(f"Joints: {joints}", file=sys.stderr)
 
 
-def _write(options: argparse.Namespace, result: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
+def _write_run(options: argparse.Namespace, result: Run, summary: dict[str, Any], *, replay_title: str | None) -> None:
     from ..report.run.folder import write_run
     from ..report.run.page import REPLAY
 

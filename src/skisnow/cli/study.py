@@ -42,7 +42,7 @@ def add_parser(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(options: argparse.Namespace) -> int:
     """Run, resume or combine the study; returns 1 if no point could be computed."""
     if options.merge is not None:
-        return _merge(options)
+        return _merge_shards(options)
     if len(options.study) > 1:
         options.parser.error("one STUDY.toml is taken; several files are the parts of --merge TABLE")
     (file,) = options.study
@@ -73,7 +73,7 @@ def _run_whole(options: argparse.Namespace, study: Study) -> int:
     if _all_points_failed(study.out, table):
         return 1
     if options.figure is not None:
-        _draw(options, table)
+        _draw_figure(options, table)
     return 0
 
 
@@ -93,7 +93,7 @@ def _run_part(options: argparse.Namespace, study: Study) -> int:
     return 0
 
 
-def _merge(options: argparse.Namespace) -> int:
+def _merge_shards(options: argparse.Namespace) -> int:
     from ..studies import merge_shards
 
     if options.figure is not None or options.scheduler is not None:
@@ -135,7 +135,7 @@ def _print_outcomes(place: Path, table: StudyTable) -> None:
             print(f"warning: {count} {what}; the first, row {row}: {text}", file=sys.stderr)
 
 
-def _draw(options: argparse.Namespace, table: StudyTable) -> None:
+def _draw_figure(options: argparse.Namespace, table: StudyTable) -> None:
     from ..report.figures.figure_files import write_figure
     from ..report.study_maps import grip_map, radius_map
 

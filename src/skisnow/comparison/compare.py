@@ -116,7 +116,7 @@ def compare_tracks(
     lines = track_polyline(laid.simulated, dimensions=dimensions), track_polyline(laid.measured, dimensions=dimensions)
     clock = common_clock(simulated, measured, time_from)
     names = (simulated.name, measured.name)
-    warnings = [*_warnings(simulated, measured, dimensions), *laid.warnings]
+    warnings = [*_track_warnings(simulated, measured, dimensions), *laid.warnings]
     if not together and not placed:
         warnings.append(f"{_frames_sentence(simulated, measured)}; their coordinates are compared as they stand")
     plain = _compare_lines(lines, clock, names, seen)
@@ -245,7 +245,7 @@ def _require_near(simulated: Polyline, measured: Polyline, names: tuple[str, str
         ).tag("nothing_common", first=names[0], second=names[1], nearest=nearest / 1000.0, farthest=FARTHEST / 1000.0)
 
 
-def _warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
+def _track_warnings(simulated: Track, measured: Track, dimensions: int) -> list[str]:
     warnings = []
     for track in (simulated, measured):
         without = int((~compared_points(track, dimensions=dimensions)).sum())

@@ -131,7 +131,7 @@ class _Maker:
             source="",
             layout=layout,
             width=width,
-            base=self._of_like("base_height", layout) if base is None else self._table(base, MM, layout).at,
+            base=self._of_like("base_height", layout) if base is None else self._station_table(base, MM, layout).at,
             bending_stiffness=self._along(bending, "bending_stiffness", layout),
             torsional_stiffness=self._along(torsion, "torsional_stiffness", layout),
             mass=self._measured.mass or 1.0,
@@ -248,7 +248,7 @@ class _Maker:
             return station + (known.boot if known.boot is not None else self._boot_of_tables())
         return station if known.stations_from == "tail" else self._length - station
 
-    def _table(self, column: tuple[FloatArray, ...], unit: float, layout: Layout) -> StationTable:
+    def _station_table(self, column: tuple[FloatArray, ...], unit: float, layout: Layout) -> StationTable:
         station = self._from_tail(column[0]) + layout.tail
         order = np.argsort(-station)
         return StationTable(station[order], column[1][order] * unit)
@@ -261,7 +261,7 @@ class _Maker:
                 "contradiction", name=name
             )
         if column is not None:
-            table = self._table(column, 1.0, layout)
+            table = self._station_table(column, 1.0, layout)
             return Stiffness(table.station, table.value, np.full_like(table.value, np.nan))
         if tests is None:
             return None

@@ -106,9 +106,10 @@ class Search:
         return constraints
 
     def run(self, z: FloatArray, *, polish: bool = False) -> FloatArray:
-        """Smallest deviations from a start; if all targets are reached, the design with the least change.
+        """Design variables (n,) with the smallest deviations from the targets, searched from z.
 
-        `polish`: from the best end of several starts, to a smaller tolerance.
+        If all targets are reached, those with the least change of the ski.
+        polish: True from the best end of several starts, to a smaller tolerance.
         """
         if not self.targets:
             return self._nearest(z)
@@ -220,7 +221,7 @@ def _padded(matrix: FloatArray, x: FloatArray) -> FloatArray:
 
 
 def _slack(search: Search, goal: Goal, number: int) -> dict[str, Any]:
-    """Slack + deviation and slack - deviation are 0 or more."""
+    """Constraint of SLSQP that bounds a goal's deviations by a slack: slack ± deviation ≥ 0."""
 
     def fun(x: FloatArray) -> FloatArray:
         try:

@@ -51,7 +51,12 @@ class Priors:
 
 
 class Spreads(NamedTuple):
-    """τ² (m²), g_0, σ_g² and s² of each group."""
+    """Spreads of each group of series.
+
+    seating2: τ² (m²), variance of the depth zero.
+    mean_exponent, layering2: mean g_0 and variance σ_g² of the exponent g.
+    scatter2: s², variance of the relative scatter of the force.
+    """
 
     seating2: FloatArray
     mean_exponent: FloatArray

@@ -107,11 +107,11 @@ def fit_models_with_depth_errors(
     for model in MODELS:
         basis = bases[model.hardness]
         slopes = slopes_of[model.hardness]
-        weight = _weights(readings, readings.load, np.zeros(readings.n), uncertainty, scatter)
+        weight = _effective_weights(readings, readings.load, np.zeros(readings.n), uncertainty, scatter)
         previous = np.full(4, np.nan)
         for _ in range(n_iterations if model.n_parameters else 0):
             ends = _weighted_ends(basis, model, readings.load, weight)
-            weight = _weights(readings, basis.columns @ ends, slopes @ ends, uncertainty, scatter)
+            weight = _effective_weights(readings, basis.columns @ ends, slopes @ ends, uncertainty, scatter)
             if np.allclose(ends, previous, rtol=1e-6, atol=0.0):
                 break
             previous = ends
@@ -142,9 +142,10 @@ def _depth_slopes(readings: Readings, hardness: FloatArray) -> FloatArray:
     return weighted_columns(readings, hardness, growth, readings.contact_area)
 
 
-def _weights(
+def _effective_weights(
     readings: Readings, force: FloatArray, force_slope: FloatArray, uncertainty: ReadingUncertainty, scatter: float
 ) -> FloatArray:
+    """Inverse effective variance (1/N²) of each reading; `force_slope`: dF̂/de (N/m)."""
     variance = (scatter * force) ** 2 + uncertainty.load**2 + (force_slope * uncertainty.depth) ** 2
     least, most = float(variance.min()), float(variance.max())
     if most <= 0.0:

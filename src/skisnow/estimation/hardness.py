@@ -256,7 +256,7 @@ class ShearDisplacement(ShownFields):
 
 
 def shear_displacement(campaign: Campaign, tests: ShearTests) -> ShearDisplacement:
-    """Fit the rising part of every test."""
+    """Displacement u_y of each shear test, from a line through the rising part of its moment over the angle."""
     m, turning = len(tests), tests.turning
     if turning is None:
         return ShearDisplacement(np.zeros(m, dtype=np.int64), np.full(m, np.nan), np.full((m, 2), np.nan))

@@ -278,7 +278,7 @@ def move_to_scenario_frame(
             "fall_line_azimuth_deg, and latitude_deg and longitude_deg of x = y = 0; without these two the track's "
             "first point is used as the scenario's start"
         ).tag("site_missing", name=track.name)
-    parsed = _site(site)
+    parsed = _read_site(site)
     azimuth = parsed.fall_line_azimuth_deg * DEGREE
     slope = scenario.scenario.slope
     angle = slope.angle if isinstance(slope, Plane) else None
@@ -326,7 +326,7 @@ def _place_of(point: GeodeticPoint, track: Track) -> FloatArray:
     return at
 
 
-def _site(site: Mapping[str, Any]) -> Site:
+def _read_site(site: Mapping[str, Any]) -> Site:
     parsed = build_declared(Site, checked_table(Site, site, "[identify.site]"))
     if (parsed.latitude_deg is None) != (parsed.longitude_deg is None):
         raise ParameterError("[identify.site]: latitude_deg and longitude_deg go together; one is missing").tag(

@@ -75,7 +75,7 @@ class TableFile:
         if not self.rows:
             raise ParameterError("{name} has no rows below its header").tag("no_rows", name=self.name)
 
-    def require_no_slip(self, expected: tuple[str, ...]) -> None:
+    def reject_misspelt_columns(self, expected: tuple[str, ...]) -> None:
         """Reject a column whose name is similar to that of a missing one: it would not be read."""
         absent = [name for name in expected if name not in self.columns]
         for name in self.columns:
@@ -208,7 +208,7 @@ def read_photo_cells(path: str | Path) -> PhotoCells:
 def parse_photo_cells(table: TableFile) -> PhotoCells:
     """Convert a table to runs of photo cells; errors as in `read_photo_cells`."""
     table.require(CELL_COLUMNS)
-    table.require_no_slip(tuple(quantity.name for quantity in _PASSAGE))
+    table.reject_misspelt_columns(tuple(quantity.name for quantity in _PASSAGE))
     names = table.texts("run")
     _, station_m, time_s, time_sd_s = _PASSAGE
     station, time = table.numbers(station_m), table.numbers(time_s)
@@ -310,14 +310,14 @@ def read_measured_grooves(path: str | Path) -> MeasuredGrooves:
 def parse_grooves(table: TableFile) -> MeasuredGrooves:
     """Convert a table to measured grooves; errors as in `read_measured_grooves`."""
     table.require(())
-    table.require_no_slip((*GROOVE_COLUMNS, *SPREADS))
+    table.reject_misspelt_columns((*GROOVE_COLUMNS, *SPREADS))
     columns = {}
     stated = True
     for quantity, spread in zip(_ROW[:3], _ROW[3:], strict=True):
         name = quantity.name
-        values = _column(table, quantity) * quantity.factor
+        values = _read_column(table, quantity) * quantity.factor
         measured = np.isfinite(values)
-        sd = _column(table, spread) * spread.factor
+        sd = _read_column(table, spread) * spread.factor
         if np.isfinite(sd[measured]).all():
             columns[name] = (values, sd)
             continue
@@ -331,7 +331,7 @@ def parse_grooves(table: TableFile) -> MeasuredGrooves:
     return MeasuredGrooves(table.name, depth, width, np.abs(radius), depth_sd, width_sd, radius_sd, stated)
 
 
-def _column(table: TableFile, quantity: Quantity) -> FloatArray:
+def _read_column(table: TableFile, quantity: Quantity) -> FloatArray:
     if quantity.name not in table.columns:
         return np.full(len(table.rows), np.nan)
     return table.numbers(quantity)

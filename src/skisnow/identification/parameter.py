@@ -172,10 +172,10 @@ def parameter_table(
     values: start values by the same names or by those without ``@RUN``; `tables` override them.
     tables: entries of the tables ``[identify."KEY"]``, from `given_parameters`.
     """
-    return tuple(_parameter(key, values, tables) for key in keys)
+    return tuple(_make_parameter(key, values, tables) for key in keys)
 
 
-def _parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping[str, float]]) -> Parameter:
+def _make_parameter(key: str, values: Mapping[str, Any], tables: Mapping[str, Mapping[str, float]]) -> Parameter:
     own = key.partition("@")[0]
     entries = {**tables.get(own, {}), **tables.get(key, {})}
     start = entries.get("start", values.get(key, values.get(own)))

@@ -51,19 +51,19 @@ def write_campaign_netcdf(campaign: Campaign, path: str | Path) -> None:
     """
     memory = io.BytesIO()
     file = netcdf_file(memory, "w", version=2)
-    for name, text in _attributes(campaign).items():
+    for name, text in _global_attributes(campaign).items():
         setattr(file, name, text.encode("utf-8"))
     for variable in _variables(campaign):
         if variable.dimension not in file.dimensions:
             file.createDimension(variable.dimension, len(variable.values))
-        _write(file, variable)
+        _write_variable(file, variable)
     file.flush()
     content = memory.getvalue()
     file.close()
     write_file(path, content)
 
 
-def _attributes(campaign: Campaign) -> dict[str, str]:
+def _global_attributes(campaign: Campaign) -> dict[str, str]:
     tools = {name: {"shape": type(tool).__name__, **asdict(cast("Any", tool))} for name, tool in campaign.tools.items()}
     stated = {
         "gauge_resolution_m": campaign.gauge_resolution,
@@ -89,23 +89,23 @@ def _attributes(campaign: Campaign) -> dict[str, str]:
 def _variables(campaign: Campaign) -> Iterator[_Variable]:
     """Columns of all tables of a campaign."""
     if campaign.penetration is not None:
-        yield from _penetration(campaign.penetration)
+        yield from _penetration_variables(campaign.penetration)
     if campaign.shear is not None:
-        yield from _shear(campaign.shear)
+        yield from _shear_variables(campaign.shear)
     if campaign.density is not None:
-        yield from _density(campaign.density)
+        yield from _density_variables(campaign.density)
     if campaign.drop_cone is not None:
         yield from _drop_cone(campaign.drop_cone)
 
 
-def _penetration(tests: PenetrationTests) -> Iterator[_Variable]:
+def _penetration_variables(tests: PenetrationTests) -> Iterator[_Variable]:
     of, reading = "penetration_test", "penetration_reading"
-    yield from _texts(
+    yield from _text_variables(
         of, name=tests.experiment, site=tests.site, tool=tests.tool, spot=tests.spot, cancelled=tests.cancelled
     )
     yield _Variable(f"{of}_edge_angle", of, tests.edge_angle, "rad", "angle between the base and the snow surface")
     yield from _snow_of(of, tests.snow_density, tests.drop_cone_depth)
-    yield _row_size(of, reading, tests.first)
+    yield _row_size_variable(of, reading, tests.first)
     yield _Variable(f"{reading}_load", reading, tests.load, "N", "load normal to the snow surface")
     yield _Variable(f"{reading}_depth", reading, tests.penetration_depth, "m", "depth below the snow surface")
     if tests.depth_after is not None:
@@ -114,15 +114,15 @@ def _penetration(tests: PenetrationTests) -> Iterator[_Variable]:
     yield from _further(reading, tests.further)
     if tests.unloading is not None:
         left = "unloading_reading"
-        yield _row_size(of, left, tests.unloading.first)
+        yield _row_size_variable(of, left, tests.unloading.first)
         yield _Variable(f"{left}_load", left, tests.unloading.load, "N", "load that is left while discs are taken off")
         yield _Variable(f"{left}_depth", left, tests.unloading.penetration_depth, "m", "depth below the snow surface")
         yield _Variable(f"{left}_row", left, tests.unloading.row, "1", "line of the file")
 
 
-def _shear(tests: ShearTests) -> Iterator[_Variable]:
+def _shear_variables(tests: ShearTests) -> Iterator[_Variable]:
     of = "shear_test"
-    yield from _texts(
+    yield from _text_variables(
         of, name=tests.experiment, site=tests.site, plate=tests.plate, spot=tests.spot, cancelled=tests.cancelled
     )
     yield _Variable(f"{of}_edge_angle", of, tests.edge_angle, "rad", "angle between the plate and the snow surface")
@@ -134,14 +134,14 @@ def _shear(tests: ShearTests) -> Iterator[_Variable]:
     yield from _further(of, tests.further)
     if tests.turning is not None:
         reading = "turning_reading"
-        yield _row_size(of, reading, tests.turning.first)
+        yield _row_size_variable(of, reading, tests.turning.first)
         yield _Variable(f"{reading}_angle", reading, tests.turning.turning_angle, "rad", "turning angle of the device")
         yield _Variable(f"{reading}_moment", reading, tests.turning.moment, "N m", "moment on the pole")
 
 
-def _density(samples: DensitySamples) -> Iterator[_Variable]:
+def _density_variables(samples: DensitySamples) -> Iterator[_Variable]:
     of = "density_sample"
-    yield from _texts(of, name=samples.sample, site=samples.site, cancelled=samples.cancelled)
+    yield from _text_variables(of, name=samples.sample, site=samples.site, cancelled=samples.cancelled)
     yield _Variable(f"{of}_snow_density", of, samples.snow_density, "kg m-3", "density of the snow")
     yield _Variable(f"{of}_depth", of, samples.sample_depth, "m", "depth of the middle below the snow surface")
     yield _Variable(f"{of}_thickness", of, samples.sample_thickness, "m", "vertical extent")
@@ -151,13 +151,13 @@ def _density(samples: DensitySamples) -> Iterator[_Variable]:
 
 def _drop_cone(tests: DropConeTests) -> Iterator[_Variable]:
     of = "drop_cone_repeat"
-    yield from _texts(of, test=tests.test, repeat=tests.repeat, site=tests.site, cancelled=tests.cancelled)
+    yield from _text_variables(of, test=tests.test, repeat=tests.repeat, site=tests.site, cancelled=tests.cancelled)
     yield _Variable(f"{of}_depth", of, tests.drop_cone_depth, "m", "depth of the drop cone; larger is softer")
     yield _Variable(f"{of}_row", of, tests.row, "1", "line of the file")
     yield from _further(of, tests.further)
 
 
-def _texts(dimension: str, **columns: Sequence[str]) -> Iterator[_Variable]:
+def _text_variables(dimension: str, **columns: Sequence[str]) -> Iterator[_Variable]:
     for name, values in columns.items():
         meaning = "reason why the experiment does not count" if name == "cancelled" else name
         yield _Variable(f"{dimension}_{name}", dimension, values, "", meaning)
@@ -168,7 +168,7 @@ def _snow_of(dimension: str, density: npt.NDArray[Any], cone_depth: npt.NDArray[
     yield _Variable(f"{dimension}_drop_cone_depth", dimension, cone_depth, "m", "drop-cone depth at the experiment")
 
 
-def _row_size(dimension: str, reading: str, first: IntArray) -> _Variable:
+def _row_size_variable(dimension: str, reading: str, first: IntArray) -> _Variable:
     name = f"{reading}_row_size"
     return _Variable(name, dimension, np.diff(first), "1", "number of readings of the experiment", sample_of=reading)
 
@@ -179,7 +179,7 @@ def _further(dimension: str, columns: Mapping[str, Sequence[str]]) -> Iterator[_
         yield _Variable(f"{dimension}_further_{number}", dimension, cells, "", heading)
 
 
-def _write(file: Any, variable: _Variable) -> None:
+def _write_variable(file: Any, variable: _Variable) -> None:
     values = variable.values
     if isinstance(values, np.ndarray):
         whole = np.issubdtype(values.dtype, np.integer)

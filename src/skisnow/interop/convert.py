@@ -60,7 +60,7 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
     columns = [(series.fields[name] * factor + offset).tolist() for name, factor, offset in available.values()]
     rows = (
         ",".join((when, *("" if math.isnan(value) else f"{value:.10g}" for value in values)))
-        for when, *values in zip(_times(series, zone=True), *columns, strict=True)
+        for when, *values in zip(_time_texts(series, zone=True), *columns, strict=True)
     )
     write_file(path, "\n".join((",".join(("time", *available)), *rows)) + "\n")
     return Path(path)
@@ -68,10 +68,10 @@ def write_weather_csv(series: StationSeries, path: str | Path) -> Path:
 
 def smet_text(series: StationSeries) -> str:
     """Content of an SMET 1.1 file with all fields in SI."""
-    return "\n".join(_smet(series)) + "\n"
+    return "\n".join(_smet_lines(series)) + "\n"
 
 
-def _smet(series: StationSeries) -> Iterator[str]:
+def _smet_lines(series: StationSeries) -> Iterator[str]:
     place = {
         "latitude": series.latitude_deg,
         "longitude": series.longitude_deg,
@@ -88,7 +88,7 @@ def _smet(series: StationSeries) -> Iterator[str]:
     yield f"fields = {' '.join(('timestamp', *series.fields))}"
     yield "[DATA]"
     columns = [column.tolist() for column in series.fields.values()]
-    for when, *values in zip(_times(series, zone=False), *columns, strict=True):
+    for when, *values in zip(_time_texts(series, zone=False), *columns, strict=True):
         if NO_DATA in values:
             raise ParameterError(
                 "{file} has a value of {no_data:g} at {when}, which means a missing value in SMET"
@@ -96,7 +96,7 @@ def _smet(series: StationSeries) -> Iterator[str]:
         yield " ".join((when, *(f"{NO_DATA if math.isnan(value) else value:.10g}" for value in values)))
 
 
-def _times(series: StationSeries, *, zone: bool) -> Iterator[str]:
+def _time_texts(series: StationSeries, *, zone: bool) -> Iterator[str]:
     own = timezone(timedelta(hours=series.utc_offset))
     for seconds in series.time.tolist():
         moment = datetime.fromtimestamp(seconds, UTC).astimezone(own)
@@ -162,7 +162,7 @@ def convert(source: str | Path, target: str | Path, options: ConvertOptions | No
         The target is the source, or cannot be written.
     """
     source, target = Path(source), Path(target)
-    kinds = _kind(source), _kind(target)
+    kinds = _kind_of_file(source), _kind_of_file(target)
     made = CONVERSIONS.get(kinds)
     if made is None:
         raise ParameterError("{source} to {target} is not known. Known are {known}").tag(
@@ -189,7 +189,7 @@ def known_conversions() -> str:
     return "; ".join(f"{source} to {target}" for source, target in CONVERSIONS)
 
 
-def _kind(path: Path) -> str:
+def _kind_of_file(path: Path) -> str:
     if path.is_dir():
         return CAMPAIGN
     ending = path.suffix.lower()

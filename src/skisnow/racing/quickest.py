@@ -172,7 +172,7 @@ def quickest_line(
     begun = _start_line(scenario, gates, start)
     window, step = _window_and_step(len(begun.turns), window, step, ahead)
     _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
-    search = _search(search, model)
+    search = _method(search, model)
     if evaluations > 1:
         require_cmaes()
     require_executor(executor)
@@ -225,7 +225,7 @@ def _window_and_step(gates: int, window: int | None, step: int, ahead: int) -> t
     return window, step
 
 
-def _search(search: Search | None, model: RacerModel) -> Search:
+def _method(search: Search | None, model: RacerModel) -> Search:
     if search is None:
         return "surrogate" if model == "skier" else "cma"
     require_choice("search", search, get_args(Search))

@@ -110,6 +110,7 @@ class Surrogate:
 
 
 def _factorise_kernel(places: FloatArray, lengths: FloatArray, noise: float) -> tuple[FloatArray, bool]:
+    """Cholesky factor of the kernel matrix with noise, and True for a lower one, as SciPy's `cho_factor`."""
     kernel = _kernel(places, places, lengths)
     kernel[np.diag_indices(len(places))] += noise**2 + SMALLEST
     factor, low = cho_factor(kernel, lower=True)
@@ -243,10 +244,10 @@ ALIKE: Final = 0.25
 class PointChoice:
     """Settings for the choice of one point of a batch.
 
-    curiosity: times the deviation of a time, by which it may come out other than expected.
-    caution: power of the probability of coming through: with 1 most races fail by millimetres in the end.
-    held: share of the directions that stay at the centre, at random: without it the points of a batch would be close
-        together.
+    curiosity: factor of the standard deviation of the predicted time.
+    caution: exponent of the probability of passing all gates; with 1 most races fail by millimetres in the end.
+    held: share of the directions, drawn at random, that stay at the centre; without it the points of a batch would be
+        close together.
     """
 
     curiosity: float

@@ -59,7 +59,7 @@ class Windows:
         count = len(begun.turns)
         if self.window == count:
             return self._part(begun, 0, count, count)
-        best = self._whole(begun)
+        best = self._search_whole_course(begun)
         line = _with_best_turns(begun, best)
         first, end = 0, min(self.window + self.ahead, count)
         while True:
@@ -77,8 +77,8 @@ class Windows:
             else:
                 first = max(0, first - self.step)
 
-    def _whole(self, begun: RacingLine) -> Evaluated:
-        """Candidates for the whole course: all turns alike if the start has that, else the start."""
+    def _search_whole_course(self, begun: RacingLine) -> Evaluated:
+        """Best line of a search with equal turns over the whole course; the start itself if its turns differ."""
         batches = self._make_batches(begun, 0, len(begun.turns), len(begun.turns))
         search, place = self._surrogate(batches, 0), self._place(begun, 0, len(begun.turns))
         if self.how.search == "surrogate" and search.starts_with_equal_turns(place):

@@ -133,7 +133,7 @@ def _digits(values: Sequence[float | None]) -> list[str]:
     return orjson.dumps(values).decode("ascii")[1:-1].replace("null", "").split(",") if values else []
 
 
-def _text(value: Any) -> str:
+def _value_text(value: Any) -> str:
     return "" if value is None else protect_from_formulas(str(value))
 
 
@@ -142,8 +142,8 @@ def _switch_text(value: bool) -> str:
 
 
 _CSV_TEXT: Final[dict[str, Callable[[Any], str]]] = {
-    "text": _text,
-    "words": _text,
+    "text": _value_text,
+    "words": _value_text,
     "yes": _switch_text,
     "tick": _switch_text,
     "codes": lambda codes: protect_from_formulas("; ".join(codes)),
@@ -219,7 +219,7 @@ def _estimate_html(value: tuple[float | None, Any], digits: int) -> Markup:
     )
 
 
-def _first_names(names: list[str]) -> Markup:
+def _names_text(names: list[str]) -> Markup:
     listed = Markup(", ").join(names[:LISTED_NAMES])
     more = len(names) - LISTED_NAMES
     return prose("{listed} and {more} more", listed=listed, more=formatting.whole(more)) if more > 0 else listed
@@ -228,7 +228,7 @@ def _first_names(names: list[str]) -> Markup:
 _SET: Final[dict[Kind, Callable[[Any, int], Markup]]] = {
     "text": lambda value, _: Markup.escape(str(value)),
     "words": lambda value, _: html(value),
-    "codes": lambda value, _: _first_names(value),
+    "codes": lambda value, _: _names_text(value),
     "yes": lambda value, _: html(Message("yes") if value else Message("no")),
     "tick": lambda value, _: Markup('<span role="img" aria-label="{}">✓</span>' if value else "").format(
         str(Message("yes"))

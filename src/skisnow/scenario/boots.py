@@ -226,7 +226,9 @@ def read_boots(path: str | Path, *, edge_angle: float = 0.0, stance_width: float
         )
     _require_rising(path, clock, rows, table[clock])
     try:
-        place, axes = _of_slope(table) if "left_x_m" in head else _of_sledge(table, edge_angle, stance_width)
+        place, axes = (
+            _boots_on_slope(table) if "left_x_m" in head else _boots_on_sledge(table, edge_angle, stance_width)
+        )
         return Boots(
             table[clock],
             place,
@@ -389,12 +391,14 @@ def _axes_of_table(table: Mapping[str, Any], missing: Mapping[str, float]) -> Fl
     return np.array([[axes_of(*(float(row[i]) for row in of_ski)) for of_ski in angles] for i in range(n)])
 
 
-def _of_slope(table: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
+def _boots_on_slope(table: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
+    """Places (n, 2, 3) (m) and axes (n, 2, 3, 3) of both boots on the slope."""
     place = np.stack([np.stack([table[f"{side}_{name}"] for name in OF_SLOPE], axis=-1) for side in SIDES], axis=1)
     return place, _axes_of_table(table, dict.fromkeys(ANGLES, 0.0))
 
 
-def _of_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float) -> tuple[FloatArray, FloatArray]:
+def _boots_on_sledge(table: Mapping[str, Any], edge_angle: float, stance_width: float) -> tuple[FloatArray, FloatArray]:
+    """Places (n, 2, 3) (m) and axes (n, 2, 3, 3) of both boots on the sledge."""
     n = len(next(iter(table.values())))
     place = np.zeros((n, 2, 3))
     for ski, (side, sense) in enumerate(zip(SIDES, (1.0, -1.0), strict=True)):

@@ -57,12 +57,12 @@ def require_known(section: Mapping[str, Any]) -> None:
         raise ParameterError('[identify] clock is {clock!r}; it must be "start" or "free"').tag(
             "out_of_range", clock=clock
         )
-    for name in _table(section, "site"):
+    for name in _read_table(section, "site"):
         if name not in SITE:
             raise ParameterError("[identify.site]: unknown name {name!r}. {allowed}").tag(
                 "unknown_name", name=name, allowed=suggest_and_list(name, SITE)
             )
-    for run, entries in _table(section, "runs").items():
+    for run, entries in _read_table(section, "runs").items():
         if not isinstance(entries, dict):
             raise ParameterError('identify.runs."{run}" is {entries!r}; it must be a table of keys').tag(
                 "wrong_kind", run=run, entries=entries
@@ -78,7 +78,7 @@ def given_parameters(section: Mapping[str, Any]) -> dict[str, dict[str, float]]:
         if word in NO_KEYS:
             continue
         own, at, run = word.partition("@")
-        key = _checked_key(own, f'[identify."{word}"]', _no_key_meant(word)) + at + run
+        key = _checked_key(own, f'[identify."{word}"]', _similar_word_hint(word)) + at + run
         if not isinstance(table, dict):
             raise ParameterError(
                 'identify."{word}" is {table!r}; it must be a table with {given}, begun by the line '
@@ -96,12 +96,12 @@ def _checked_key(word: str, place: str, meant: Message | None = None) -> str:
         raise ParameterError("{place}: {problem}").tag(error.code, place=place, problem=problem) from None
 
 
-def _no_key_meant(word: str) -> Message | None:
+def _similar_word_hint(word: str) -> Message | None:
     near = difflib.get_close_matches(word.lower(), NO_KEYS, n=1, cutoff=0.6)
     return Message("Or did you mean {similar}?", similar=near[0]) if near else None
 
 
-def _table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+def _read_table(section: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     table = section.get(name, {})
     if not isinstance(table, dict):
         what = f"[identify.{name}]" if name == "site" else f'[identify.{name}."NAME"]'

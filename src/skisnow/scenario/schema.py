@@ -38,7 +38,7 @@ _TOGETHER: Final[dict[str, Schema]] = {
 
 def scenario_schema() -> Schema:
     """The schema of a parsed scenario file."""
-    sections = {name: {**table_schema(_keys(name)), **_TOGETHER.get(name, {})} for name in SECTIONS}
+    sections = {name: {**table_schema(_section_keys(name)), **_TOGETHER.get(name, {})} for name in SECTIONS}
     return {
         "$schema": DRAFT,
         "$id": "urn:skisnow:schema:scenario:1",
@@ -47,21 +47,21 @@ def scenario_schema() -> Schema:
         "type": "object",
         "additionalProperties": False,
         "required": [name for name, part in sections.items() if "required" in part or name in _TOGETHER],
-        "properties": {**sections, "identify": _identify()},
+        "properties": {**sections, "identify": _identify_schema()},
     }
 
 
 def output_scenario_schema() -> Schema:
     """Schema of the scenario in summary.json: every key with the value in force."""
-    sections = {name: output_schema(_keys(name), every_null=True) for name in SECTIONS}
+    sections = {name: output_schema(_section_keys(name), every_null=True) for name in SECTIONS}
     return {"type": "object", "additionalProperties": False, "required": list(sections), "properties": sections}
 
 
-def _keys(section: str) -> list[Quantity]:
+def _section_keys(section: str) -> list[Quantity]:
     return [key for full, key in SCENARIO_KEYS.items() if full.startswith(f"{section}.")]
 
 
-def _identify() -> Schema:
+def _identify_schema() -> Schema:
     clock: dict[str, Any] = {
         "type": "string",
         "description": "whether photo cells count from the start, or each run's clock has a separate offset",

@@ -177,7 +177,7 @@ def read_snow_map(path: str | Path) -> SnowMap:
         raise ParameterError("{path}: no column of {columns}, or no row. {action}").tag(
             "missing", path=path, columns=list(SIZES), action=_ACTION
         )
-    grids = _grids(path, names) if "y_m" in rows[0].cells else _grids_along_x(path, rows, names)
+    grids = _read_grids(path, names) if "y_m" in rows[0].cells else _grids_along_x(path, rows, names)
     try:
         return SnowMap(
             hardness=grids.get("H_V_N_per_mm3"),
@@ -197,7 +197,7 @@ def _checked_row(row: CsvRow) -> CsvRow:
     return row
 
 
-def _grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
+def _read_grids(path: str | Path, names: Sequence[str]) -> dict[str, Grid]:
     table = read_grid_table(path, names, action=_ACTION)
     return {name: Grid(table.x, table.y, SIZES[name] * values) for name, values in table.columns.items()}
 

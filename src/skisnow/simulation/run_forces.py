@@ -64,7 +64,10 @@ def _pressure(run: Run, ahead: FloatArray, load: FloatArray) -> FloatArray:
 
 
 def _balanced(run: Run, normal: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Leans in balance by the path of the centre of mass, so high, without and with roll and rise (rad)."""
+    """Leans (rad) that balance the acceleration of the centre of mass: without, and with roll and rise of the body.
+
+    normal, up: (n, 3) normal of the snow, and (n,) height of the centre of mass above it (m).
+    """
     boots, slope, gravity = run.boots, run.scenario.slope, run.scenario.gravity
     assert boots is not None
     if len(run.time) < 5:

@@ -43,7 +43,7 @@ class Refinement(Shown):
     key
         Key of the scenario, such as "solver.elements".
     was, now
-        Its value in force and the finer one, in the unit that the key names.
+        Its value in the run and the finer one, in the unit that the key names.
     end_moves
         Distance between the ends of both runs (m); None where one of them is not finite.
     outcome

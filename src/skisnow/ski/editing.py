@@ -231,7 +231,7 @@ def changed_keys(keys: Mapping[str, Any], values: Mapping[str, float]) -> dict[s
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TableGrowth:
-    """Growth of a ski with a parameter, SI per its unit, on rows that move with it.
+    """Derivatives of a ski by a parameter, SI per its unit, on rows that move with it.
 
     tables: of station, width, base height, EI and GJ, shape (5, rows).
     numbers: of running length, base bevel, edge width, angle of the side, radius of the edge.
@@ -250,7 +250,7 @@ _LENGTH_STEP: Final = 1e-3  # mm; of other keys a ten thousandth
 
 @functools.lru_cache(maxsize=256)
 def table_growth(ski: Ski, name: str) -> TableGrowth:
-    """Growth of a ski with a parameter of `shape_parameters`, of lengths and heights by central differences."""
+    """Derivatives of a ski by a parameter of `shape_parameters`, of lengths and heights by central differences."""
     if name in (*FACTORS, *VALUES):
         return _of_edit(ski, name.removeprefix("edit."))
     memos, table = _growth_caches(ski), _table_of(name)
@@ -278,13 +278,13 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
 
 @functools.lru_cache(maxsize=64)
 def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
-    """Tables (n, 5, rows) and numbers (n, 5) of the growths with parameters."""
+    """Derivatives of the tables (n, 5, rows) and of the numbers (n, 5) of a ski by n parameters."""
     growths = [table_growth(ski, name) for name in names]
     return np.array([growth.tables for growth in growths]), np.array([growth.numbers for growth in growths])
 
 
 def _of_edit(ski: Ski, name: str) -> TableGrowth:
-    """Growth with a factor, or with the value of a curve at one of the `edit_stations`."""
+    """Derivatives by a factor, or by the value of a curve at one of the `edit_stations`."""
     if name == SIDECUT:
         return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
     if name in EDITED_COLUMNS:
@@ -298,7 +298,7 @@ def _of_edit(ski: Ski, name: str) -> TableGrowth:
 
 
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
-    """Growth with a key that changes several tables, or numbers."""
+    """Derivatives by a key that changes several tables, or numbers."""
     parsed, memos, key = parsed_keys(ski), _growth_caches(ski), name.removeprefix("ski.")
     tables, numbers = np.zeros((len(_TABLES), len(ski.station))), np.zeros(len(_NUMBERS))
     if key in _OF_NUMBERS:
@@ -326,7 +326,7 @@ def _table_of(name: str) -> str:
 
 @functools.lru_cache(maxsize=64)
 def _growth_caches(ski: Ski) -> dict[str, dict[str, Any]]:
-    """Caches of growths by table, shared by all skis with the same keys and stations of that table."""
+    """Caches of derivatives by table, shared by all skis with the same keys and stations of that table."""
     if ski.keys is None:
         return {}
     keys = parsed_keys(ski)
@@ -399,7 +399,7 @@ def _with_changed_key(keys: SkiFile, key: str, change: float) -> SkiFile:
 
 
 def _part_growth(keys: SkiFile, key: str, step: float, part: str, station: FloatArray) -> FloatArray:
-    """Growth of the stations, and of a table on them, for the width of its three units, with a key."""
+    """Derivatives of the stations, and of a table on them, for the width of its three units, by a key."""
     home, ends = _layout_of(keys), []
     for change in (step, -step):
         side = _with_changed_key(keys, key, change * SKI_KEYS[key.partition("[")[0]].factor)

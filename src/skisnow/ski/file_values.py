@@ -171,9 +171,9 @@ def values_of_keys(values: dict[str, Any], path: Path) -> FileValues:
             warn_of_unusual(path, {key: value}, SKI_KEYS[key])
     of_base = tuple((key, value) for key, value in checked_values.items() if key in BASE)
     own = {SKI_KEYS[key].field: SKI_KEYS[key].in_si(value) for key, value in checked_values.items() if key not in BASE}
-    return FileValues(path, values, SkiFile(**own, base=_base(of_base)))
+    return FileValues(path, values, SkiFile(**own, base=_build_base(of_base)))
 
 
 @functools.lru_cache(maxsize=32)
-def _base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
+def _build_base(values: tuple[tuple[str, InputValue], ...]) -> BaseShape:
     return build_declared(BaseShape, dict(values))

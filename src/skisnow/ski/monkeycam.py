@@ -81,7 +81,7 @@ def read_monkeycam(
 
 def monkeycam_shape(path: Path, *, running_length: float | None = None) -> MonkeycamShape:
     """Read the outline of a design file of MonkeyCAM; parameters and errors as in `read_monkeycam`."""
-    board = _board(path)
+    board = _read_board(path)
     edge, waist, taper = (_length(path, board, key) for key in ("effective edge length", "waist width", "taper"))
     radius = _length(path, board, "sidecut radius")
     if not edge / 2.0 < radius <= STRAIGHTEST or not edge > 0.0:
@@ -102,7 +102,7 @@ def monkeycam_shape(path: Path, *, running_length: float | None = None) -> Monke
     return MonkeycamShape(str(board.get("name") or path.stem), outline)
 
 
-def _board(path: Path) -> dict[str, Any]:
+def _read_board(path: Path) -> dict[str, Any]:
     design = read_json(path, most_bytes=_MOST_BYTES)
     board = design.get("board") if isinstance(design, dict) else None
     if not isinstance(board, dict):

@@ -56,7 +56,7 @@ def read_table(path: Path) -> dict[str, StationTable]:
             "{path}, line {line}: needed are the column station_m and one or more others. Add it."
         ).tag("missing", path=path, line=first)
     mark = decimal_mark([(cell for _, cells in lines[1:] for cell in cells)], separator=separator)
-    rows = [_row(path, line, header, cells, mark) for line, cells in lines[1:]]
+    rows = [_parse_row(path, line, header, cells, mark) for line, cells in lines[1:]]
     columns = dict(zip(header, np.array(rows).T, strict=True))
     numbers = [line for line, _ in lines[1:]]
     station = columns["station_m"]  # in m, as it is
@@ -93,15 +93,15 @@ def _lines(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
     return separator, lines
 
 
-def _row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
+def _parse_row(path: Path, line: int, header: list[str], cells: list[str], mark: str) -> list[float]:
     if len(cells) != len(header):
         raise ParameterError("{path}, line {line}: {n_cells} cells for {n_header} columns. Correct it.").tag(
             "wrong_number_of_cells", path=path, line=line, n_cells=len(cells), n_header=len(header)
         )
-    return [_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
+    return [_parse_cell(path, line, name, cell, mark) for name, cell in zip(header, cells, strict=True)]
 
 
-def _cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
+def _parse_cell(path: Path, line: int, name: str, cell: str, mark: str) -> float:
     column = replace(COLUMNS[name], name=f"line {line}, {name}")
     try:
         value: object = float(cell if mark == "." else with_decimal_point(cell))
@@ -156,7 +156,7 @@ class StationTable:
         return _tabulated(self.station.tobytes(), self.value.tobytes(), places.tobytes()).reshape(places.shape).copy()
 
     def growths(self, station: FloatArray) -> FloatArray:
-        """Growth of the values at stations (m) with that of each row, shape (rows, n)."""
+        """Derivatives of the values at stations (m) by the value of each row, shape (rows, n)."""
         if self.station.size == 1:
             return np.ones((1, *np.shape(station)))
         x, y = self.station[::-1], self.value[::-1]

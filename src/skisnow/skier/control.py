@@ -187,7 +187,7 @@ class SkidControl:
         return math.copysign(angle, asked)
 
     def _learn(self, seen: Seen, posture: Posture) -> None:
-        """The grip, while the skis slide in the sense of their edges."""
+        """Adjust the estimated grip to the measured side force, while the skis slide in the sense of their edges."""
         edge, dt = posture.edge, self.skier.control_period
         if not seen.bears or abs(seen.slip) < LEARNS_FROM or abs(edge) < BLADE or edge * seen.slip <= 0.0:
             return

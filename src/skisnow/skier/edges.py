@@ -91,7 +91,7 @@ class Edges:
         return math.atan(grip**2 * load / (2.0 * self.softness))
 
     def holding(self, load: float) -> float:
-        """Side force of both skis as a multiple of the load (N), edged as for a carve in balance."""
+        """Largest side force of both skis over the load (N), at the edge angle of a carve in balance."""
         grip = 1.0
         for _ in range(60):  # the error halves at least
             grip = self._hold(grip, load)

@@ -73,7 +73,7 @@ class Line(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class TurnsOverTime:
-    """Turns to the left and to the right by turns, the first half a turn long, then straight on.
+    """Alternate turns to the left and right, the first one half as long; straight on after the last.
 
     >>> plan = TurnsOverTime(Skier(first_turn=1.0, turn_time=2.0, turns=1.5, turn_angle=0.5))
     >>> [round(plan.course(time)[0], 3) for time in (0.5, 1.5, 2.0, 3.0, 4.0, 9.0)]

@@ -68,7 +68,7 @@ def snow_from_results(path: str | Path, *, site: str | None = None) -> SnowPrope
       snow for simulation of skiing", J. Glaciol.
     * The page docs/files/results.md.
     """
-    results = _results(Path(path))
+    results = _read_results(Path(path))
     site = site_named(site, _sites(results))
     hardness = _used(results, "penetration", "H_V_N_per_mm3", site, path)
     stress = _used(results, "shear", "S_f_N_per_mm2", site, path)
@@ -102,7 +102,7 @@ def _of_site(
         ).tag("wrong_kind", path=path, place=".".join(place), keys=["site", *keys], error=error) from error
 
 
-def _results(path: Path) -> dict[str, Any]:
+def _read_results(path: Path) -> dict[str, Any]:
     try:
         results = read_json(path)
     except ContentError as error:

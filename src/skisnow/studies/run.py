@@ -234,7 +234,7 @@ class StudyRows:
     def of(cls, study: Study) -> Self:
         """Rows of a study with the present contents of its files."""
         files = [path.absolute() for path in study.subject.files(study.numbered)]
-        return cls(study.subject, study.columns[:-1], tuple((path, _hash(path)) for path in files))
+        return cls(study.subject, study.columns[:-1], tuple((path, _file_hash(path)) for path in files))
 
     def __call__(self, point: Point) -> list[Any]:
         """Values in the order of the columns, None for missing values."""
@@ -244,12 +244,12 @@ class StudyRows:
     def require_files(self) -> None:
         """Refuse a worker on which a file is another one or is missing."""
         for path, wanted in self.files:
-            if _hash(path) != wanted:
+            if _file_hash(path) != wanted:
                 raise SkisnowError(
                     "the worker on {node} has not the {path} of this study. Put the study into a folder that all "
                     "computers share"
                 ).tag("different_files", node=platform.node(), path=path)
 
 
-def _hash(path: Path) -> str:
+def _file_hash(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest() if is_file(path) else "absent"

@@ -154,10 +154,10 @@ def merge_shards(out: str | Path, parts: Sequence[str | Path]) -> StudyTable:
         for place in dict.fromkeys(places):
             shard_rows.append(KeptRows.read(place))
             opened.callback(shard_rows[-1].close)
-        return _merge(out, _Parts(shard_rows))
+        return _merge_parts(out, _Parts(shard_rows))
 
 
-def _merge(out: Path, parts: _Parts) -> StudyTable:
+def _merge_parts(out: Path, parts: _Parts) -> StudyTable:
     parts.require_whole()
     state, table = table_state(out, parts.keys, parts.fingerprint, parts.count)
     if state is StudyState.FINISHED and table is not None:

@@ -13,7 +13,7 @@ from .._support.errors import ParameterError, SkisnowError
 from .._support.processes.kept_rows import Row
 from .._support.units import MM, ShownFields
 from .._support.user_files.json_text import json_number
-from ..carving.answer import answered, inputs_dict, scalars_dict
+from ..carving.answer import answer_question, inputs_dict, scalars_dict
 from ..carving.question import CARVE_KEYS, carve_question, require_clamp, require_complete
 from ..parameters import Quantity
 from ..scenario import ScenarioFile
@@ -132,7 +132,7 @@ class CarveModel(ShownFields):
     def __call__(self, point: Point) -> Row:
         """One row; whatever is wrong with a point is in it."""
         try:
-            answer = answered(carve_question(point), sources=self._sources)
+            answer = answer_question(carve_question(point), sources=self._sources)
             equilibrium = answer.equilibrium
             scalars = scalars_dict(equilibrium)
             depth, force = equilibrium.edge_depth, equilibrium.force_per_length

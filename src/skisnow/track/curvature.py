@@ -85,7 +85,7 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     smoothed = smooth_track(track, window=window, place_noise=place_noise)
     fitted = np.linalg.norm(smoothed.velocity, axis=1)
     recorded, speed_source = _recorded_speed(track)
-    path = _path(track, smoothed) if speed_source == "fitted" else None
+    path = _estimate_path(track, smoothed) if speed_source == "fitted" else None
     computed = fitted if path is None else path.speed_at(np.maximum.accumulate(track.time))
     speed = np.where(np.isfinite(recorded), recorded, computed)
     arc_length, arc_length_source = _arc_length(track, smoothed, speed, speed_source, path)
@@ -103,7 +103,7 @@ def track_motion(track: Track, *, window: float | None = None, place_noise: floa
     )  # fmt: skip
 
 
-def _path(track: Track, smoothed: SmoothedTrack) -> PathEstimate | None:
+def _estimate_path(track: Track, smoothed: SmoothedTrack) -> PathEstimate | None:
     chosen = smoothed.usable
     return estimate_path(track.time[chosen], track.place[chosen], smoothed.part[chosen], segments(track)[chosen])
 

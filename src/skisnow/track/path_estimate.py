@@ -92,17 +92,17 @@ class PathEstimate:
 
     def max_speed(self, start: float = -np.inf, end: float = np.inf) -> Interval | None:
         """Highest horizontal speed (m/s) between two times (s); None if nothing is known there."""
-        inside = self._inside(start, end)
+        inside = self._nodes_inside(start, end)
         if not self.speed[:, inside].size:
             return None
         return _interval(np.maximum(self.speed[:, inside].max(axis=1), 0.0))
 
     def length(self, start: float = -np.inf, end: float = np.inf, *, with_heights: bool = True) -> Interval:
         """Length (m) of the path between two times (s)."""
-        inside = self._inside(start, end)
+        inside = self._nodes_inside(start, end)
         return _interval(np.maximum(self._lengths(inside, with_heights=with_heights).sum(axis=1), 0.0))
 
-    def _inside(self, start: float, end: float) -> slice:
+    def _nodes_inside(self, start: float, end: float) -> slice:
         first, last = np.searchsorted(self.time, [start - 1e-9, end + 1e-9]).tolist()
         return slice(first, last)
 

@@ -154,13 +154,14 @@ def speed_chain(correlation_time: float, step: FloatArray) -> Chain:
 
 
 class PathModel:
-    """Points of one stretch without a gap, and nodes of time at and between them.
+    """Model of the path through the points of one stretch without a gap; its nodes are at and between the points.
 
     Parameters
     ----------
-    time : (m,) s
-        Rising.
-    place : (m, 2) m
+    time
+        Rising times of the points (s), (m,).
+    place
+        Measured x and y of the points (m), (m, 2).
     scales
         Times that depend on the interval between points.
     """

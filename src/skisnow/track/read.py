@@ -97,7 +97,7 @@ def read_track(
         )
     path = Path(path)
     data = _read_bytes(path)
-    recording = _recording(data, path.name, kind or _guess_format(data, path.suffix))
+    recording = _read_recording(data, path.name, kind or _guess_format(data, path.suffix))
     return build_track(recording, origin=origin, fastest=fastest, gap_factor=gap_factor)
 
 
@@ -131,9 +131,9 @@ def _read_bytes(path: Path) -> bytes:
         # reading a pipe would block, and a folder cannot be read
         data = path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
     except OSError as error:
-        raise _unreadable(path, error.strerror or str(error)) from error
+        raise _unreadable_error(path, error.strerror or str(error)) from error
     if data is None:
-        raise _unreadable(path, Message("it is not a plain file"))
+        raise _unreadable_error(path, Message("it is not a plain file"))
     if not data.strip():
         raise track_error(
             "empty_file",
@@ -144,7 +144,7 @@ def _read_bytes(path: Path) -> bytes:
     return data.decode("utf-16", errors="replace").encode() if data.startswith(_UTF_16) else data
 
 
-def _unreadable(path: Path, reason: str) -> Exception:
+def _unreadable_error(path: Path, reason: str) -> Exception:
     return track_error(
         "unreadable_file",
         str(path),
@@ -154,7 +154,7 @@ def _unreadable(path: Path, reason: str) -> Exception:
     )
 
 
-def _recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
+def _read_recording(data: bytes, name: str, kind: TrackFormat) -> Recording:
     if kind == "fit":
         return read_fit(data, name)
     if kind == "ubx":

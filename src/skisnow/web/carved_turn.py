@@ -93,7 +93,7 @@ class Solver:
 
     def answers(self, inputs: CarveInputs) -> list[dict[str, Any]] | str:
         """JSON of `skisnow carve` for each question, or the message of an error."""
-        from ..carving.answer import answer_dict, answered
+        from ..carving.answer import answer_dict, answer_question
         from ..carving.question import carve_question
         from ..ski.ski_file import Sources
 
@@ -102,7 +102,8 @@ class Solver:
             try:
                 questions = with_sources(inputs, self._sources)
                 return [
-                    answer_dict(answered(carve_question(question), sources=self._sources)) for question in questions
+                    answer_dict(answer_question(carve_question(question), sources=self._sources))
+                    for question in questions
                 ]
             except SkisnowError as error:
                 return error.message
@@ -236,9 +237,9 @@ class CarvedTurn:
         self._waiting = True
         if not self._working:
             self._working = True
-            background_tasks.create(self._work(), name="carve", context=self._status.client)
+            background_tasks.create(self._answer_requests(), name="carve", context=self._status.client)
 
-    async def _work(self) -> None:
+    async def _answer_requests(self) -> None:
         try:
             while self._waiting:
                 self._waiting = False

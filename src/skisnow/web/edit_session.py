@@ -10,7 +10,7 @@ from .._support.errors import FieldDataError, StoreError
 from .._support.messages import Message, joined
 from ..campaign import QUALITY_FLAGS, Campaign, campaign_of_files
 from ..campaign.problems import Problem
-from ..campaign.reading import READ_FILES, FilesInMemory, unfolded
+from ..campaign.reading import READ_FILES, FilesInMemory, unfold_workbooks
 from ..campaign.reading.campaign import ATTACHMENTS
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
@@ -172,7 +172,7 @@ class CorrectionSession(EditSession):
         self.stored, self._files = lab.store.contents(id_, READ_FILES)
         _, attached = lab.store.contents(id_, {ATTACHMENTS})
         self._attached = attached.get(ATTACHMENTS, b"")
-        self._tables = unfolded(FilesInMemory(self._files))
+        self._tables = unfold_workbooks(FilesInMemory(self._files))
         self._entries: tuple[JournalEntry, ...] = ()
         stored = stored_tables(self._tables)
         self.tables: dict[str, StoredTable] = {file: table for file, table in stored.items() if file in TABLES}

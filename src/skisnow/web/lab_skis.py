@@ -20,7 +20,7 @@ from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
 from .subprocesses import SKI_BOUNDS, confined
 from .uploads import Unpacking
-from .words import reworded, typed_number
+from .words import reword, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -178,7 +178,7 @@ def _require_no_other_file(text: str) -> None:
 def _without_folder(folder: str, message: str) -> str:
     """A message without the path of a temporary folder."""
     start, resolved_start = f"{Path(folder) / 'x'}"[:-1], f"{Path(folder).resolve() / 'x'}"[:-1]
-    return reworded(message, lambda text: text.replace(start, "").replace(resolved_start, ""))
+    return reword(message, lambda text: text.replace(start, "").replace(resolved_start, ""))
 
 
 if TYPE_CHECKING:

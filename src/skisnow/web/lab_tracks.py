@@ -20,7 +20,7 @@ from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
 from .page_requests import free_place, hidden_folder, plain_stem
 from .subprocesses import BOUNDS, confined
-from .words import reworded, typed_number
+from .words import reword, typed_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -207,7 +207,7 @@ def _read_named(place: Path, placing: Placing) -> Track:
 
 def _with_name(message: str, place: Path, name: str) -> str:
     """A message with the name of the uploaded file instead of the place where it is stored."""
-    return reworded(message, lambda text: text.replace(str(place), name).replace(place.name, name))
+    return reword(message, lambda text: text.replace(str(place), name).replace(place.name, name))
 
 
 def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None) -> Track:

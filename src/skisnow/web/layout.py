@@ -41,7 +41,7 @@ CONNECTING = Message("Connecting to the lab. The fields open as soon as it answe
 
 
 @contextmanager
-def framed(title: str, *, here: str = "", ahead: bool = False, keeps: bool = False) -> Iterator[None]:
+def page_frame(title: str, *, here: str = "", ahead: bool = False, keeps: bool = False) -> Iterator[None]:
     """Frame of a page around the block. Fields and buttons are enabled while the browser is connected.
 
     title: heading of the page and title of its window.
@@ -174,7 +174,7 @@ def _notify(error: Exception) -> None:
 def _error_page(error: Exception) -> None:
     if isinstance(error, StoreError | ParameterError):
         ui.context.client.request.scope[STATUS] = 404
-    with framed(Message("This page cannot be shown")):
+    with page_frame(Message("This page cannot be shown")):
         sentence(error_sentence(error), "bad")
 
 

@@ -74,7 +74,7 @@ def current_request() -> PageRequest:
     return _ASKED.get()
 
 
-def answering(act: Act) -> Callable[[GenericEventArguments], None]:
+def event_handler(act: Act) -> Callable[[GenericEventArguments], None]:
     """Handler that runs an action and sends its outcome to the waiting browser.
 
     act: action that returns False for a rejected input; the browser then keeps the typed text.
@@ -124,12 +124,12 @@ def _parse_request(message: Any) -> PageRequest:
 
 def asking_button(text: str, act: Act, kind: str = "") -> ui.button:
     """Button whose action moves the focus; see `skisnow.web.elements.button`."""
-    return button(text, None, kind).on("click", answering(act), js_handler=ASK)
+    return button(text, None, kind).on("click", event_handler(act), js_handler=ASK)
 
 
 def row_button(text: str, act: Act) -> ui.button:
     """Button that adds a row to a form and puts the focus on it; it stores nothing."""
-    return button(text, None, "adds").on("click", answering(act), js_handler=ASK_FOR_ROW)
+    return button(text, None, "adds").on("click", event_handler(act), js_handler=ASK_FOR_ROW)
 
 
 def redrawn_by(menu: ui.select) -> ui.element:
@@ -149,18 +149,18 @@ def form(classes: str = "fields", *, sends: Act | None = None) -> ui.element:
     made = ui.element("div").classes(classes)
     if sends is None:
         return made.on("keydown.enter", js_handler=ONWARD)
-    return made.on("keydown.enter", answering(sends), js_handler=ENTER)
+    return made.on("keydown.enter", event_handler(sends), js_handler=ENTER)
 
 
 _ID: Final = re.compile(r"[0-9a-f]{4,64}")
 
 
-def entering(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
+def entry_address(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
     """Address of the entry of a campaign, or of a table and test in it; ``head``: cells of a test without rows."""
     return f"/enter/{id_}" + _query_string(table, test, **(head or {}))
 
 
-def correcting(id_: str, *, table: str = "", test: str = "") -> str:
+def correction_address(id_: str, *, table: str = "", test: str = "") -> str:
     """Address of the correction of an imported campaign, or of a table and test in it."""
     return f"/correct/{id_}" + _query_string(table, test)
 
@@ -171,7 +171,7 @@ def _query_string(table: str, test: str, **further: str) -> str:
     return "?" + "&".join(words) if words else ""
 
 
-def carving(ski: str, other: str = "") -> str:
+def carve_address(ski: str, other: str = "") -> str:
     """Address of the page Carve with a ski, and another one for comparison."""
     return f"/carve?ski={quote(ski, safe='')}" + (f"&other={quote(other, safe='')}" if other else "")
 

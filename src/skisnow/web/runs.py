@@ -179,14 +179,14 @@ class Runs:
         Raises ParameterError: the title is blank or longer than 80 characters, or there is no such job.
         """
         title = " ".join(title.split())
-        job = self._job(name)
+        job = self._find_job(name)
         if not 0 < len(title) <= LONGEST_TITLE:
             raise ParameterError("Give the run a name of 1 to {most} characters.").tag("bad_title", most=LONGEST_TITLE)
         if job is None:
             raise ParameterError("There is no run {name}.").tag("unknown_run", name=name)
         self._keep(replace(job, title=title))
 
-    def _job(self, name: str) -> Job | None:
+    def _find_job(self, name: str) -> Job | None:
         return next((job for job in self.jobs() if job.name == name), None)
 
     def cancel(self, name: str) -> None:
@@ -194,7 +194,7 @@ class Runs:
 
         Raises ParameterError: the job is neither waiting nor running.
         """
-        job = self._job(name)
+        job = self._find_job(name)
         if job is not None and job.state == "waiting":
             self._keep(replace(job, state="cancelled", said="It had not begun."))
         elif job is not None and name == self._running:
@@ -212,7 +212,7 @@ class Runs:
         while not self._ended:
             waiting = [job for job in self.jobs() if job.state == "waiting"]
             if waiting:
-                await self._run(waiting[-1])
+                await self._run_job(waiting[-1])
             else:
                 await asyncio.sleep(_PAUSE_S)
 
@@ -222,7 +222,7 @@ class Runs:
         if self._process is not None and self._process.returncode is None:
             self._process.kill()
 
-    async def _run(self, job: Job) -> None:
+    async def _run_job(self, job: Job) -> None:
         self._keep(replace(job, state="running"))
         self._running, self.progress = job.name, "starting"
         begun = time.monotonic()
@@ -235,13 +235,13 @@ class Runs:
         )
         if self._cancelling:  # in the moment before
             self._process.terminate()
-        last = await self._listen(self._process)
+        last = await self._follow_progress(self._process)
         await self._process.wait()
         cancelled = self._cancelling == job.name
         self._process, self._running, self._cancelling, self.progress = None, "", "", ""
         if not self._ended:
             ended = await self._ended_as(job, last, time.monotonic() - begun, cancelled=cancelled)
-            renamed = self._job(job.name)
+            renamed = self._find_job(job.name)
             self._keep(ended if renamed is None else replace(ended, title=renamed.title))
 
     def _command(self, job: Job) -> list[str]:
@@ -254,7 +254,7 @@ class Runs:
         over = self._finished_job(job, last, cancelled=cancelled)
         return replace(over, took_s=took_s if over.state == "done" else 0.0)
 
-    async def _listen(self, process: asyncio.subprocess.Process) -> str:
+    async def _follow_progress(self, process: asyncio.subprocess.Process) -> str:
         last = ""
         assert process.stderr is not None
         while line := await process.stderr.readline():

@@ -12,7 +12,7 @@ from .._support.errors import ParameterError
 from .._support.messages import Message
 from .elements import choice, field, named
 from .layout import sentence
-from .words import number_text, plain_number, reworded, said
+from .words import number_text, plain_number, reword, said
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -168,5 +168,5 @@ def in_labels(message: str, *keys: Quantity) -> str:
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
     for key in sorted(keys, key=lambda key: -len(key.name)):
-        message = reworded(message, partial(_with_label, key.name, field_label(key)))
+        message = reword(message, partial(_with_label, key.name, field_label(key)))
     return message

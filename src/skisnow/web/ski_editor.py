@@ -69,7 +69,7 @@ class SkiEditor:
 
     def _add_factor_field(self, words: str) -> ui.input:
         made = field(f"{words} ×", ONE, numeric=True)
-        made.on("change", self._update)
+        made.on("change", self._notify_change)
         return made
 
     def _add_file_fields(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
@@ -126,7 +126,7 @@ class SkiEditor:
     def _show_origin(self, name: str) -> None:
         self._begun.set_text(Message("Begun from {name}. Nothing is saved until you give it another name.", name=name))
 
-    async def _update(self) -> None:
+    async def _notify_change(self) -> None:
         await self._changed()
 
     def show(self, stations: tuple[float, ...], cells: Mapping[tuple[str, int], str]) -> None:

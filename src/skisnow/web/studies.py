@@ -25,7 +25,7 @@ from .page_requests import hidden_folder
 from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
 from .study_fields import CARVE, STUDY, TABLE, StudyQuestion, require_few_points
 from .uploads import files_below
-from .words import reworded
+from .words import reword
 
 FOLDER: Final = "studies"
 FIGURE: Final = "map.svg"
@@ -209,7 +209,7 @@ def _without_folder(folder: Path, message: str) -> str:
     """A message without the path of the study's folder and file."""
     if not isinstance(message, Message):
         return message.replace(f"{folder / STUDY}: ", "").replace(f"{folder}/", "").removeprefix("skisnow: ")
-    return reworded(message, lambda text: text.replace(str(folder / STUDY), STUDY).replace(f"{folder}/", ""))
+    return reword(message, lambda text: text.replace(str(folder / STUDY), STUDY).replace(f"{folder}/", ""))
 
 
 CARVE_S: Final = 0.03

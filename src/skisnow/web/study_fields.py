@@ -19,7 +19,7 @@ from ..parameters import Quantity
 from .elements import choice, field, named
 from .layout import sentence
 from .scenario_fields import field_label, typed_form, with_point
-from .words import number_text, reworded, said, typed_number
+from .words import number_text, reword, said, typed_number
 
 CARVE: Final = "carved-turn"
 """Subject of a study of carved turns, instead of the name of a scenario."""
@@ -269,7 +269,7 @@ class AxisFields:
             try:
                 key.in_range(round(end) if key.kind == "whole number" and end == round(end) else end)
             except ParameterError as error:
-                message = reworded(error.message, lambda text: text.replace(key.name, said(words)))
+                message = reword(error.message, lambda text: text.replace(key.name, said(words)))
                 raise ParameterError(message).tag(error.code) from error
         if not low < high:
             raise ParameterError(

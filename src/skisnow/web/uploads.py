@@ -18,7 +18,7 @@ from starlette.responses import Response
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
-from ..campaign.reading import unfolded
+from ..campaign.reading import unfold_workbooks
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 from ..campaign.reading.campaign_files import FilesOfFolder
 from ..campaign.store import Store
@@ -225,7 +225,7 @@ def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Li
         with (Path(place) / str(number)).open("rb") as file:
             (unpacking.take_zip if name.lower().endswith(".zip") else partial(unpacking.take, name))(file)
     folder = campaign_folder(unpacking.folder)
-    files = unfolded(FilesOfFolder(folder))
+    files = unfold_workbooks(FilesOfFolder(folder))
     if CAMPAIGN_FILE not in files.names():
         problems = files.problems
         raise ParameterError(joined([problems[0].value, problems[0].action], ". ") if problems else UNDESCRIBED).tag(

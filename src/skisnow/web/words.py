@@ -79,13 +79,13 @@ def in_words(message: str) -> str:
     >>> in_words("the column depth_mm has no number")
     'the column Depth (mm) has no number'
     """
-    return reworded(message, lambda text: _NAMES.sub(lambda key: str(_LABEL_OF_NAME[key[0]]), text))
+    return reword(message, lambda text: _NAMES.sub(lambda key: str(_LABEL_OF_NAME[key[0]]), text))
 
 
-def reworded(message: str, change: Callable[[str], str]) -> str:
+def reword(message: str, change: Callable[[str], str]) -> str:
     """A message with changed text: in the fields of a `Message`, otherwise in the whole text.
 
-    >>> reworded(Message("{key} is missing", key="depth_mm"), str.upper)
+    >>> reword(Message("{key} is missing", key="depth_mm"), str.upper)
     'DEPTH_MM is missing'
     """
     if not isinstance(message, Message):
@@ -101,7 +101,7 @@ def _change_text(value: object, change: Callable[[str], str]) -> object:
         value = value.message
     if isinstance(value, list):
         return [_change_text(item, change) for item in value]
-    return reworded(value if isinstance(value, str) else str(value), change) if isinstance(value, str | Path) else value
+    return reword(value if isinstance(value, str) else str(value), change) if isinstance(value, str | Path) else value
 
 
 def hardness_words(row: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from skisnow import read_ski, read_snow
 from skisnow.forces.friction import read_friction_file
-from skisnow.identification.data import _site, collect_data, start_values
+from skisnow.identification.data import _read_site, collect_data, start_values
 from skisnow.identification.fitting import _is_clock_free
 from skisnow.identification.parameter import parameter_table
 from skisnow.identification.problem import expand_keys
@@ -120,7 +120,7 @@ def _read_identify(folder: Path) -> object:
     given = load_input(path)
     own = given_parameters(given.identify)
     _is_clock_free(given, None)
-    _site(given.identify.get("site", {"fall_line_azimuth_deg": 0}))
+    _read_site(given.identify.get("site", {"fall_line_azimuth_deg": 0}))
     asked = scenario_file(path)
     read = collect_data(given, asked, [folder / "cells.csv"], ["friction.mu_0"])
     keys = expand_keys(["friction.mu_0"], read.runs)
@@ -222,9 +222,9 @@ READERS = (
     ),
     Reader(
         name="ski-def.json", target="ski-def.json", files=lambda: _SHAPED, mutations=JSON,
-        read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.monkeycam:_board",),
+        read=lambda folder: _used_ski(folder / "ski.toml"), covers=("ski.monkeycam:_read_board",),
     ),
-    _of("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_results"),
+    _of("results.json", _RESULTS, lambda path: repr(read_snow(path)), JSON, "snow.from_results:_read_results"),
     _of("profile.csv", _PROFILE, _used_profile, TABLE, "scenario.slope:read_profile"),
     _of(
         "terrain.csv", _TERRAIN, _used_terrain, TABLE,

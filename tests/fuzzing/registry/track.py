@@ -82,7 +82,7 @@ READERS = (
     Reader(
         name="course.csv", target="course.csv", files=_course_folder,
         read=lambda folder: repr(read_course(folder / "course.csv")), mutations=TABLE,
-        covers=("track.course.course_file:_rows", "_support.spreadsheet_text:csv_rows"),
+        covers=("track.course.course_file:_read_rows", "_support.spreadsheet_text:csv_rows"),
     ),
     Reader(
         name="course.gpx", target="course.gpx", files=_course_folder,

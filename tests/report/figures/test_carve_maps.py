@@ -14,7 +14,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
 from skisnow._support.errors import ParameterError
-from skisnow.carving.answer import answered, answers_dict
+from skisnow.carving.answer import answer_question, answers_dict
 from skisnow.carving.question import carve_question
 from skisnow.comparison import Comparison, compare_tracks
 from skisnow.report.campaign.data import ReportData
@@ -38,7 +38,7 @@ ASKED = {"edge_angle_deg": 45, "load_N": 800, "published": "race-piste", "unload
 
 @pytest.fixture(scope="module")
 def found() -> dict[str, Any]:
-    return answers_dict([answered(carve_question(ASKED | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
+    return answers_dict([answer_question(carve_question(ASKED | {"ski": ski})) for ski in ("slalom", "giant-slalom")])
 
 
 def made_up(**varied: list[Any]) -> StudyTable:

@@ -13,7 +13,7 @@ from unittest.mock import Mock
 import pytest
 
 from skisnow.campaign import read_campaign
-from skisnow.carving.answer import answer_dict, answered
+from skisnow.carving.answer import answer_dict, answer_question
 from skisnow.carving.question import carve_question
 from skisnow.estimation import analyse, results_dict
 from skisnow.estimation.results import results_json
@@ -54,7 +54,7 @@ SHEAR = sheared({"a": ("A", 20)})
 def answer(ski: str = "carver", angle: float = 45.0, load: float = 800.0, ratio: float = 10.0, snow: str = "") -> Any:
     """The library's answer; ``snow`` as JSON."""
     numbers = {"ski": ski, "edge_angle_deg": angle, "load_N": load, "unloading_ratio": ratio}
-    return answer_dict(answered(carve_question(numbers | (json.loads(snow) if snow else FIRST_SNOW))))
+    return answer_dict(answer_question(carve_question(numbers | (json.loads(snow) if snow else FIRST_SNOW))))
 
 
 def radius(found: Any) -> str:

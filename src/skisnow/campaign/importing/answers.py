@@ -100,7 +100,7 @@ def read_template(place: str | Path, *, named: Path | None = None) -> Answers:
         raise ParameterError("{name} is neither a saved template nor a campaign. Saved: {saved}.").tag(
             "no_template", name=str(place), saved=list(saved) or Message("none")
         )
-    return _template(read_toml(path), str(path))
+    return _template_answers(read_toml(path), str(path))
 
 
 def saved_templates(folder: Path | None = None) -> dict[str, Path]:
@@ -142,10 +142,10 @@ def own_templates() -> Path:
 
 def parse_template(text: str, name: str) -> Answers:
     """Answers in the text of a campaign.toml; `name` is its name in messages. Errors as `read_template`."""
-    return _template(toml_values(text.replace("\r\n", "\n")), name)
+    return _template_answers(toml_values(text.replace("\r\n", "\n")), name)
 
 
-def _template(values: Mapping[str, Any], name: str) -> Answers:
+def _template_answers(values: Mapping[str, Any], name: str) -> Answers:
     section = values.get(SECTION)
     answers = {kind: section.get(kind, {}) for kind in IMPORT_ANSWERS} if isinstance(section, Mapping) else {}
     texts = all(

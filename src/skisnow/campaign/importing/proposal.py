@@ -127,7 +127,7 @@ def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignore
 def _import_table(
     section: Section, form: TableForm, dialogue: Dialogue, ignored: Ignored, notes: Sequence[Note]
 ) -> ImportedTable:
-    own = [note for note in notes if _concerns(note, section.sheet.name, {section.sheet.name})]
+    own = [note for note in notes if _is_about_table(note, section.sheet.name, {section.sheet.name})]
     before = len(dialogue.open)
     columns = choose_columns(section, form, dialogue, own)
     if len(dialogue.open) > before:  # rows would repeat the same error in each
@@ -136,7 +136,7 @@ def _import_table(
     return ImportedTable(section, form, tuple(columns), tuple(rows))
 
 
-def _concerns(note: Note, sheet: str, with_tables: set[str]) -> bool:
+def _is_about_table(note: Note, sheet: str, with_tables: set[str]) -> bool:
     """True for a note on the sheet of a table, or on a sheet without tables."""
     return note.sheet == sheet or note.sheet not in with_tables
 
@@ -182,7 +182,7 @@ def _with_names(
         sheet = table.section.sheet.name
         own = _notes_above(table, tables, notes)
         site = "" if any("site" in row.cells for row in table.rows) else _choose_site(sheet, table, dialogue, own)
-        days = stated_days(note for note in notes if _concerns(note, sheet, with_tables))
+        days = stated_days(note for note in notes if _is_about_table(note, sheet, with_tables))
         added = {"site": site} | ({"time": days.pop()} if len(days) == 1 else {})
         rows = []
         for row in table.rows:

@@ -75,7 +75,7 @@ def stored_rows(
     sheet, numbers = section.sheet, number_columns(form)
     rows = data_rows(section, choices, form, ignored)
     used = {choice.column: choice for choice in choices if choice.column}
-    mark = _mark(section, [choice for choice in used.values() if choice.column in numbers], rows, dialogue)
+    mark = _decimal_mark(section, [choice for choice in used.values() if choice.column in numbers], rows, dialogue)
     stored, above = [], dict[str, str]()
     for row in rows:
         cells = {
@@ -103,7 +103,7 @@ def stored_rows(
     return stored
 
 
-def _mark(section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], dialogue: Dialogue) -> str:
+def _decimal_mark(section: Section, choices: Sequence[ColumnChoice], rows: Sequence[int], dialogue: Dialogue) -> str:
     """Decimal mark of typed numbers; a question if each of them may have a thousands separator instead."""
     sheet = section.sheet
     typed = [

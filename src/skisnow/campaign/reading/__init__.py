@@ -2,7 +2,7 @@
 
 from .campaign import CAMPAIGN_FILES, READ_FILES, campaign_of_cells, campaign_of_files, check_campaign, read_campaign
 from .campaign_files import FilesInMemory
-from .workbook_files import unfolded
+from .workbook_files import unfold_workbooks
 
 __all__ = [
     "CAMPAIGN_FILES",
@@ -12,5 +12,5 @@ __all__ = [
     "campaign_of_files",
     "check_campaign",
     "read_campaign",
-    "unfolded",
+    "unfold_workbooks",
 ]

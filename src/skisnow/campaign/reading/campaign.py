@@ -32,7 +32,7 @@ from .headings import Headings
 from .row_checks import check_rows
 from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES, TableForm
 from .tables import Cells, read_table, table_of_cells
-from .workbook_files import is_workbook, unfolded
+from .workbook_files import is_workbook, unfold_workbooks
 
 CAMPAIGN_FILES: Final = (CAMPAIGN_FILE, CORRECTIONS.file, *(form.file for form in TABLES))
 """Names of the files of a campaign, in the order of reading; workbooks can replace them."""
@@ -195,7 +195,7 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
 
 
 def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
-    campaign = unfolded(campaign_files)
+    campaign = unfold_workbooks(campaign_files)
     files = RawFiles(campaign, problems=campaign.problems)
     described, headings, corrections = read_description(files)
     tables: dict[str, Table] = {}

@@ -62,8 +62,8 @@ class UnfoldedFiles:
         return there | dict.fromkeys(self.of_sheets, True)
 
 
-def unfolded(files: CampaignFiles) -> UnfoldedFiles:
-    """Read the workbooks among the files of a campaign."""
+def unfold_workbooks(files: CampaignFiles) -> UnfoldedFiles:
+    """Replace the workbooks among the files of a campaign by the text files of their sheets."""
     workbooks = UnfoldedFiles(files)
     names = files.names()
     for name in sorted(names):

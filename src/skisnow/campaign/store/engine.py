@@ -192,7 +192,7 @@ def _require_tables(engine: Engine, path: Path) -> None:
 def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
     engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
     try:
-        _tables(engine)
+        _table_names(engine)
     except DBAPIError as error:
         # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
         # is writing, and SQLite can read the file as immutable.
@@ -201,7 +201,7 @@ def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engi
         if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
             raise
         engine = _engine(path, "ro&immutable=1", busy_timeout_s)
-        _tables(engine)
+        _table_names(engine)
     return engine
 
 
@@ -226,7 +226,7 @@ def _begin_transaction(connection: Connection) -> None:
     connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
 
 
-def _tables(engine: Engine) -> set[str]:
+def _table_names(engine: Engine) -> set[str]:
     with reading(engine) as connection:
         return set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
 

@@ -21,7 +21,7 @@ from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
 from ..reading.campaign_files import FilesOfFolder
-from ..reading.workbook_files import DESCRIPTION, unfolded
+from ..reading.workbook_files import DESCRIPTION, unfold_workbooks
 
 _WINDOWS_NAMES: Final = re.compile(
     r"(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³])\s*(\..*)?", re.IGNORECASE
@@ -117,18 +117,18 @@ def campaign_name(folder: Path) -> str:
     """Name from campaign.toml or its sheets if they can be read, otherwise that of the folder."""
     own = folder.resolve().name.encode(errors="replace").decode()
     try:
-        name = toml_values(decode(_description(folder)).text).get("name")
+        name = toml_values(decode(_read_description(folder)).text).get("name")
     except (OSError, ParameterError, UnreadableTextError):
         return own
     words = " ".join(name.split()) if isinstance(name, str) else ""
     return words or own
 
 
-def _description(folder: Path) -> bytes:
+def _read_description(folder: Path) -> bytes:
     place = folder / DESCRIPTION
     if place.exists():
         return plain_bytes(place, most_bytes=MOST_TOML_BYTES)
-    return unfolded(FilesOfFolder(folder)).read(DESCRIPTION) or b""
+    return unfold_workbooks(FilesOfFolder(folder)).read(DESCRIPTION) or b""
 
 
 def unsafe_because(path: str, *, for_windows: bool) -> Message | None:

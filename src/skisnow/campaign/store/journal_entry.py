@@ -153,7 +153,7 @@ def entry_sha256(row: Mapping[str, object]) -> str:
 
 def entry_sums(row: Mapping[str, object]) -> str:
     """CRC-32 of each field as JSON, which locates damage in an entry with a wrong SHA-256."""
-    return json.dumps({"entry": _field_sums(row), "cells": _cell_sums(row)}, ensure_ascii=False)
+    return json.dumps({"entry": _field_sums(row), "cells": _cell_checksums(row)}, ensure_ascii=False)
 
 
 def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str, str | None]]:
@@ -170,7 +170,7 @@ def damaged_parts(row: Mapping[str, object], sums: bytes) -> Iterator[tuple[str,
         yield "sums", None
         return
     try:
-        current_sums = {"entry": _field_sums(row), "cells": _cell_sums(row)}
+        current_sums = {"entry": _field_sums(row), "cells": _cell_checksums(row)}
     except ValueError:
         current_sums = {"entry": _field_sums(row), "cells": by_kind["cells"]}
         yield "cells", None
@@ -195,7 +195,7 @@ def _field_sums(row: Mapping[str, object]) -> dict[str, str]:
     return {name: _crc32(as_bytes(row.get(name))) for name in _SUMMED_COLUMNS}
 
 
-def _cell_sums(row: Mapping[str, object]) -> dict[str, str]:
+def _cell_checksums(row: Mapping[str, object]) -> dict[str, str]:
     return {column: _crc32(cell.encode()) for column, cell in parse_cells(row).items()}
 
 
@@ -267,10 +267,10 @@ def insert_entry(
 def insert_entries(connection: Connection, journal_id: str, entries: Sequence[JournalEntry]) -> None:
     """Write entries unchanged, with their checksums."""
     if entries:
-        connection.execute(insert(journal_entry), [_row(journal_id, entry) for entry in entries])
+        connection.execute(insert(journal_entry), [_row_of_entry(journal_id, entry) for entry in entries])
 
 
-def _row(journal_id: str, entry: JournalEntry) -> dict[str, Any]:
+def _row_of_entry(journal_id: str, entry: JournalEntry) -> dict[str, Any]:
     row = {name: getattr(entry, name) for name in (*SHARED_FIELDS, "sequence", "at", "uid")}
     row |= {"journal_id": journal_id, "cells": json.dumps(dict(entry.cells), ensure_ascii=False)}
     return {**row, "sha256": entry_sha256(row), "sums": entry_sums(row)}

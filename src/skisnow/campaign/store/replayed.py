@@ -188,7 +188,7 @@ def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | N
         columns = _table_columns(form, tests)
         rows = [_cells(row.entered.at, row.entered.cells, columns) for test in tests for row in test.rows]
         files[form.file] = guarded_csv([columns, *rows])
-        corrections.extend(_corrections(tests))
+        corrections.extend(_applied_corrections(tests))
     if corrections:
         files[CORRECTIONS.file] = guarded_csv([COLUMNS, *map(correction_cells, corrections)])
     return files
@@ -217,7 +217,7 @@ def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest]
             columns.append(STATUS)
         rows = [_cells(reading.entered.at, cells, columns) for test in tests for reading, cells in _readings(test)]
         tables[form.file] = Cells(tuple(columns), range(2, len(rows) + 2), rows)
-        corrections.extend(_corrections(tests))
+        corrections.extend(_applied_corrections(tests))
     return campaign_of_cells(campaign.description, tables, tuple(corrections))
 
 
@@ -252,7 +252,7 @@ def _cells(at: str, cells: Mapping[str, str], columns: Sequence[str]) -> list[st
     return [cells.get(column, "") for column in columns]
 
 
-def _corrections(tests: Sequence[ReplayedTest]) -> Iterator[AppliedCorrection]:
+def _applied_corrections(tests: Sequence[ReplayedTest]) -> Iterator[AppliedCorrection]:
     line = 1  # the header
     for test in tests:
         if test.cancelling is not None:

@@ -29,7 +29,7 @@ def findings(connection: Connection, progress: Progress) -> tuple[Finding, ...]:
     for of_part in (
         _database_damage,
         lambda part_connection: _content_damage(part_connection, progress),
-        _campaigns_damage,
+        _find_damaged_campaigns,
         find_entry_damage,
     ):
         try:
@@ -82,7 +82,7 @@ def _text_or_repr(value: object) -> str | None:
     return value if value is None or isinstance(value, str) else repr(value)
 
 
-def _campaigns_damage(connection: Connection) -> Iterator[Finding]:
+def _find_damaged_campaigns(connection: Connection) -> Iterator[Finding]:
     for row in connection.execute(select(campaign)).all():
         try:
             yield from _campaign_damage(stored_campaign(connection, row))

@@ -129,7 +129,7 @@ def residuals(data: ReportData, styles: Sequence[SiteStyle]) -> Drawing | LeftOu
         rasterized=readings.n > RASTERISE_FROM,
         zorder=2,
     )
-    _draw_ranges(axes, readings.load, residual)
+    _draw_ranges_by_load(axes, readings.load, residual)
     axes.set_xlabel(Message("load $F$ (N)"))
     axes.set_ylabel(Message("law − load (N)"))
     axes.set_xlim(0.0, float(readings.load.max()) * 1.05)
@@ -156,7 +156,7 @@ def _force(fit: ModelFit, hardness: FloatArray, readings: Readings) -> FloatArra
     return force
 
 
-def _draw_ranges(axes: Axes, load: FloatArray, residual: FloatArray) -> None:
+def _draw_ranges_by_load(axes: Axes, load: FloatArray, residual: FloatArray) -> None:
     values = np.unique(load)
     edges = values if len(values) <= MOST_GROUPS else np.unique(np.quantile(load, np.arange(MOST_GROUPS) / MOST_GROUPS))
     group = np.searchsorted(edges, load, side="right") - 1

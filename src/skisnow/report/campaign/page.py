@@ -159,10 +159,10 @@ def page(
 ) -> str:
     """HTML of the report, with styles, figures and tables inside."""
     with in_language(language):
-        return render_template("report.html", **_contents(data, tables, pictures, missing))
+        return render_template("report.html", **_page_contents(data, tables, pictures, missing))
 
 
-def _contents(
+def _page_contents(
     data: ReportData, tables: Mapping[str, Table], pictures: Sequence[Picture], missing: Sequence[LeftOut]
 ) -> dict[str, Any]:
     return dict(
@@ -206,7 +206,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
         "provenance": results["provenance"],
         "geometry": results["provenance"]["options"]["geometry"],
         "shapes": {type(tool).__name__ for tool in data.campaign.tools.values()},
-        "stated": _uncertainties(results["campaign"]),
+        "stated": _stated_uncertainties(results["campaign"]),
         "synthetic": data.synthetic,
         "dates": None if data.dates is None else days_words(*data.dates),
         "analysed": moment_words(results["provenance"]["time"]),
@@ -225,7 +225,7 @@ def _frame(data: ReportData) -> dict[str, Any]:
     }
 
 
-def _uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
+def _stated_uncertainties(campaign: dict[str, Any]) -> dict[str, str]:
     def in_words(key: str, unit: str) -> str:
         value = campaign[key]
         return Message("not stated, counted as 0") if value is None else f"{significant(value)} {unit}"

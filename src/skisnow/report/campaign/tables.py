@@ -309,7 +309,7 @@ _EXPERIMENT: Final = Column("experiment", Message("experiment"), "text")
 _COLUMN: Final = Column("column", Message("column"), "text")
 
 
-def _texts(headers: dict[str, Message]) -> tuple[Column, ...]:
+def _text_columns(headers: dict[str, Message]) -> tuple[Column, ...]:
     return tuple(Column(key, header, "text") for key, header in headers.items())
 
 
@@ -317,7 +317,7 @@ def corrections_table(data: ReportData) -> Table:
     """Every cell whose value a correction replaces."""
     headers = {"old": Message("old"), "new": Message("new"), "who": Message("who"), "when": Message("when"),
                "why": Message("why")}  # fmt: skip
-    columns = (*_FILE, _EXPERIMENT, _COLUMN, *_texts(headers))
+    columns = (*_FILE, _EXPERIMENT, _COLUMN, *_text_columns(headers))
     caption = Message("Corrections applied when the files were read; the raw files keep the old values.")
     return record_table("corrections", caption, columns, data.results["campaign"]["corrections"])
 
@@ -326,7 +326,7 @@ def warnings_table(data: ReportData) -> Table:
     """Every warning of the campaign reader."""
     first = {"severity": Message("severity"), "code": Message("code")}
     last = {"value": Message("value"), "allowed": Message("allowed"), "action": Message("action")}
-    columns = (*_texts(first), *_FILE, _COLUMN, _EXPERIMENT, *_texts(last))
+    columns = (*_text_columns(first), *_FILE, _COLUMN, _EXPERIMENT, *_text_columns(last))
     caption = Message("Warnings of reading the campaign's files.")
     return record_table("warnings", caption, columns, data.results["campaign"]["warnings"], rows_in_html=50)
 

@@ -60,7 +60,7 @@ def course_line(
     line = _draw_line(axes, place, values, diverging=diverging)
     _set_axes(axes, points, axes_words)
     figure.colorbar(line, ax=axes, label=label, pad=0.01, aspect=22)
-    legend_below(figure, _handles(result))
+    legend_below(figure, _legend_handles(result))
     return figure
 
 
@@ -111,7 +111,7 @@ def _set_axes(axes: Axes, points: FloatArray, words: str) -> None:
     axes.yaxis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10], min_n_ticks=2))
 
 
-def _handles(result: CourseResult) -> list[Line2D]:
+def _legend_handles(result: CourseResult) -> list[Line2D]:
     style: dict[str, Any] = {"linestyle": "none", "marker": "o"}
     poles = ((VERMILLION, Message("turning pole of gate 1, 3, 5 …")), (BLUE, Message("of gate 2, 4, 6 …")))
     handles = [Line2D([], [], color=colour, markersize=4.2, label=label, **style) for colour, label in poles]

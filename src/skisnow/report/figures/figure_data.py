@@ -51,7 +51,7 @@ def figure_data(figure: Figure) -> str:
             number += 1
             series = _series(artist, axes, names) or str(number)
             step = -(-len(points) // MOST_CELLS)
-            columns = [_texts(values[::step], names) for values, names in zip(points.T, ticks, strict=True)]
+            columns = [_value_texts(values[::step], names) for values, names in zip(points.T, ticks, strict=True)]
             numbers = (str(point) for point in range(1, len(points) + 1, step))
             rows += [(*head, series, *cells) for cells in zip(numbers, *columns, strict=True)]
     return csv_text(rows)
@@ -131,7 +131,7 @@ def _named_ticks(axis: Axis) -> dict[float, str]:
     return names if any(any(map(str.isalpha, re.sub(r"\$.*?\$", "", name))) for name in names.values()) else {}
 
 
-def _texts(values: FloatArray, names: dict[float, str]) -> list[str]:
+def _value_texts(values: FloatArray, names: dict[float, str]) -> list[str]:
     if names:
         return [names[min(names, key=lambda tick: abs(tick - value))] for value in values.tolist()]
     return ["" if np.isnan(value) else f"{value:.7g}" for value in values.tolist()]

@@ -180,7 +180,7 @@ _EDGE: Final = "ski_x ski_y ski_z"
 _GROOVE: Final = "groove_x groove_y groove_z"
 
 
-def _three(
+def _vector_variables(
     stem: str,
     dimensions: tuple[str, ...],
     units: str,
@@ -236,7 +236,7 @@ def _energy_over_time(name: str) -> Values:
 
 def _boot_variables() -> list[RunVariable]:
     place = "middle of the boot's sole at the level of the base: {}"
-    variables = _three("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
+    variables = _vector_variables("boot_{}", (TIME, SKI), "m", place, lambda run: _boots(run, "place"))
     angles = ("edge_angle", "pitch", "heading")
     meanings = ("edge angle, positive: left edge down", "pitch, positive: tip up", "heading, positive to the left")
     for i, (name, meaning) in enumerate(zip(angles, meanings, strict=True)):
@@ -283,7 +283,7 @@ def _along_skis() -> list[RunVariable]:
 def _snow_forces() -> list[RunVariable]:
     total = "total force of the snow on the ski, in space (normal force, shear and friction): {}"
     return [
-        *_three("snow_force_{}", (TIME, SKI), "N", total, lambda run: run.skis.force),
+        *_vector_variables("snow_force_{}", (TIME, SKI), "N", total, lambda run: run.skis.force),
         RunVariable("total_force", (TIME, SKI), "N", "magnitude of the total force of the snow on the ski",
                     lambda run: run.skis.total_force),
         RunVariable("normal_force", (TIME, SKI), "N", "its part along the snow's normal",
@@ -300,9 +300,9 @@ def _coordinate_variables() -> list[RunVariable]:
         RunVariable("time", (TIME,), "s", "time since the start", lambda run: run.time, axis="T"),
         RunVariable("station", (STATION,), "m", "place along the ski from the boot, positive forward, tip to tail",
                     lambda run: run.skis.station),
-        *(_axis_variable(variable) for variable in _three("{}", (TIME,), "m", down, lambda run: run.place)),
-        *_three("ski_{}", (TIME, SKI), "m", edge, lambda run: run.skis.track),
-        *_three("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
+        *(_axis_variable(variable) for variable in _vector_variables("{}", (TIME,), "m", down, lambda run: run.place)),
+        *_vector_variables("ski_{}", (TIME, SKI), "m", edge, lambda run: run.skis.track),
+        *_vector_variables("groove_{}", (PIECE,), "m", "middle of a piece of groove, on the undisturbed surface: {}",
                 lambda run: run.groove.middle),
     ]  # fmt: skip
 
@@ -316,7 +316,7 @@ def _axis_variable(variable: RunVariable) -> RunVariable:
 def _over_time() -> list[RunVariable]:
     turned = "path's turn radius, positive to the left; missing where the path is straight"
     return [
-        *_three("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}",
+        *_vector_variables("velocity_{}", (TIME,), "m s-1", "velocity of the middle between the boots: {}",
                 lambda run: run.velocity, coordinates=_PATH),
         RunVariable("speed", (TIME,), "m s-1", "speed of the middle between the boots", lambda run: run.speed,
                     coordinates=_PATH),
@@ -334,7 +334,7 @@ def _over_time() -> list[RunVariable]:
 
 def _groove_variables() -> list[RunVariable]:
     return [
-        *_three("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}",
+        *_vector_variables("groove_left_{}", (PIECE,), "1", "unit vector along the piece, to the left: {}",
                 lambda run: run.groove.left, coordinates=_GROOVE),
         RunVariable("groove_width", (PIECE,), "m", "width of the piece, across the path",
                     lambda run: run.groove.width, coordinates=_GROOVE),
@@ -373,7 +373,7 @@ def _balance_variables() -> tuple[RunVariable, ...]:
         *(RunVariable(name, (TIME,), "rad", meaning, of(name)) for name, meaning in leans.items()),
         *(RunVariable(name, (TIME,), "m", meaning, of(name)) for name, meaning in lengths.items()),
         RunVariable("load", (TIME, SKI), "N", "force of the ski on its boot along the snow's normal", of("load")),
-        *_three("centre_{}", (TIME,), "m", centre, _centre_of_mass),
+        *_vector_variables("centre_{}", (TIME,), "m", centre, _centre_of_mass),
     )
 
 

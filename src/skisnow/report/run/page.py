@@ -118,7 +118,7 @@ def _page(run: Run, summary: Mapping[str, Any], pictures: Sequence[Picture], *, 
         )
     sections.append(Section("scenario", Message("Scenario"), tables=[scenario_table(summary["scenario"])]))
     sections.append(Section("provenance", Message("Provenance"), words=provenance_sentences(run, summary)))
-    return sheet(_header(run, has_replay=has_replay), sections)
+    return sheet(_make_header(run, has_replay=has_replay), sections)
 
 
 def _course_section(run: Run, by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
@@ -138,7 +138,7 @@ def _boots_sections(by_name: Mapping[str, Sequence[Picture]]) -> list[Section]:
     return [Section(name, title, pictures=by_name[name]) for name, title in titles.items() if name in by_name]
 
 
-def _header(run: Run, *, has_replay: bool) -> Header:
+def _make_header(run: Run, *, has_replay: bool) -> Header:
     scenario, ratio = run.scenario, run.scenario.contact.unloading_ratio
     facts = [
         (

@@ -168,7 +168,7 @@ def track_comparison(comparison: Comparison) -> Figure:
     if comparison.axes in _AXIS_WORDS:
         _relabel_axes(plan, *_AXIS_WORDS[comparison.axes])
     _draw_distances(figure.add_subplot(grid[1]), comparison)
-    legend_below(figure, _handles(comparison))
+    legend_below(figure, _legend_handles(comparison))
     return figure
 
 
@@ -254,7 +254,7 @@ def _thinned(x: FloatArray, y: FloatArray) -> tuple[Any, Any]:
 FITTED: Final = {"start": Message("start"), "heading": Message("heading"), "time": Message("time")}
 
 
-def _handles(comparison: Comparison) -> list[Line2D]:
+def _legend_handles(comparison: Comparison) -> list[Line2D]:
     simulated, measured = (figure_text(name, longest=40) for name in comparison.names)
     label: str = Message("simulated: {simulated}", simulated=simulated)
     if comparison.fitted is not None:

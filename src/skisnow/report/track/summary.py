@@ -140,13 +140,13 @@ def _table_lines(title: str, rows: Sequence[Json], columns: Sequence[tuple[str, 
     if not rows:
         return ["", f"0 {title}", *fill(words, WIDTH).splitlines()]
     cells = [[label for _, label, _ in columns]]
-    cells += [[_cell(row[key], digits) for key, _, digits in columns] for row in rows[:MOST_ROWS]]
+    cells += [[_cell_text(row[key], digits) for key, _, digits in columns] for row in rows[:MOST_ROWS]]
     more = [f"… and {len(rows) - MOST_ROWS} more; --json gives all"] if len(rows) > MOST_ROWS else []
     heading = f"{len(rows)} {title.removesuffix('s') if len(rows) == 1 else title}"
     return ["", heading, *fill(words, WIDTH).splitlines(), *aligned_rows(cells), *more]
 
 
-def _cell(value: Any, digits: int) -> str:
+def _cell_text(value: Any, digits: int) -> str:
     if isinstance(value, str):
         return value
     if isinstance(value, list):
@@ -328,7 +328,7 @@ def _turn_row(summary: TrackSummary, number: int, turn: Turn) -> dict[str, Any]:
 
 def turns_csv(summary: TrackSummary) -> str:
     """CSV of the turns."""
-    return _csv(TURN_COLUMNS, ([row[name] for name in TURN_COLUMNS] for row in turn_rows(summary)))
+    return _csv_text(TURN_COLUMNS, ([row[name] for name in TURN_COLUMNS] for row in turn_rows(summary)))
 
 
 def points_csv(summary: TrackSummary) -> str:
@@ -340,10 +340,10 @@ def points_csv(summary: TrackSummary) -> str:
     columns |= {"speed_m_per_s": motion.speed, "radius_m": radius}
     if degrees is not None:
         columns |= {"latitude_deg": degrees[:, 0], "longitude_deg": degrees[:, 1]}
-    return _csv(tuple(columns), zip(*(values.tolist() for values in columns.values()), strict=True))
+    return _csv_text(tuple(columns), zip(*(values.tolist() for values in columns.values()), strict=True))
 
 
-def _csv(columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> str:
+def _csv_text(columns: Sequence[str], rows: Iterable[Iterable[Any]]) -> str:
     return csv_text(chain([columns], (map(_point_cell, row) for row in rows)))
 
 

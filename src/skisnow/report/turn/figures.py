@@ -66,7 +66,7 @@ def track_band(nominal: TimedTrack, tracks: Sequence[TimedTrack]) -> Figure:
     _draw_over_time(
         figure.add_subplot(grid[1, 1]), nominal.time, ahead, Message("ahead of the nominal run\nat the same time (m)")
     )
-    legend_below(figure, _handles(len(tracks)))
+    legend_below(figure, _legend_handles(len(tracks)))
     return figure
 
 
@@ -128,7 +128,7 @@ def _draw_over_time(axes: Axes, time: FloatArray, values: FloatArray, label: str
     axes.set_ylabel(label)
 
 
-def _handles(count: int) -> list[Line2D]:
+def _legend_handles(count: int) -> list[Line2D]:
     return [
         Line2D([], [], color=VERMILLION, label=Message("nominal run")),
         Line2D([], [], color=BLUE, linestyle=(0, (4, 1.5)), label=Message("median")),

@@ -319,7 +319,7 @@ def shares_table(chain: TurnChain) -> Table:
             Column("aside_percent", Message("Share of the offset across"), "estimate", unit="%", digits=2),
             Column("ahead_percent", Message("Share of the offset along"), "estimate", unit="%", digits=2),
         ),
-        [*_inputs(chain, shares), *_unexplained_rows(shares)],
+        [*_input_rows(chain, shares), *_unexplained_rows(shares)],
         note=Message(
             "Shares: first-order Sobol indices by linear regression on the logarithms of the inputs, with 95 % "
             "intervals. The rest is proportional to no input: curvature, thresholds such as an edge that loses its "
@@ -328,7 +328,7 @@ def shares_table(chain: TurnChain) -> Table:
     )
 
 
-def _inputs(chain: TurnChain, shares: BandShares | None) -> Iterator[tuple[Any, ...]]:
+def _input_rows(chain: TurnChain, shares: BandShares | None) -> Iterator[tuple[Any, ...]]:
     """Rows of the table of inputs: key, range, origin, shares of the variance across and along."""
     for band_input in band_inputs(chain):
         yield (

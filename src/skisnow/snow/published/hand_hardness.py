@@ -66,7 +66,7 @@ def index_from_density(snow_density: float) -> float:
 
 
 def code_of(index: float) -> str:
-    """Code of the nearest third of a class.
+    """Code of a hand hardness index, to the nearest third of a class.
 
     >>> code_of(3.4), code_of(4.0), code_of(4.6)
     ('1F+', 'P', 'K-')

@@ -83,18 +83,18 @@ def read_course(
         )
     try:
         if path.suffix.lower() != ".gpx":
-            return Course(gates=tuple(_gate(row) for row in _rows(path)), **options)
+            return Course(gates=tuple(_gate_of_row(row) for row in _read_rows(path)), **options)
         waypoints = read_waypoints(path)
         return _geodetic_course(waypoints, latitude_deg, longitude_deg, options)
     except ParameterError as error:
         raise error if str(error).startswith(str(path)) else error.at(path) from error
 
 
-def _rows(path: Path) -> Iterator[CsvRow]:
+def _read_rows(path: Path) -> Iterator[CsvRow]:
     return csv_rows(path, _COLUMNS, further=_OUTER, action=_ACTION)
 
 
-def _gate(row: CsvRow) -> Gate:
+def _gate_of_row(row: CsvRow) -> Gate:
     side = row.cells["side"].lower()
     if side not in ("left", "right"):
         raise row.refused(
@@ -238,10 +238,10 @@ def read_waypoints(path: str | Path) -> list[Waypoint]:
             "not_gpx", path=path, error=error
         ) from error
     points = root.named("wpt") if root.name == "gpx" else ()
-    return [_waypoint(path, row, point) for row, point in enumerate(points, start=1)]
+    return [_read_waypoint(path, row, point) for row, point in enumerate(points, start=1)]
 
 
-def _waypoint(path: str | Path, row: int, point: Element) -> Waypoint:
+def _read_waypoint(path: str | Path, row: int, point: Element) -> Waypoint:
     name = point.text_of("name") or str(row)
     words = (_SIDE.search(point.text_of(key)) for key in _SAYS)
     side = next((word[1].lower() for word in words if word), None)

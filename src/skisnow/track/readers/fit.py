@@ -68,7 +68,7 @@ def read_fit(data: bytes, name: str) -> Recording:
     records = _Records()
     files, extra = _files(data)
     for part in files or [data]:
-        _decode(part, name, records)
+        _decode_messages(part, name, records)
         records.segment += 1
     table = np.array(records.numbers, dtype=float).reshape(-1, 6)
     accuracy = np.where(table[:, 5] > 0.0, table[:, 5], np.nan) / math.sqrt(2.0)
@@ -113,7 +113,7 @@ def _files(data: bytes) -> tuple[list[bytes], int]:
     return files, len(data) - inside
 
 
-def _decode(data: bytes, name: str, records: _Records) -> None:
+def _decode_messages(data: bytes, name: str, records: _Records) -> None:
     import fitdecode
 
     try:

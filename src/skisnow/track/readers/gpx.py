@@ -131,7 +131,7 @@ def read_gpx(text: str, name: str) -> Recording:
     Raises FieldDataError: the file is neither GPX nor TCX, or has no recorded track; a point has no time; or a place,
         height, speed or distance is not a number.
     """
-    points = _points(text, name)
+    points = _read_points(text, name)
     distance = [_optional_number(point, name, place, "distance") for place, point in enumerate(points)]
     moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
     return Recording(
@@ -152,7 +152,7 @@ def read_gpx(text: str, name: str) -> Recording:
     )
 
 
-def _points(text: str, name: str) -> list[_Point]:
+def _read_points(text: str, name: str) -> list[_Point]:
     reader, parser = _Reader(), expat.ParserCreate(namespace_separator="}")
     parser.buffer_text = True
     parser.StartElementHandler, parser.EndElementHandler = reader.start, reader.end
@@ -209,12 +209,12 @@ def _moment(text: str) -> datetime | None:
     *whole, second = map(int, match.groups()[:6])
     since = timedelta(seconds=second, microseconds=int((match[7] or ".")[1:7].ljust(6, "0")))  # a leap second is 60
     try:
-        return (datetime(*whole, tzinfo=_zone(match[8])) + since).astimezone(UTC) if second <= 60 else None  # type: ignore[misc, arg-type]
+        return (datetime(*whole, tzinfo=_time_zone(match[8])) + since).astimezone(UTC) if second <= 60 else None  # type: ignore[misc, arg-type]
     except (ValueError, OverflowError):
         return None
 
 
-def _zone(text: str | None) -> timezone:
+def _time_zone(text: str | None) -> timezone:
     if text is None or text in "Zz":
         return UTC
     size = timedelta(hours=int(text[1:3]), minutes=int(text[3:].strip(":") or "0"))

@@ -124,7 +124,7 @@ def read_nmea(data: bytes, name: str) -> Recording:
         in the file.
     """
     counts: dict[str, int] = {WRONG_CHECKSUM: 0, NO_TIME: 0}
-    epochs = _epochs(data, counts)
+    epochs = _read_epochs(data, counts)
     fixed = [number for number, epoch in enumerate(epochs) if epoch.has_fix]
     if fixed:
         counts["times before the first fix"] = _placed_count(epochs[: fixed[0]])
@@ -140,7 +140,7 @@ def read_nmea(data: bytes, name: str) -> Recording:
     times, start = _times(epochs)
     placed = [number for number, epoch in enumerate(epochs) if _is_placed(epoch)]
     counts[NO_PLACE] = sum(not _is_placed(epoch) and any(kind == "GST" for _, kind in epoch.seen) for epoch in epochs)
-    return _recording(name, [epochs[number] for number in placed], times[placed], start, counts)
+    return _make_recording(name, [epochs[number] for number in placed], times[placed], start, counts)
 
 
 def _is_placed(epoch: _Epoch) -> bool:
@@ -151,7 +151,7 @@ def _placed_count(epochs: list[_Epoch]) -> int:
     return sum(map(_is_placed, epochs))
 
 
-def _recording(
+def _make_recording(
     name: str,
     epochs: list[_Epoch],
     times: np.ndarray[Any, np.dtype[np.float64]],
@@ -162,7 +162,7 @@ def _recording(
     speed = np.array([epoch.speed for epoch in epochs])
     velocity = np.column_stack([speed * np.sin(course), speed * np.cos(course), np.full(len(epochs), np.nan)])
     sd = np.array([epoch.sd for epoch in epochs])
-    height, heights = _heights(epochs)
+    height, heights = _heights_and_reference(epochs)
     return Recording(
         name=name,
         places_in_file=[f"row {epoch.row}" for epoch in epochs],
@@ -183,7 +183,7 @@ def _recording(
     )
 
 
-def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
+def _read_epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
     epochs: list[_Epoch] = []
     for sentence in sentences(data, counts):
         message = sentence.message
@@ -238,7 +238,7 @@ def _times(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
     return np.array(seconds) - seconds[0], start
 
 
-def _heights(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]], str]:
+def _heights_and_reference(epochs: list[_Epoch]) -> tuple[np.ndarray[Any, np.dtype[np.float64]], str]:
     height = np.array([epoch.height for epoch in epochs])
     separation = np.array([epoch.separation for epoch in epochs])
     if np.isfinite(height).any() and np.isfinite(separation[np.isfinite(height)]).all():
@@ -319,14 +319,14 @@ class _Piece:
 
 def sentences(data: bytes, counts: dict[str, int]) -> Iterator[Sentence]:
     """Every sentence that is read, in the order of the file; rejected ones are added to `counts`."""
-    pieces = [_piece(match) for match in _PIECE.finditer(data)]
+    pieces = [_piece_of_match(match) for match in _PIECE.finditer(data)]
     checked = {piece.address for piece in pieces if piece.checksum is not None}
     line_ends = [match.end() for match in _LINE_END.finditer(data)]
     for piece in pieces:
         reason = _rejection(piece, checked)
         if reason is None and _is_read(piece.address):
             content, has_not_finite_cell = _finite(piece.content)
-            message = _decode(content)
+            message = _decode_sentence(content)
             if message is not None:
                 yield Sentence(bisect_right(line_ends, piece.begin) + 1, message, has_not_finite_cell)
                 continue
@@ -335,7 +335,7 @@ def sentences(data: bytes, counts: dict[str, int]) -> Iterator[Sentence]:
             counts[reason] = counts.get(reason, 0) + 1
 
 
-def _piece(match: re.Match[bytes]) -> _Piece:
+def _piece_of_match(match: re.Match[bytes]) -> _Piece:
     content, star, rest = match[0][1:].partition(b"*")
     checksum = _CHECKSUM.match(rest) if star else None
     return _Piece(match.start(), match[1], content.rstrip(), None if checksum is None else checksum[0])
@@ -364,7 +364,7 @@ def _finite(content: bytes) -> tuple[str, bool]:
     return ",".join(blanked), blanked != cells
 
 
-def _decode(content: str) -> Any:
+def _decode_sentence(content: str) -> Any:
     from pynmeagps import NMEAReader, calc_checksum
 
     try:

@@ -71,11 +71,11 @@ FASTEST_NUMBER: Final = 1e4
 """Largest speed (m/s), far beyond that of anything on snow."""
 
 
-def _place(name: str) -> Quantity:
+def _place_quantity(name: str) -> Quantity:
     return Quantity(name, "in the frame of the file", lowest=-FARTHEST, highest=FARTHEST)
 
 
-def _velocity(name: str, meaning: str) -> Quantity:
+def _velocity_quantity(name: str, meaning: str) -> Quantity:
     return Quantity(name, meaning, lowest=-FASTEST_NUMBER, highest=FASTEST_NUMBER)
 
 
@@ -83,9 +83,9 @@ def _velocity(name: str, meaning: str) -> Quantity:
 class LocalPlace:
     """Place of a point in local metres of the file."""
 
-    x: Annotated[float, _place("x_m")]
-    y: Annotated[float, _place("y_m")]
-    z: Annotated[float, _place("z_m")]
+    x: Annotated[float, _place_quantity("x_m")]
+    y: Annotated[float, _place_quantity("y_m")]
+    z: Annotated[float, _place_quantity("z_m")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,8 +101,8 @@ class GeodeticPlace:
 class Motion:
     """Other quantities of a point that devices record."""
 
-    speed: Annotated[float, _velocity("speed_m_per_s", "speed")]
-    velocity: Annotated[float, _velocity("velocity_m_per_s", "part of the velocity")]
+    speed: Annotated[float, _velocity_quantity("speed_m_per_s", "speed")]
+    velocity: Annotated[float, _velocity_quantity("velocity_m_per_s", "part of the velocity")]
     odometer: Annotated[float, Quantity("odometer_m", "distance so far"), Allowed(-FARTHEST, FARTHEST)]
     place_sd: Annotated[float, Quantity("place_sd_m", "standard deviation of a place"), Allowed(0.0, FARTHEST)]
     speed_sd: Annotated[

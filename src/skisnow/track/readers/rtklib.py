@@ -132,7 +132,7 @@ def read_rtklib(text: str, name: str) -> Recording:
         not_finite.append(has_not_finite_cell)
     columns = _columns_by_name(np.array(table, dtype=float).reshape(len(rows), len(header.columns)), header)
     place, is_geodetic = _place(columns, header, base)
-    velocity, place_sd = _velocity(columns, header, place), _deviations(columns, header, place)
+    velocity, place_sd = _velocity(columns, header, place), _deviations_of_places(columns, header, place)
     quality = columns.get("q")
     is_ellipsoidal = "/geodetic" not in "".join(lines[:40]).lower()
     return Recording(
@@ -162,7 +162,7 @@ def read_rtklib(text: str, name: str) -> Recording:
 def _row(line: str, header: Header, name: str, row: int) -> tuple[datetime, list[float], bool]:
     """The moment, one number for each column, and True if a cell is not a finite number."""
     cells = line.replace(header.separator, " ").split()
-    moment = _moment(cells, header.scale)
+    moment = _parse_moment(cells, header.scale)
     if moment is None:
         raise track_error(
             "not_a_time",
@@ -224,7 +224,7 @@ def _degrees(cells: list[str], values: list[float]) -> list[float]:
     return angles + values[6:]
 
 
-def _moment(cells: list[str], scale: str) -> datetime | None:
+def _parse_moment(cells: list[str], scale: str) -> datetime | None:
     if len(cells) < 2:
         return None
     try:
@@ -262,7 +262,7 @@ def _columns_by_name(table: FloatArray, header: Header) -> dict[str, FloatArray]
     return {column: table[:, place] for place, column in enumerate(header.columns)}
 
 
-def _vectors(columns: dict[str, FloatArray], names: tuple[str, str, str]) -> FloatArray | None:
+def _stack_vectors(columns: dict[str, FloatArray], names: tuple[str, str, str]) -> FloatArray | None:
     if any(name not in columns for name in names):
         return None
     return np.column_stack([columns[name] for name in names])
@@ -283,14 +283,14 @@ def _place(columns: dict[str, FloatArray], header: Header, base: GeodeticPoint |
 
 
 def _velocity(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
-    velocity = _vectors(columns, VELOCITIES[header.kind])
+    velocity = _stack_vectors(columns, VELOCITIES[header.kind])
     if velocity is None or header.kind != "earth_centred":
         return velocity
     return np.asarray(np.einsum("nij,nj->ni", east_north_up_axes(place[:, 0], place[:, 1]), velocity))
 
 
-def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
-    deviations = _vectors(columns, DEVIATIONS[header.kind])
+def _deviations_of_places(columns: dict[str, FloatArray], header: Header, place: FloatArray) -> FloatArray | None:
+    deviations = _stack_vectors(columns, DEVIATIONS[header.kind])
     if deviations is None or header.kind != "earth_centred":
         return deviations
     covariance = np.zeros((len(place), 3, 3))
@@ -306,7 +306,7 @@ def _deviations(columns: dict[str, FloatArray], header: Header, place: FloatArra
 def _speed_sd(columns: dict[str, FloatArray], header: Header) -> FloatArray | None:
     """Standard deviation (n,) of the component along the velocity; at rest the largest of three; NaN if impossible."""
     names, roots = SPEED_DEVIATIONS[header.kind]
-    velocity, deviations = _vectors(columns, VELOCITIES[header.kind]), _vectors(columns, names)
+    velocity, deviations = _stack_vectors(columns, VELOCITIES[header.kind]), _stack_vectors(columns, names)
     if velocity is None or deviations is None:
         return None
     speed = np.linalg.norm(velocity, axis=1)

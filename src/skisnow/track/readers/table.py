@@ -134,11 +134,11 @@ class _Table:
         """Reject a table without two coordinates and a time."""
         for column in GEODETIC[:2] if self.is_geodetic else LOCAL[:2]:
             if column not in self.columns:
-                raise self._missing(column)
+                raise self._missing_error(column)
         if not any(column in self.columns for column in TIMES):
-            raise self._missing("time" if self.is_geodetic else "time_s")
+            raise self._missing_error("time" if self.is_geodetic else "time_s")
 
-    def _missing(self, column: str) -> Exception:
+    def _missing_error(self, column: str) -> Exception:
         near = difflib.get_close_matches(column, self.cells.header, n=1, cutoff=0.6)
         action = Message("Name the column in the header.")
         if near:

@@ -87,7 +87,7 @@ def read_ubx(data: bytes, name: str) -> Recording:
 def has_places(data: bytes) -> bool:
     """True if the bytes have a NAV-PVT with a right checksum and a valid time."""
     messages = _messages(data, dict.fromkeys(_COUNTS, 0))
-    return any(message.identity == "NAV-PVT" and _moment(message) is not None for _, message in messages)
+    return any(message.identity == "NAV-PVT" and _time_of_message(message) is not None for _, message in messages)
 
 
 def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
@@ -101,7 +101,7 @@ def _epochs(data: bytes, counts: dict[str, int]) -> list[_Epoch]:
                 precise[message.iTOW] = message
         elif message.identity == "NAV-COV":
             covariances[message.iTOW] = message
-        elif (moment := _moment(message)) is not None:
+        elif (moment := _time_of_message(message)) is not None:
             epochs.append(_Epoch(offset, moment, message))
         else:
             counts[_NO_TIME] += 1
@@ -138,16 +138,16 @@ class _Checksums:
         values = np.frombuffer(data, np.uint8)
         at = np.arange(len(data)).astype(np.uint8)
         self._sum = b"\0" + np.cumsum(values, dtype=np.uint8).tobytes()
-        self._moment = b"\0" + np.cumsum(at * values, dtype=np.uint8).tobytes()
+        self._time_of_message = b"\0" + np.cumsum(at * values, dtype=np.uint8).tobytes()
 
     def between(self, begin: int, end: int) -> bytes:
         """The two bytes of the checksum over ``data[begin:end]``."""
         first = self._sum[end] - self._sum[begin]
-        second = end * first - (self._moment[end] - self._moment[begin])
+        second = end * first - (self._time_of_message[end] - self._time_of_message[begin])
         return bytes([first % 256, second % 256])
 
 
-def _moment(message: Any) -> datetime | None:
+def _time_of_message(message: Any) -> datetime | None:
     if not (message.validDate and message.validTime):
         return None
     try:

@@ -13,7 +13,7 @@ from ...campaign.reading.table_forms import BRANCH, UNLOADING
 from ...campaign.store import ReplayedTest
 from ..elements import Words, button, choice, field, folded, named
 from ..layout import heading, sentence
-from ..page_requests import answering, asking_button, current_request, entering, form
+from ..page_requests import asking_button, current_request, entry_address, event_handler, form
 from ..words import label, number_text
 from .changes import changes, focus_button
 from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
@@ -43,7 +43,7 @@ class SeriesForm:
 
     def begin(self) -> None:
         """Show the form of a new series: name, site, measurement point, tool, edge angle."""
-        ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file))
+        ui.navigate.history.replace(entry_address(self._view.session.id, table=self._view.file))
         self._shown = ""
         self._list.show("")
         described = self._view.session.described
@@ -97,7 +97,7 @@ class SeriesForm:
             head = {column: test.rows[0].cells.get(column, "") for column in HEAD}
         self._head = head
         begun = None if test.rows else {column: text for column, text in head.items() if column != "experiment"}
-        ui.navigate.history.replace(entering(self._view.session.id, table=self._view.file, test=name, head=begun))
+        ui.navigate.history.replace(entry_address(self._view.session.id, table=self._view.file, test=name, head=begun))
         self._draw(test)
         self._focus_next(test)
         if test.rows:
@@ -233,8 +233,8 @@ class SeriesForm:
                 holder.props["data-stored"] = row.cells["depth_mm"]
         made.show_state(row)
         depth.on_value_change(lambda: made.show_state(self._test.row_under(*step)))
-        depth.on("keydown.enter", answering(lambda: self._entered(step)), js_handler=ON_ENTER)
-        depth.on("blur", answering(lambda: self._entered(step, left=True)), js_handler=ON_BLUR)
+        depth.on("keydown.enter", event_handler(lambda: self._entered(step)), js_handler=ON_ENTER)
+        depth.on("blur", event_handler(lambda: self._entered(step, left=True)), js_handler=ON_BLUR)
         return made
 
     def _draw_further_load(self, test: ReplayedTest) -> None:

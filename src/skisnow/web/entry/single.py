@@ -11,7 +11,7 @@ from ...campaign.reading.experiments import TURNING
 from ...campaign.store import Reading, ReplayedTest
 from ..elements import choice, field
 from ..layout import heading, sentence
-from ..page_requests import asking_button, entering, form
+from ..page_requests import asking_button, entry_address, form
 from ..words import label, number_text
 from .changes import UNANSWERED, ask_correction, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
@@ -115,7 +115,7 @@ class SingleForm:
     def _page_address(self) -> str:
         test, row = self._correcting or (None, None)
         head = {"row": _entry_number(row)} if row is not None else {}
-        return entering(self._view.session.id, table=self._view.file, test=test.name if test else "", head=head)
+        return entry_address(self._view.session.id, table=self._view.file, test=test.name if test else "", head=head)
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
         if column == "plate":

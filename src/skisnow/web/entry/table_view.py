@@ -19,7 +19,7 @@ from ...campaign.store.stored_tables import FORMS
 from ...report.formatting import significant
 from ..elements import StatusLine, Words, add_items, choice, field, link, named
 from ..layout import error_sentence, heading
-from ..page_requests import asking_button, current_request, entering
+from ..page_requests import asking_button, current_request, entry_address
 from ..widgets import BEHIND, ChartLine, LineChart
 from ..words import (
     TABLES,
@@ -229,7 +229,7 @@ class EntryList:
         if (open_row := self.open_row) is not None:
             made = asking_button(text, lambda: open_row(name, row), "small")
         else:
-            made = link(text, entering(self._view.session.id, table=self._view.file, test=name), "small")
+            made = link(text, entry_address(self._view.session.id, table=self._view.file, test=name), "small")
         if name == self.current:
             made.props('aria-current="page"')
         Words(about).classes("quiet")
@@ -329,9 +329,9 @@ class LiveResults:
         self._wanted = (name, site, MISSING_YET if in_progress else frozenset())
         if not self._working:
             self._working = True
-            background_tasks.create(self._work(), name="beside", context=self._name.client)
+            background_tasks.create(self._compute_requests(), name="beside", context=self._name.client)
 
-    async def _work(self) -> None:
+    async def _compute_requests(self) -> None:
         try:
             while self._wanted is not None:
                 (name, site, unsaid), self._wanted = self._wanted, None

@@ -15,8 +15,8 @@ from ..._support.messages import Message
 from ..analysis_view import AnalysisView, OpenAnalysis
 from ..campaign_analysis import AnalysisCache, load_drawing, write_whole_report
 from ..elements import link
-from ..layout import framed, plain_page
-from ..page_requests import entering, export, required_id
+from ..layout import page_frame, plain_page
+from ..page_requests import entry_address, export, required_id
 from ..settings import Lab
 from ..subprocesses import Worker
 from ..uploads import zip_download, zip_of_campaign
@@ -45,7 +45,7 @@ def add_page(lab: Lab) -> None:
             page.settled.set()
 
         ui.context.client.on_delete(closed)
-        with framed(Message("Analysis"), here=HERE):
+        with page_frame(Message("Analysis"), here=HERE):
             _add_links(kind, id_, key)
             view = AnalysisView(page, analyses)
         view.show_cached()
@@ -89,7 +89,7 @@ async def _report(page: OpenAnalysis | None, worker: Worker, request: Request) -
 def _add_links(kind: str, id_: str, key: str) -> None:
     with ui.element("div").classes("acts"):
         if kind == "entry":
-            link(Message("Enter tests"), entering(id_))
+            link(Message("Enter tests"), entry_address(id_))
         # both are requested over the connection of the page, so that earlier choices are applied first
         report = link(Message("Open the report"), f"/report/{key}/report.html").props("target=_blank")
         report.on("click.prevent", lambda: ui.navigate.to(f"/report/{key}/report.html", new_tab=True))

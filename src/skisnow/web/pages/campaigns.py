@@ -20,8 +20,8 @@ from ...replay.page import STYLE, page_words
 from ...report.formatting import counted
 from ..edit_session import EditSession
 from ..elements import Words, button, link, named
-from ..layout import framed, heading, sentence
-from ..page_requests import analysis, correcting, entering, export, file_input, submit_button, upload_form
+from ..layout import heading, page_frame, sentence
+from ..page_requests import analysis, correction_address, entry_address, export, file_input, submit_button, upload_form
 from ..replay_addresses import FILES, FIRST_SCRIPT
 from ..replay_addresses import LIST as REPLAYS
 from ..settings import Lab
@@ -48,7 +48,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def campaigns(added: str = "") -> None:
-        with framed(Message("Campaigns"), here=PATH):
+        with page_frame(Message("Campaigns"), here=PATH):
             if added:
                 sentence(Message("The campaign is imported."), "good").props("role=status")
                 if added in {campaign.id for campaign in lab.store.list()}:
@@ -103,7 +103,7 @@ def _list_drafts(lab: Lab) -> None:
             ]
             sentence(" · ".join(said(text) for text in words if text), "quiet")
             with ui.element("div").classes("acts"):
-                link(Message("Enter tests"), entering(head.id), "main")
+                link(Message("Enter tests"), entry_address(head.id), "main")
                 link(Message("Analysis"), analysis("entry", head.id))
                 link(Message("Export"), export("entry", head.id))
 
@@ -132,7 +132,7 @@ def _list_imported(lab: Lab) -> None:
                 "quiet",
             )
             with ui.element("div").classes("acts"):
-                link(Message("Correct"), correcting(campaign.id))
+                link(Message("Correct"), correction_address(campaign.id))
                 link(Message("Analysis"), analysis("kept", campaign.id))
                 link(Message("Export"), export("kept", campaign.id))
                 if _is_undoable(lab, campaign):

@@ -10,7 +10,7 @@ from ..._support.messages import Message
 from ..carved_turn import NUMBERS, RATIOS, SLIDERS, CarvedTurn, CarveInputs, Solver
 from ..elements import choice, link
 from ..lab_skis import NOTHING, LabSkis
-from ..layout import framed
+from ..layout import page_frame
 from ..settings import Lab
 from ..snow_choice import SnowChoice
 
@@ -25,7 +25,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     async def carve(ski: str = "", other: str = "") -> None:
-        with framed(Message("Carve"), here=PATH):
+        with page_frame(Message("Carve"), here=PATH):
             _CarvePage(lab, solver, skis, (ski, other)).ask()  # answered while the browser builds the page
 
 

@@ -22,8 +22,8 @@ from ..entry.changes import (
 )
 from ..entry.readings import Field, checked_fields, faults
 from ..entry.table_view import LiveResults, Places, TableView, table_links, table_view
-from ..layout import framed, heading, sentence
-from ..page_requests import analysis, asking_button, correcting, export, form, required_id
+from ..layout import heading, page_frame, sentence
+from ..page_requests import analysis, asking_button, correction_address, export, form, required_id
 from ..settings import BUILD_S, Lab
 from ..words import number_text
 
@@ -43,12 +43,12 @@ def add_page(lab: Lab) -> None:
         if file not in session.tables:
             missing = Message("this campaign has no such table")
             raise ParameterError(missing if session.tables else UNREAD).tag("no_table")
-        with framed(session.stored.name or Message("Campaign"), here=HERE, keeps=True):
+        with page_frame(session.stored.name or Message("Campaign"), here=HERE, keeps=True):
             sentence(
                 Message("Imported: its files stay unchanged. Corrections made here are stored with them."), "quiet"
             )
             further = {Message("Analysis"): analysis("kept", session.id), Message("Export"): export("kept", session.id)}
-            table_links({name: correcting(session.id, table=name) for name in session.tables}, file, further)
+            table_links({name: correction_address(session.id, table=name) for name in session.tables}, file, further)
             if test in session.tables[file].tests:
                 _show_test(session, file, test)
             else:
@@ -60,7 +60,7 @@ def _show_test(session: CorrectionSession, file: str, name: str) -> None:
         table_view(session, file, form=Message("Cells"), below=Message("Changes")) as (view, live_results, places),
         ui.element("div").classes("acts"),
     ):
-        link(Message("Another test"), correcting(session.id, table=file))
+        link(Message("Another test"), correction_address(session.id, table=file))
         Attachments(view, lambda: name)
     ImportedTestForm(session, view, live_results, places).show(name)
 
@@ -192,7 +192,9 @@ def list_tests(session: CorrectionSession, file: str) -> None:
             ui.element("div").classes("acts so-far"),
         ):
             for name in names:
-                link(_link_text(session.test(file, name)), correcting(session.id, table=file, test=name), "small")
+                link(
+                    _link_text(session.test(file, name)), correction_address(session.id, table=file, test=name), "small"
+                )
 
 
 def _link_text(test: ReplayedTest) -> str:

@@ -17,8 +17,8 @@ from ...campaign.store.journal_entry import DESCRIPTION
 from ...campaign.store.replayed import Description, description_text
 from ..edit_session import EditSession
 from ..elements import StatusLine, TypedField, choice, field
-from ..layout import framed, heading, sentence
-from ..page_requests import asking_button, current_request, entering, form, go_on, required_id, row_button
+from ..layout import heading, page_frame, sentence
+from ..page_requests import asking_button, current_request, entry_address, form, go_on, required_id, row_button
 from ..settings import Lab
 from ..words import language_of, number_text, said, typed_number
 
@@ -56,7 +56,7 @@ def add_page(lab: Lab) -> None:
     @ui.page("/describe")
     def describe(entry: str = "") -> None:
         session = EditSession(lab, required_id(entry)) if entry else None
-        with framed(Message("Campaign") if session else Message("New campaign"), here=HERE, ahead=True):
+        with page_frame(Message("Campaign") if session else Message("New campaign"), here=HERE, ahead=True):
             status = StatusLine()
             with form(""):
                 described = DescriptionForm(toml_values(session.campaign.description) if session else None)
@@ -67,7 +67,7 @@ def add_page(lab: Lab) -> None:
                 except SkisnowError as error:
                     _show_refusal(status, error)
                     return False
-                go_on(entering(id_))
+                go_on(entry_address(id_))
                 return True
 
             with ui.element("div").classes("acts end"):

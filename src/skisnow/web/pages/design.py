@@ -15,7 +15,7 @@ from ...ski.ski_file import keys_text
 from ..carved_turn import NUMBERS, SLIDERS, CarvedTurn, CarveInputs, Solver, with_sources
 from ..elements import Outcome, button, choice, field, option_texts
 from ..lab_skis import FILE, NOTHING, LabSkis, ski_of_texts
-from ..layout import error_sentence, framed
+from ..layout import error_sentence, page_frame
 from ..settings import Lab
 from ..snow_choice import SnowChoice
 from ..words import said, typed_number
@@ -56,7 +56,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     async def design(ski: str = "", other: str = "") -> None:
-        with framed(Message("Design"), here=PATH):
+        with page_frame(Message("Design"), here=PATH):
             _DesignPage(lab, solver, skis, (ski, other)).ask()
 
 

@@ -13,8 +13,8 @@ from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
 from ..entry.table_view import EntryList, LiveResults, Places, TableView, table_links, table_view
-from ..layout import framed
-from ..page_requests import analysis, entering, required_id
+from ..layout import page_frame
+from ..page_requests import analysis, entry_address, required_id
 from ..settings import Lab
 from ..words import TABLES
 
@@ -38,9 +38,9 @@ def add_page(lab: Lab) -> None:
         if table not in TABLES:
             raise ParameterError("this address names no table of a campaign").tag("no_table")
         session = EditSession(lab, required_id(id_))
-        with framed(session.described.name or Message("Campaign"), here=HERE, ahead=True):
+        with page_frame(session.described.name or Message("Campaign"), here=HERE, ahead=True):
             further = {Message("Analysis"): analysis("entry", id_), Message("Campaign"): f"/describe?entry={id_}"}
-            table_links({file: entering(id_, table=file) for file in TABLES}, table, further)
+            table_links({file: entry_address(id_, table=file) for file in TABLES}, table, further)
             with table_view(session, table, form=Message("Entry"), below=Message("Changes and entries")) as (
                 view,
                 live_results,

@@ -18,7 +18,7 @@ from ...campaign.importing.sheets import FROM_NOTES, KINDS
 from ...campaign.problems import Problem
 from ...campaign.reading.headings import units_for
 from ..elements import Outcome, Words, add_head, add_items, button, choice, field, folded
-from ..layout import error_sentence, framed, heading, sentence
+from ..layout import error_sentence, heading, page_frame, sentence
 from ..settings import BUILD_S, Lab
 from ..subprocesses import BOUNDS, confined
 from ..transfer import FileImports, TriedImport, try_import
@@ -61,7 +61,7 @@ def add_page(lab: Lab) -> None:
     @ui.page(PATH, response_timeout=BUILD_S)
     async def import_file(id_: str) -> None:
         name = imports.name(id_)
-        with framed(Message("Import a file"), here=HERE):
+        with page_frame(Message("Import a file"), here=HERE):
             sentence(Message("{file}: check the proposal, answer the questions, then store the campaign.", file=name))
             page = _ImportPage(imports, id_)
         await page.draw()

@@ -16,7 +16,7 @@ from ...report.formatting import counted
 from ...report.track.summary import GPX_FILE, TURNS_FILE
 from ..elements import Outcome, Words, button, folded, link, named
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
-from ..layout import error_sentence, framed, heading, sentence
+from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import file_input, submit_button, text_input, upload_form
 from ..replay_addresses import (
     GATES,
@@ -46,7 +46,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def replay(track: str = "") -> None:
-        with framed(Message("Replay"), here=PATH):
+        with page_frame(Message("Replay"), here=PATH):
             names, placings = runs.names(), tracks.placings()
             if track in placings:
                 is_kept = Message("The track {track} is kept. Its turns are below.", track=track)

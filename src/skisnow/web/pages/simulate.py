@@ -16,7 +16,7 @@ from ...replay.run_file import RUN_FILE
 from ..elements import Outcome, Words, button, choice, field, folded, link, named
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
-from ..layout import error_sentence, framed, heading, sentence
+from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import add_upload, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
 from ..runs import Job, Runs, duration_words, estimated_s
@@ -93,7 +93,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def simulate(course: str = "") -> None:
-        with framed(Message("Simulate"), here=PATH), ui.element("div").classes("two wide-form"):
+        with page_frame(Message("Simulate"), here=PATH), ui.element("div").classes("two wide-form"):
             with ui.element("section"):
                 _Form(lab, runs, course)
                 _course_form()

@@ -13,8 +13,8 @@ from ..._support.messages import Message, current_language, translations
 from ...report.charts import SkiDrawing, ski_drawing
 from ..elements import Outcome, button, choice, field, folded, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
-from ..layout import error_sentence, framed, heading, sentence
-from ..page_requests import carving
+from ..layout import error_sentence, heading, page_frame, sentence
+from ..page_requests import carve_address
 from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
 from ..subprocesses import SKI_BOUNDS, confined
@@ -38,7 +38,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH, response_timeout=BUILD_S)
     async def show_skis(ski: str = "", added: str = "") -> None:
-        with framed(Message("Skis"), here=PATH):
+        with page_frame(Message("Skis"), here=PATH):
             page = _SkisPage(skis, ski)
         if added and ski in skis.saved():
             page.show_added(ski)
@@ -175,7 +175,7 @@ class _SkisPage:
         first = str(self._first.value)
         self._next.clear()
         with self._next:
-            link(Message("Carve both side by side"), carving(first, name), "main")
+            link(Message("Carve both side by side"), carve_address(first, name), "main")
 
     def show_added(self, name: str) -> None:
         """Show that a measured ski was added."""

@@ -14,7 +14,7 @@ from ..carved_turn import OF_SNOW as CARVE_SNOW
 from ..carved_turn import SLIDERS
 from ..elements import Outcome, Words, button, choice, folded, link, named, option_texts
 from ..lab_skis import FILE, TABLE, LabSkis
-from ..layout import error_sentence, framed, heading, sentence
+from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import redrawn_by
 from ..runs import Runs
 from ..scenario_fields import ScenarioField, field_label, in_labels
@@ -53,7 +53,7 @@ def add_page(lab: Lab) -> None:
 
     @ui.page(PATH)
     def study() -> None:
-        with framed(Message("Study"), here=PATH):
+        with page_frame(Message("Study"), here=PATH):
             _Form(lab, studies)
             JobList(studies, _Card, Message("Nothing has been studied yet."))
 

@@ -15,7 +15,7 @@ from ..._support.messages import ENGLISH, Message, outcome_words
 from ...report.formatting import significant
 from ...studies import Study, StudyTable
 from ..elements import Words, add_head, choice, link, named
-from ..layout import error_sentence, framed, heading, plain_page, sentence
+from ..layout import error_sentence, heading, page_frame, plain_page, sentence
 from ..runs import Job
 from ..scenario_fields import field_label, typed_form
 from ..settings import Lab
@@ -69,7 +69,7 @@ def add_page(lab: Lab) -> None:
         result = await run.io_bound(studies.table, name)
         if result is None:
             raise ParameterError("the lab is about to end").tag("lab_ends")
-        with framed(Message("Study"), here=HERE):
+        with page_frame(Message("Study"), here=HERE):
             job = next((job for job in studies.jobs() if job.name == name), None)
             _show_inputs(job)
             with ui.element("div").classes("acts"):

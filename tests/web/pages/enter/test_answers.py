@@ -123,7 +123,7 @@ def answered(desk: Desk, act: Callable[[], bool | None], *said: object) -> tuple
     after = []
 
     def done() -> None:
-        handler = answering.answering(act)
+        handler = answering.event_handler(act)
         for each in said:
             handler(SimpleNamespace(args=each))  # type: ignore[arg-type]
             after.append(answering.current_request())
@@ -174,7 +174,7 @@ def test_an_act_that_fails_is_answered_with_no(desk: Desk) -> None:
         raise ZeroDivisionError
 
     def done() -> None:
-        answering.answering(act)(SimpleNamespace(args={"number": 3}))  # type: ignore[arg-type]
+        answering.event_handler(act)(SimpleNamespace(args={"number": 3}))  # type: ignore[arg-type]
 
     page.scripts.clear()
     with pytest.raises(ZeroDivisionError):
