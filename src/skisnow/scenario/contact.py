@@ -34,7 +34,7 @@ ELASTIC: Final = 1.0
 """k_u/H_V of snow that springs back."""
 
 
-def _penetration(unloading_ratio: float) -> Penetration:
+def _penetration_kind(unloading_ratio: float) -> Penetration:
     return "elastic" if unloading_ratio == ELASTIC else "hypoplastic"
 
 
@@ -97,7 +97,7 @@ class Contact:
             choices=get_args(Penetration),
             default="hypoplastic",
             origin="snow keeps its tracks",
-            word_of=_penetration,
+            word_of=_penetration_kind,
         ),
     ]
     compaction_resistance: Annotated[
