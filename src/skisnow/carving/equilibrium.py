@@ -156,7 +156,7 @@ def carve(
     conditions = _with_laws(
         laws, ski, _conditions(ski, snow, edge_angle, load, moment, min(ratio, RIGID_PLASTIC), *forms)
     )
-    find = solved if groove == "edge" else _following_path
+    find = solved if groove == "edge" else _solve_with_path
     solution = find(model, conditions)
     note: tuple[str, ...] = ()
     for gentler in (smaller for smaller in GENTLER_RATIOS if smaller < ratio):
@@ -309,8 +309,8 @@ def _conditions(
     )
 
 
-def _following_path(model: ClampedSki, conditions: Conditions, *, near: Solution | None = None) -> Solution:
-    """Repeat with the edge's offset from the path until path and edge line agree."""
+def _solve_with_path(model: ClampedSki, conditions: Conditions, *, near: Solution | None = None) -> Solution:
+    """Equilibrium with the groove along the path: repeat with the edge's offset from it until both agree."""
     solution = solved(model, conditions, near=near)
     offset = np.zeros(len(model.stations.station))
     share, before = 0.5, math.inf

@@ -37,7 +37,7 @@ class PressureLaw(PressureCallback):
         return self.bear(depth, deepest, edge_angle)[0]
 
     def refuse(self, reason: Message) -> None:
-        """Keep the reason."""
+        """Store why the law could not be evaluated."""
         self.refused = reason
 
 

@@ -46,7 +46,7 @@ class Parts(NamedTuple):
     scatter: FloatArray
 
     def times(self, factor: FloatArray) -> Parts:
-        """Parts of a multiple of the estimate; ``factor`` is the square of the multiple."""
+        """Each part times a factor: the square of the number by which the estimate is multiplied."""
         return Parts(*(part * factor for part in self))
 
     def of(self, chosen: BoolArray) -> Parts:

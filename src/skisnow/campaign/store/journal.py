@@ -145,7 +145,7 @@ class Journals:
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
             _require_current(connection, id, entry, seen)
-            _require_subject(connection, id, entry)
+            _require_entry_of_test(connection, id, entry)
             return write_entry(connection, id, entry)
 
     def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
@@ -179,7 +179,7 @@ class Journals:
             if entry.action != "add":  # an added photo or position is in no file
                 base = _entry_of_file(connection, id, entry, standing)
                 entry = replace(entry, about=base) if entry.action == "correct" else entry
-            _require_subject(connection, id, entry)
+            _require_entry_of_test(connection, id, entry)
             return write_entry(connection, id, entry)
 
 
@@ -241,7 +241,7 @@ def _require_current(connection: Connection, id_: str, entry: NewEntry, seen: in
         ).tag("overtaken", who=row["who"] or Message("somebody"), subject=subject, at=row["at"])
 
 
-def _require_subject(connection: Connection, id_: str, entry: NewEntry) -> None:
+def _require_entry_of_test(connection: Connection, id_: str, entry: NewEntry) -> None:
     if entry.about is None:
         return
     query = select(journal_entry.c.sequence).where(_is_about_test(id_, entry), journal_entry.c.sequence == entry.about)

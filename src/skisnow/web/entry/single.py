@@ -151,7 +151,7 @@ class SingleForm:
         test = self._view.test(cells[key])
         if (before := self._view.stored_before()) is not None:
             return self._announce_stored(before, cells["site"])
-        if test.history and (fault := self._second_row_fault(test, cells)):
+        if test.history and (fault := self._fault_of_second_row(test, cells)):
             refuse(self._fields[key], fault)
             self._view.say(Message("Not stored:"), "bad", faults([self._fields[key]]))
             return False
@@ -166,7 +166,7 @@ class SingleForm:
         self.begin()
         return True
 
-    def _second_row_fault(self, test: ReplayedTest, cells: dict[str, str]) -> str:
+    def _fault_of_second_row(self, test: ReplayedTest, cells: dict[str, str]) -> str:
         if cells.get(TURNING) and all(row.cells.get(TURNING) for row in test.rows):
             first = test.rows[0].cells if test.rows else cells
             changed = [column for column in ONCE if cells.get(column, "") != first.get(column, "")]
