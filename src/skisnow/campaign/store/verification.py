@@ -141,7 +141,7 @@ def _rows_as_bytes(connection: Connection) -> Iterator[_Row]:
 
 def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
     """Damage of the form of an entry, independent of its checksum."""
-    query = select(journal_entry).where(journal_entry.c.sequence == int(_decode(row["sequence"])))
+    query = select(journal_entry).where(journal_entry.c.sequence == int(_utf8(row["sequence"])))
     try:
         entry = connection.execute(query).mappings().first()
         if entry is None:
@@ -149,7 +149,7 @@ def _form_damage(connection: Connection, row: _Row) -> Iterator[Finding]:
         else:
             readable_entry(entry)
     except StoreError as error:
-        yield Finding(_decode(row["journal_id"]), None, str(error))
+        yield Finding(_utf8(row["journal_id"]), None, str(error))
     except (DatabaseError, UnicodeDecodeError):
         yield _finding(row, _place(row, None), "it contains bytes that are not text")
 
@@ -159,7 +159,7 @@ def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:
     if row["sha256"] is None or row["sums"] is None:
         yield None, "it has no checksum"
         return
-    is_whole = _decode(row["sha256"]) == entry_sha256(row)
+    is_whole = _utf8(row["sha256"]) == entry_sha256(row)
     parts = list(damaged_parts(row, row["sums"]))
     if is_whole and ("cells", None) in parts:
         return  # it was so when it was summed
@@ -174,10 +174,7 @@ def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:
         elif kind == "sums":
             yield None, "neither what it says nor its checksums are as they were written down"
         else:
-            yield (
-                None,
-                f"its {name} is not what was written down; {_shorten_text(_decode(row[name or '']))} stands there",
-            )
+            yield None, f"its {name} is not what was written down; {_shorten_text(_utf8(row[name or '']))} stands there"
 
 
 def _cell_damage(row: _Row, column: str) -> str:
@@ -187,9 +184,9 @@ def _cell_damage(row: _Row, column: str) -> str:
 
 def _place(row: _Row, column: str | None) -> str:
     """Test, row and column in words. The cells of a stored campaign already contain their line."""
-    test, position, line = _decode(row["test"]), row["position"], ""
+    test, position, line = _utf8(row["test"]), row["position"], ""
     if position is not None:
-        before = natural_number(_decode(position))
+        before = natural_number(_utf8(position))
         line = "" if before is None else str(before + 1)
     elif column is not None and "/" in column:
         line, _, column = column.partition("/")
@@ -198,16 +195,14 @@ def _place(row: _Row, column: str | None) -> str:
 
 
 def _finding(row: _Row, place: str, what: str) -> Finding:
-    number = _decode(row["sequence"])
+    number = _utf8(row["sequence"])
     where = f"{place}: " if place else ""
-    return Finding(
-        _decode(row["journal_id"]), _decode(row["file"]) or None, f"{where}{what} (entry {number}); {_BACKUP}"
-    )
+    return Finding(_utf8(row["journal_id"]), _utf8(row["file"]) or None, f"{where}{what} (entry {number}); {_BACKUP}")
 
 
 def _shorten_text(text: str) -> str:
     return repr(text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…")
 
 
-def _decode(data: bytes | None) -> str:
+def _utf8(data: bytes | None) -> str:
     return "" if data is None else data.decode(errors="replace")

@@ -21,14 +21,9 @@ LISTED: Final = 12
 def key_results(data: ReportData) -> list[Markup]:
     """One sentence for each available result."""
     builders = (
-        _hardness_sentence,
-        _stress_sentence,
-        _unloading_sentence,
-        _displacement_sentence,
-        _sentence_by_relation,
-        _law_sentence,
-        _relations_sentence,
-    )
+        _hardness_sentence, _stress_sentence, _unloading_sentence, _displacement_sentence, _sentence_by_relation,
+        _law_sentence, _relations_sentence
+    )  # fmt: skip
     sentences = (build(data) for build in builders)
     return [sentence for sentence in sentences if sentence is not None]
 
