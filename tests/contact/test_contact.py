@@ -108,6 +108,18 @@ def test_bits_are_the_same_on_every_instruction_set_and_in_threads() -> None:
     assert all(np.array_equal(each, found[0]) for each in found)
 
 
+def test_a_ski_that_has_taken_off_meets_its_groove_as_any_other_ski_does() -> None:
+    snow = SnowField(H, S, 10.0)
+    skis = [SnowContact(snow, [SKI]) for _ in range(2)]
+    history(skis[0], range(60))
+    position, rotation = carving(40)
+    skis[0].update(position + np.array([0.0, 0.0, 1.0]), rotation, 0.01)
+    own, other = (each.force(position, rotation, SPEED, 0.0).wrench[0] for each in skis)
+    virgin = SnowContact(SnowField(H, S, 10.0), [SKI]).force(position, rotation, SPEED, 0.0).wrench[0]
+    assert own == pytest.approx(other, rel=1e-9)
+    assert abs(virgin[2] / own[2] - 1.0) > 0.05
+
+
 def test_a_crossed_track_is_met_as_deep_as_it_was_left() -> None:
     """A flat ski over an old flat groove of half its depth: forces are less by the loss, whatever the heading."""
     depth, height = 2e-3, -1e-3

@@ -234,7 +234,7 @@ void SnowContact::begin(const Situation& foreseen) {
     Before& before = before_[std::size_t(k)];
     before.first = lines.first, before.end = lines.end;
     before.lines.clear();
-    prepare(k, lines, foreseen.poses[std::size_t(k)]);
+    if (!is_clear(k, foreseen)) prepare(k, lines, foreseen.poses[std::size_t(k)]);
   }
   for (int k = 0; k < runners(); k++) march_where_needed(k, foreseen);
   begun_ = true;
@@ -257,8 +257,8 @@ void SnowContact::accept(const Situation& at) {
   begun_ = false;
   if (unseen_width_ > 0.0) weigh_unseen();
   pass_time(at.dt);
-  for (int k = 0; k < runners(); k++) settle_history(k, at.poses[std::size_t(k)]);
-  stand(at.poses);
+  for (int k = 0; k < runners(); k++) settle_history(k, at);
+  stand(at);
 }
 
 void SnowContact::pass_time(double dt) {
@@ -282,14 +282,15 @@ void SnowContact::update(const Situation& to) {
       evaluate(k, lines, pose, to.motions[std::size_t(k)], false, sections_[std::size_t(k)]);
     else
       kernels_->find_sections(runner(k), pose, lines, nullptr, sections_[std::size_t(k)].base);
-    settle_history(k, pose);
+    settle_history(k, to);
   }
-  stand(to.poses);
+  stand(to);
 }
 
-void SnowContact::stand(const std::vector<Pose>& poses) {
-  for (int k = 0; k < runners(); k++) prepare(k, state_.lines[std::size_t(k)], poses[std::size_t(k)]);
-  state_.accepted = poses;
+void SnowContact::stand(const Situation& at) {
+  for (int k = 0; k < runners(); k++)
+    if (!is_clear(k, at)) prepare(k, state_.lines[std::size_t(k)], at.poses[std::size_t(k)]);
+  state_.accepted = at.poses;
 }
 
 void SnowContact::tangent(const Situation& at, std::vector<double>& stiffness, std::vector<double>& damping) {

@@ -68,7 +68,7 @@ Sections::Sections(int capacity) {
 
 void Base::cover(const GrooveLines& lines, const double* of) {
   first_block = lines.first >= 0 ? lines.first / BLOCK : -((-lines.first + BLOCK - 1) / BLOCK);
-  blocks = int((lines.end - first_block * BLOCK + BLOCK - 1) / BLOCK);
+  blocks = lines.count() > 0 ? int((lines.end - first_block * BLOCK + BLOCK - 1) / BLOCK) : 0;
   wanted.assign(std::size_t(blocks), of == nullptr ? SECTIONS : NOTHING);
   for (int i = 0; of != nullptr && i < count(); i++) {
     if (of[lines.slot(line(i))] == 0.0) continue;

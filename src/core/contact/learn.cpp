@@ -9,6 +9,8 @@ namespace skisnow {
 namespace {
 
 constexpr double SPARE = 0.01;  // (m) beside a ski: no look of a step lies that far from the pose foreseen for it
+constexpr int HEIGHTS = 9;      // places along a ski whose heights are looked at
+constexpr double CLEAR = 0.05;  // their height (m) beyond twice its reach, on surfaces up to 60°
 
 // How far a ski reaches across from its straight axis (m), however it is rolled.
 double room_of(const Runner& runner, const Pose& pose) {
@@ -114,6 +116,18 @@ class SnowContact::Standing {
   std::vector<Other> runners_;
   double now_;
 };
+
+// Whether a runner is so high at the end of a step that it needs no lines: no look of the step comes down to the snow.
+bool SnowContact::is_clear(int k, const Situation& at) const {
+  const Runner& runner = this->runner(k);
+  const Pose& pose = at.poses[std::size_t(k)];
+  const double least = CLEAR + 2.0 * room_of(runner, pose), apart = (runner.tip - runner.tail) / (HEIGHTS - 1);
+  for (int i = 0; i < HEIGHTS; i++) {
+    const Vector3 place = pose.position + (runner.tail + i * apart) * pose.axis(0);
+    if (place[2] - snow_->surface.at(place[0], place[1]).value < least) return false;
+  }
+  return at.dt > 0.0;
+}
 
 // Lay the lines that a runner will meet, and look for the tracks that it comes to.
 void SnowContact::prepare(int k, GrooveLines& lines, const Pose& pose) {

@@ -38,8 +38,10 @@ bool is_uneven(const Base& s, const GrooveLines& lines) {
 }  // namespace
 
 // The end of a step, for which the sections stand, enters the history; lines that the ski has left are dropped.
-void SnowContact::settle_history(int k, const Pose& pose) {
+void SnowContact::settle_history(int k, const Situation& at) {
   GrooveLines& lines = state_.lines[std::size_t(k)];
+  const Pose& pose = at.poses[std::size_t(k)];
+  if (is_clear(k, at)) return leave_lines(k);
   if (snow_->rate.is_delayed()) state_.delayed_energy += advance_delayed(*snow_, sections(k), dt_, lines);
   remember(k, lines, strength_varies());
   if (strength_varies()) hold_strength(k, lines);
@@ -95,6 +97,14 @@ void SnowContact::follow_snow(int k, GrooveLines& lines) const {
   }
 }
 
+// Leave all lines to the archive; those laid next belong to another strip.
+void SnowContact::leave_lines(int k) {
+  GrooveLines& lines = state_.lines[std::size_t(k)];
+  if (lines.count() == 0) return;
+  lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
+  state_.strips[std::size_t(k)] = snow_->archive.new_strip();
+}
+
 // Leave all lines to the archive and lay others, on which the edges are displaced and have slipped as they had at the
 // same station.
 void SnowContact::lay_anew(int k, const Pose& pose) {
@@ -111,8 +121,7 @@ void SnowContact::lay_anew(int k, const Pose& pose) {
       if (is_in_snow(i, side)) displaced[side].emplace_back(s[STATION][i], anchor(slot, side) - place(slot, side));
   }
   for (auto* each : {&slipped, &displaced[0], &displaced[1]}) std::sort(each->begin(), each->end());
-  lines.leave_all(snow_->archive, state_.strips[std::size_t(k)]);
-  state_.strips[std::size_t(k)] = snow_->archive.new_strip();
+  leave_lines(k);
   prepare(k, lines, pose);
   kernels_->find_sections(runner(k), pose, lines, nullptr, s.base);
   remember(k, lines, false);

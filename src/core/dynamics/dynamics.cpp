@@ -129,7 +129,15 @@ bool Dynamics::factor(double reach) {
               .coupling = 1.0,
               .snow_stiffness = reach * reach,
               .snow_damping = reach});
+  flown_ = flies() ? reach : 0.0;
   return system_.factor();
+}
+
+// Whether no ski was in the snow at the last evaluation: the matrix then depends on β alone, if no boot moves.
+bool Dynamics::flies() const {
+  for (int k = 0; k < int(body_.skis.size()); k++)
+    if (contact_->touches(k)) return false;
+  return motions_.empty();
 }
 
 // How far rates move the boots, ends a metre off that turn with them, and the beams, in a time (m).
@@ -170,7 +178,7 @@ bool Dynamics::solve_step(const Formula& f) {
   for (int iteration = 0; iteration < most; iteration++) {
     find_residual(f, renew);
     if (iteration > 0) limit_overshoot(f, begun, share, renew);
-    if (renew && !factor(f.reach)) return false;
+    if (renew && !(flown_ == f.reach && flies()) && !factor(f.reach)) return false;
     begun = find_change(f);
     const double size = size_of(change_, f.reach);
     if (!(size < FARTHEST)) return false;

@@ -124,6 +124,7 @@ class Dynamics {
   BorderedSystem system_;
   RunnerTangent tangent_;
   double contraction_ = 0.5;  // of Newton's method in its last iteration
+  double flown_ = 0.0;        // β of the matrix that is factored, if no ski was in the snow; else 0
 
   template <class Stream, class Motion>
   static void pass(Stream& stream, Motion& of);  // to or from bytes
@@ -144,6 +145,7 @@ class Dynamics {
   void follow_skis();
   void feel_boots(double newest, double now, double before);
   bool factor(double reach);
+  bool flies() const;
   struct BeamWeights {
     double mass, stiffness, damping, coupling, snow_stiffness, snow_damping;
   };

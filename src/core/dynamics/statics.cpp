@@ -88,6 +88,7 @@ bool Dynamics::factor_static(double inertia) {
         system_.border(int(k), i)[b + 3] -= own[p] * pull[q] - own[q] * pull[p];
       }
   }
+  flown_ = 0.0;
   return system_.factor();
 }
 
