@@ -40,7 +40,7 @@ class Pass {
         edges_(conditions.edges()) {}
 
   template <class Groove>
-  void from_tip_to_tail(Groove& groove);
+  void from_tip_to_tail(Groove& groove, bool linearises);
 
  private:
   const CarvedSki& ski_;
@@ -77,7 +77,6 @@ void Pass::begin() {
   std::fill(std::begin(out_.border_residual), std::end(out_.border_residual), 0.0);
   out_.link_corner.clear();
   out_.link_from.clear();
-  links_.clear();
 }
 
 CarveSection Pass::section(const CarveStation& s) const {
@@ -257,8 +256,9 @@ void Pass::ask_strength() {
 }
 
 template <class Groove>
-void Pass::from_tip_to_tail(Groove& groove) {
-  begin();
+void Pass::from_tip_to_tail(Groove& groove, bool linearises) {
+  if (linearises) begin();
+  links_.clear();
   pressure_.begin(conditions_.laws, conditions_.law_share, conditions_.law_memory, conditions_.hardness,
                   conditions_.excess);
   if (pressure_.gathers()) ask_pressure(groove);
@@ -273,7 +273,7 @@ void Pass::from_tip_to_tail(Groove& groove) {
     groove.pass(found, int(i));
     out_.depth[i] = found.depth;
     out_.force[i] = sums.force;
-    if (sums.by_depth[0] == 0.0 && !(found.depth > 0.0)) continue;
+    if (!linearises || (sums.by_depth[0] == 0.0 && !(found.depth > 0.0))) continue;
     const Load felt = load(found, sums, strength_.empty() ? Strength{} : strength_[i]);
     const double lever = found.half * found.cosine;
     add_load(conditions_, station, felt.at, sums.force, at_.border[2], out_.border_residual,
@@ -283,6 +283,7 @@ void Pass::from_tip_to_tail(Groove& groove) {
     add_to_matrix(station, felt);
     add_pulls(station, felt, lever);
   }
+  if (!linearises) return;
   subtract_loads(conditions_, at_.border[2], out_.border_residual);
   if (conditions_.by_reaction) out_.corner[2][2] += conditions_.load;
   bind_links();
@@ -297,11 +298,11 @@ CarveEquations::CarveEquations(const CarvedSki& ski)
       force(ski.stations.size(), 0.0) {}
 
 void assemble(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
-              CarveEquations& out) {
+              CarveEquations& out, bool linearises) {
   Pass pass(ski, conditions, groove, at, out);
-  if (!groove.along_path) return pass.from_tip_to_tail(groove.edge);
+  if (!groove.along_path) return pass.from_tip_to_tail(groove.edge, linearises);
   groove.path.tangent = std::tan(conditions.edge_angle);
-  pass.from_tip_to_tail(groove.path);
+  pass.from_tip_to_tail(groove.path, linearises);
 }
 
 }  // namespace skisnow

@@ -126,9 +126,9 @@ struct CarveGroove {
   CarvePressure pressure;
 };
 
-// Put together at a state.
+// Put together at a state; without `linearises` depth and force at the stations alone.
 void assemble(const CarvedSki& ski, const CarveConditions& conditions, CarveGroove& groove, const CarveState& at,
-              CarveEquations& out);
+              CarveEquations& out, bool linearises = true);
 
 // The linearised equations, factored: the beam first, then what is left of border and links.
 class CarveFactors {

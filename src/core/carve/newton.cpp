@@ -87,7 +87,7 @@ bool CarveNewton::solve(const CarveConditions& conditions, CarveGroove& groove) 
     if (damping == 1.0 && (*following < roughness * at.deepest() || stalled)) return true;
     if (damping < 1.0 || *following >= TOLERANCE || !balanced) continue;
     state.add(trial_step_, 1.0);  // the correction that follows is known already
-    assemble(ski_, conditions, groove, state, at);
+    assemble(ski_, conditions, groove, state, at, false);
     return true;
   }
   return false;
