@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.forces.penetration import PointLaw
 from skisnow.forces.shear import ShearLaw
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,14 +4,13 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import Ski
 from skisnow.snow.properties import SnowProperties
 from tests.present import present
 
-FloatArray = npt.NDArray[np.float64]
 Along = Callable[[FloatArray], FloatArray]
 
 RACE = (0.37, 1.18, 1.88, 1.16, 0.40)

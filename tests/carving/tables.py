@@ -11,11 +11,12 @@ from benchmarks.page_tables import write_tables
 from openbench.entries.numpy_reference import slow_carve as reference
 from openbench.entries.numpy_reference.slow_carve import Case
 
+from skisnow._support.arrays import FloatArray
 from skisnow.carving.equilibrium import carve, rest
 from skisnow.carving.result import Equilibrium
 from skisnow.ski import read_ski
 
-from .synthetic import FloatArray, boot_pose, circular_sidecut, plain_ski, race_profile, snow
+from .synthetic import boot_pose, circular_sidecut, plain_ski, race_profile, snow
 
 MESHES = (40, 80, 160, 320, 640)
 SKIS = ("slalom", "giant-slalom", "carver")

@@ -9,6 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_bvp
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.carving.edge_line import circle_radius
 from skisnow.carving.equilibrium import GrooveForm, MomentBalance, carve
@@ -16,7 +17,7 @@ from skisnow.carving.result import Equilibrium, _warnings_of_line
 from skisnow.ski import Ski, read_ski
 from tests.coded import raises
 
-from .synthetic import FloatArray, plain_ski, snow, weights
+from .synthetic import plain_ski, snow, weights
 
 CLAMP = 0.3
 

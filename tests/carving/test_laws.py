@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow import SnowProperties
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve
 from skisnow.carving.laws import equivalent_snow
@@ -27,7 +28,7 @@ from tests.coded import Coded, coded, raises
 from tests.present import present
 
 from .laws import Deepening, Power, Pushing
-from .synthetic import FloatArray, rigid_ski, snow
+from .synthetic import rigid_ski, snow
 from .test_jacobian import conditions
 
 CASE: dict[str, Any] = {"edge_angle": math.radians(45.0), "load": 800.0}

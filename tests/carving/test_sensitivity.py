@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.carving.equilibrium import carve, differentiable_carve
 from skisnow.carving.outputs import RefinedCarve, output_growth
@@ -24,7 +25,7 @@ from skisnow.snow import SnowProperties
 from tests.coded import raises
 from tests.present import present
 
-from .synthetic import FloatArray, rigid_ski, snow
+from .synthetic import rigid_ski, snow
 
 OUTPUTS = (
     "turn_radius_boot_m", "turn_radius_chord_m", "turn_radius_median_m", "edge_depth_mm", "grip_utilisation",

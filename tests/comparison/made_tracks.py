@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from datetime import datetime
 
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.track.track import Track
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def build_track(

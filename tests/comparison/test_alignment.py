@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import FitError, ParameterError
 from skisnow.comparison import Comparison, compare_tracks
 from skisnow.comparison.alignment import HEADINGS, Motion, _iterate, fit_motion, start_motions
@@ -17,7 +18,7 @@ from skisnow.track.track import Track
 from tests.coded import raises
 from tests.present import present
 
-from .made_tracks import FloatArray, build_track, slalom, turned
+from .made_tracks import build_track, slalom, turned
 
 ALONG = np.linspace(0.0, 60.0, 500)
 

@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.comparison import Comparison, Distances, compare_tracks, comparison_dict
 from skisnow.comparison.distances import DistanceStatistics, polyline, time_offsets
@@ -14,7 +15,7 @@ from skisnow.track.track import Track
 from tests.coded import raises
 from tests.present import present
 
-from .made_tracks import FloatArray, arc, build_track, slalom, turned
+from .made_tracks import arc, build_track, slalom, turned
 
 ROUNDING = 1e-9
 """Of numbers that are exact but for the arithmetic, on tracks below 100 m."""

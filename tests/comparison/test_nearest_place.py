@@ -9,13 +9,14 @@ import pytest
 from benchmarks.track_headings import KINDS, fitted_track, row
 from scipy.integrate import quad
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.comparison import compare_tracks, comparison_dict
 from skisnow.comparison.distances import OffsetSeries, distance_statistics, mean_lengths
 from skisnow.comparison.nearest_place import Path, distance_from_path
 from tests.coded import raises
 
-from .made_tracks import FloatArray, build_track
+from .made_tracks import build_track
 
 
 def by_hand(point: FloatArray, path: FloatArray) -> float:

@@ -1,11 +1,9 @@
 """Runners and poses that several tests share."""
 
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def edged(angle: float, lean: float = 0.0, turn: float = 0.0) -> FloatArray:

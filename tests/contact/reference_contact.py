@@ -11,16 +11,14 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner, SnowField
 from skisnow.forces.shear import MachiningShear
 from skisnow.forces.shear.law import strength_left
 from tests.present import present
 
 from .reference_pressure import pressure
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass

@@ -6,14 +6,13 @@ import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import SnowField
 
 if TYPE_CHECKING:
     from .reference_contact import Line, Touch
 
-FloatArray = npt.NDArray[np.float64]
 _POINT, _WEIGHT = np.polynomial.legendre.leggauss(3)
 
 

@@ -13,12 +13,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner, SnowContact, SnowField, c_header, c_library
 from skisnow.contact.snow_contact import SPACING
 
 from .conftest import edged
 
-FloatArray = npt.NDArray[np.float64]
 ROOT = Path(__file__).parents[2]
 STEPS = 10_000
 COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)

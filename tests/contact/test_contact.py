@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.compiled import core
 from skisnow.contact import Runner, SnowContact, SnowField
@@ -16,7 +17,7 @@ from skisnow.forces.shear import AngleShear, MachiningShear, ShearLaw
 from skisnow.geometry.surfaces import Grid
 from tests.coded import raises
 
-from .conftest import FloatArray, edged, straight
+from .conftest import edged, straight
 
 H, S = 2e8, 5e5
 SKI = Runner.of(read_ski("giant-slalom"))

@@ -4,9 +4,9 @@ import math
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.contact.snow_field import STICK_DISPLACEMENT
 from skisnow.forces.friction import LinearFriction
@@ -16,7 +16,6 @@ from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 
 from .conftest import edged, straight
 
-FloatArray = npt.NDArray[np.float64]
 H, S, LENGTH, WIDTH = 2e8, 5e5, 1.6, 0.06
 AT_REST = np.zeros((1, 6))
 

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from skisnow import carve
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.forces.penetration import HypoplasticPoint
 from skisnow.forces.shear import MachiningShear
@@ -15,7 +16,7 @@ from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 from skisnow.ski.checks import EdgeShape
 
 from ..carving.synthetic import rigid_ski, snow
-from .conftest import FloatArray, edged, straight
+from .conftest import edged, straight
 
 Placed = tuple[FloatArray, FloatArray]
 H, S, LENGTH, WIDTH = 2e8, 5e5, 1.6, 0.06

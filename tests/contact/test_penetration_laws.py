@@ -8,6 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.forces.penetration import (
@@ -22,7 +23,6 @@ from tests.coded import raises
 
 from .conftest import edged, straight
 
-FloatArray = npt.NDArray[np.float64]
 H, S, LENGTH, WIDTH = 2e8, 5e5, 1.6, 0.06
 GIANT_SLALOM = read_ski("giant-slalom")
 SKI = Runner.of(GIANT_SLALOM, nodes=np.linspace(GIANT_SLALOM.station[0], GIANT_SLALOM.station[-1], 9))

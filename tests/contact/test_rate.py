@@ -4,14 +4,13 @@ import math
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import SnowContact, SnowField
 
 from .conftest import edged, straight
 
-FloatArray = npt.NDArray[np.float64]
 H, S, LENGTH, WIDTH = 2e8, 5e5, 1.6, 0.06
 AREA = LENGTH * WIDTH
 C, SHARE, TAU = 1e6, 0.5, 0.2

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from skisnow import read_ski
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import RangeWarning
 from skisnow.compiled import core
 from skisnow.contact import ContactForces, Runner, Sections, SnowContact, SnowField
@@ -21,7 +21,6 @@ from tests.present import present
 from .conftest import edged, straight
 from .reference_contact import Pose, ReferenceRunner
 
-FloatArray = npt.NDArray[np.float64]
 H, S = 2e8, 5e5
 DT = 5e-4
 DEPTH = 2e-3

@@ -8,12 +8,13 @@ import struct
 import numpy as np
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.contact import ContactState, Runner, SnowContact, SnowField
 from skisnow.geometry.surfaces import Grid
 from tests.coded import raises
 
-from .conftest import FloatArray, straight
+from .conftest import straight
 from .test_c_library import BAD, OK, SHAPE, Made, figure_of_eight, library, made, numbers
 
 __all__ = ["library", "made"]

@@ -3,15 +3,14 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.forces.shear.law import SHEAR_DISPLACEMENT
 
 from .conftest import edged, straight
 
-FloatArray = npt.NDArray[np.float64]
 Placed = tuple[FloatArray, FloatArray]
 H, S, LENGTH, WIDTH, LOAD = 2e8, 5e5, 1.4, 0.07, 400.0
 HALF = 0.5 * WIDTH

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy import stats
 
 import skisnow
+from skisnow._support.arrays import FloatArray
 from skisnow.campaign import Campaign, ReferenceNoise, reference_campaign
 from skisnow.estimation import results_dict
 from skisnow.estimation.campaign_model import DEFAULT_PRIORS, fit_campaign
@@ -243,7 +243,7 @@ def test_an_error_of_the_deepest_reading_counts_once(make_campaign: MakeCampaign
     model = replace(model, offset=np.zeros(2), covariance=np.zeros((2, 3, 3)))
     value = hardness(readings, DEFINITIONS["H_V"], model)
 
-    def fitted(top: float = 0.0, returning: npt.NDArray[np.float64] | float = 0.0) -> Unloading:
+    def fitted(top: float = 0.0, returning: FloatArray | float = 0.0) -> Unloading:
         depth = readings.penetration_depth.copy()
         depth[readings.largest] += top
         back = replace(branch, penetration_depth=branch.penetration_depth + returning)

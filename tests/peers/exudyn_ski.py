@@ -11,11 +11,9 @@ from typing import Any
 import exudyn
 import exudyn.utilities
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.ski import Ski
-
-FloatArray = npt.NDArray[np.float64]
 
 ITEMS: Any = exudyn.utilities  # it is not typed
 AXIAL_STIFFNESS = 1e5  # N: the ends slide freely, so its size does not matter

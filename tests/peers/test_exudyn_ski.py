@@ -8,10 +8,11 @@ import pytest
 from skisnow.carving.equilibrium import carve, rest
 from skisnow.ski import read_ski
 
-from ..carving.synthetic import FloatArray, boot_pose, snow, weights
+from ..carving.synthetic import boot_pose, snow, weights
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install 'skisnow[peers]'")
 
+from skisnow._support.arrays import FloatArray
 from tests.present import present
 
 from .exudyn_ski import cantilever_deflection, on_snow

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from benchmarks.turns.clamped_modes import first_frequencies, first_frequency
 from scipy.spatial.transform import Rotation
 
 from skisnow import read_ski
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField, c_header, c_library
 from skisnow.dynamics import Body, Dynamics, Ended, FlexibleSki, StepControl
@@ -24,7 +24,6 @@ from skisnow.interop.mujoco import SnowForces, ski_mjcf
 
 mujoco: Any = pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'skisnow[peers]'")
 
-FloatArray = npt.NDArray[np.float64]
 COMPILER = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
 EXAMPLE: Any = runpy.run_path(str(Path(__file__).parents[2] / "examples" / "sledge_in_mujoco.py"))
 

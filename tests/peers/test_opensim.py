@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from skisnow import load_scenario, simulate
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.interop.opensim import Markers, MotionTable, read_motion, read_trc, write_motion, write_trc
 from skisnow.simulation.run_tables import write_boots
@@ -18,7 +18,7 @@ with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):  # where
     opensim: Any = pytest.importorskip("opensim", reason="OpenSim is not installed: pip install 'skisnow[peers]'")
     opensim.Logger.removeFileSink()
 
-TIME: npt.NDArray[np.float64] = np.array([0.0, 0.01, 0.02, 0.03, 0.04])
+TIME: FloatArray = np.array([0.0, 0.01, 0.02, 0.03, 0.04])
 
 
 def columns_of(table: Any) -> dict[str, list[float]]:

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from skisnow import load_scenario, read_ski
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
@@ -29,7 +29,6 @@ from tests.coded import raises
 from .test_point import WAY, straight_course
 from .test_search import Polyline, batches
 
-FloatArray = npt.NDArray[np.float64]
 SLALOM = load_scenario("slalom-20-gates")
 FOLLOWED = follower_line(SLALOM)
 

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize
 
 from skisnow import load_scenario, race
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
@@ -139,8 +139,8 @@ LOST = 0.01
 class FreeLine:
     """A cubic spline through nodes, along the fall line at the start."""
 
-    x: npt.NDArray[np.float64]
-    y: npt.NDArray[np.float64]
+    x: FloatArray
+    y: FloatArray
     spline: Any = field(init=False)
 
     def __post_init__(self) -> None:
@@ -151,7 +151,7 @@ class FreeLine:
         return float(self.spline(x)), float(self.spline(x, 1)), float(self.spline(x, 2))
 
 
-def nodes() -> npt.NDArray[np.float64]:
+def nodes() -> FloatArray:
     gates = [0.0, *(gate.turning[0] for gate in FOUR.course.gates)]
     return np.unique(np.concatenate([np.linspace(a, b, NODES + 1) for a, b in pairwise(gates)]))
 
@@ -160,13 +160,13 @@ def quickest_free_line(racer: PointRacer) -> tuple[float, FreeLine]:
     """Its time to the last gate (s), by sequential quadratic programming."""
     x = nodes()
 
-    def line(y: npt.NDArray[np.float64]) -> FreeLine:
+    def line(y: FloatArray) -> FreeLine:
         return FreeLine(x, y)
 
-    def time(y: npt.NDArray[np.float64]) -> float:
+    def time(y: FloatArray) -> float:
         return float(racer.motion(line(y), x.tolist())[2][-1])
 
-    def clear(y: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def clear(y: FloatArray) -> FloatArray:
         """Distance of the nearer side from each pole."""
         found = []
         for gate in FOUR.course.gates:
@@ -175,7 +175,7 @@ def quickest_free_line(racer: PointRacer) -> tuple[float, FreeLine]:
             found.append(beside - racer.half_width * np.hypot(1.0, slope))
         return np.array(found)
 
-    def bent(y: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def bent(y: FloatArray) -> FloatArray:
         """Below the greatest curvature."""
         place = np.linspace(x[0], x[-1], 241)
         spline = line(y).spline

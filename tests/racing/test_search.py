@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from skisnow import QuickestLine, Scenario, load_scenario, race, simulate
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
@@ -37,7 +37,7 @@ class Polyline:
     x: tuple[float, ...] = (0.0, 1.0, 3.0, 6.0, 10.0)
     aside: float = 8.0
 
-    def pieces(self, y: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def pieces(self, y: Any) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Length, mean speed and rise aside of each piece."""
         whole = np.array([0.0, *y, self.aside])
         speed = np.sqrt(2.0 * self.down * np.array(self.x))
@@ -177,7 +177,6 @@ def test_a_scenario_without_a_skier_is_rejected() -> None:
         race(replace(SLALOM, skier=None))
 
 
-FloatArray = npt.NDArray[np.float64]
 DRAWN = np.random.default_rng(4).random((9, 2))
 GIVEN = 5.0 + np.sin(3.0 * DRAWN[:, 0]) + 0.5 * DRAWN[:, 1] ** 2
 

@@ -7,12 +7,12 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.optimize import minimize
 from scipy.special import erfcx
 from scipy.stats import norm
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.processes.batch import Pool
 from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing.score import Score, with_room
@@ -79,7 +79,7 @@ def test_a_brachistochrone_of_pieces_in_forty_evaluations(seed: int) -> None:
         best = search.least(np.full(3, 0.5))
     assert len(made.done) < 42
 
-    def time_of(place: npt.NDArray[np.float64]) -> float:
+    def time_of(place: FloatArray) -> float:
         return float(line(tuple(place.tolist()))["value"])
 
     least = minimize(time_of, np.full(3, 0.3), method="Nelder-Mead").fun

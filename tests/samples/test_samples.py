@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from scipy.integrate import solve_ivp
 
 from skisnow import check_campaign, read_ski, read_track, track_summary
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import OutputError
 from skisnow.campaign import read_density_layers, read_snow_micro_pen
 from skisnow.campaign.caaml import read_caaml
@@ -92,7 +92,7 @@ def test_identification_files_are_read(samples: Path) -> None:
 def test_glides_take_the_time_of_the_motion() -> None:
     """Against the equation of motion, integrated: v dv/ds = g (sin α − μ cos α) − ρ C_dA v²/(2 m)."""
 
-    def slowness_and_change(_: float, state: npt.NDArray[np.float64]) -> list[float]:
+    def slowness_and_change(_: float, state: FloatArray) -> list[float]:
         speed = state[1]
         pull = 9.81 * (np.sin(slope) - 0.03 * np.cos(slope)) - 1.2 * 0.42 / (2.0 * 80.0) * speed**2
         return [1.0 / speed, pull / speed]

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from tests.coded import Coded, coded, raises
 
 from skisnow import read_ski
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.ski import Ski
 from skisnow.ski.layout import LONGEST, BaseShape, layout_of_lengths
@@ -158,9 +158,6 @@ def test_two_rows_make_a_table_and_one_does_not() -> None:
     assert ski.at(0.0).width == pytest.approx(0.06)
     with raises(ParameterError, "invalid_ski", table="station", shape="(1,)", needed="(1,)"):
         Ski(**two_rows(1), running_length=0.002, sidecut_length=0.002)
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @pytest.mark.parametrize("radius", [8.0, 13.0, 100.0, 1000.0])

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-FloatArray = npt.NDArray[np.float64]
+from skisnow._support.arrays import FloatArray
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "regression"
 

@@ -8,11 +8,10 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 from tests.coded import raises
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.statistics import non_negative_fits
 from skisnow.statistics.bounded import condensed
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def problem(seed: int, n: int, p: int, low: float) -> tuple[FloatArray, FloatArray]:

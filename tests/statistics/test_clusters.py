@@ -7,10 +7,9 @@ import numpy.typing as npt
 import pytest
 from tests.coded import raises
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import FitError, ParameterError
 from skisnow.statistics import cluster_intervals, f_tests, linear_fit
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def textbook(y: FloatArray, X: FloatArray, cluster: npt.NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:

@@ -8,11 +8,11 @@ import numpy.typing as npt
 import pytest
 from tests.coded import Coded, coded, raises
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import FitError, FitWarning, ParameterError
 from skisnow.statistics import linear_fit, regress, variance_shares
 from skisnow.statistics.clusters import cluster_intervals
 
-FloatArray = npt.NDArray[np.float64]
 NINE = 9.0  # digits asked for; the certified values have fifteen
 
 

@@ -1,11 +1,10 @@
 """Paths whose heading and curvature are known exactly, as tracks."""
 
 import numpy as np
-import numpy.typing as npt
 
+from skisnow._support.arrays import FloatArray
 from skisnow.track.track import Track
 
-FloatArray = npt.NDArray[np.float64]
 NOISE = 0.02
 """m: a good receiver's, point by point."""
 

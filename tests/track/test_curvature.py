@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow.track.curvature import _curvature, running_mean, track_motion
 from skisnow.track.smoothing import smooth_track
 from skisnow.track.track import FLAGS, Track, point_flags
 
-from .paths import NOISE, FloatArray, along, circle, track
+from .paths import NOISE, along, circle, track
 
 RADIUS, SPEED = 15.0, 8.0
 

@@ -9,6 +9,7 @@ import jsonschema
 import numpy as np
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow._support.units import DEGREE
 from skisnow.cli.shell import json_schema
@@ -20,7 +21,7 @@ from skisnow.track.track import Axes, Track
 from skisnow.track.turns import find_turns
 from tests.coded import raises
 
-from .paths import NOISE, FloatArray, along, circle, track
+from .paths import NOISE, along, circle, track
 
 
 class Leg(NamedTuple):

@@ -10,6 +10,7 @@ from scipy.signal import savgol_filter
 from scipy.special import spherical_jn
 
 from skisnow import read_track
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.track.curvature import track_motion
 from skisnow.track.path_estimate import PathEstimate, estimate_path
@@ -19,7 +20,7 @@ from skisnow.track.track import Track
 from tests.coded import Coded, coded, raises
 from tests.present import present
 
-from .paths import NOISE, FloatArray, circle, track
+from .paths import NOISE, circle, track
 
 
 def test_cubic_at_uneven_times_comes_back_exactly() -> None:

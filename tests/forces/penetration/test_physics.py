@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.coded import raises, warns
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError, RangeWarning
 from skisnow._support.messages import Message
 from skisnow.forces.penetration import (
@@ -31,7 +31,6 @@ from skisnow.snow.published import federolf_2006, moessner_2013
 
 FEW = settings(max_examples=25)
 """For each of many laws."""
-FloatArray = npt.NDArray[np.float64]
 
 SKI = SkiPiece(length=0.2, width=0.062)
 ANGLES = np.radians([0.0, 0.01, 1.0, 10.0, 30.0, 45.0, 60.0])

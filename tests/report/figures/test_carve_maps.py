@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.carving.answer import answer_question, answers_dict
 from skisnow.carving.question import carve_question
@@ -280,9 +280,6 @@ def test_rmse_of_another_size_are_drawn_by_their_logarithm(data: ReportData, val
     assert axes.get_xscale() == scale
     if scale == "linear":
         assert axes.get_xlim() == pytest.approx((0.0, 1.06 * max(207.0, value)))
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def track_of(place: FloatArray) -> Track:

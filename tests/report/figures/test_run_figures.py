@@ -4,12 +4,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.figure import Figure
 
+from skisnow._support.arrays import FloatArray
 from skisnow.comparison.distances import arc_lengths
 from skisnow.comparison.nearest_place import distance_from_path
 from skisnow.report.figures.style import BLUE, VERMILLION, journal_style
@@ -29,8 +29,6 @@ from skisnow.report.turn.figures import TimedTrack, band_of, draw_runs, loaded_s
 from skisnow.simulation.run import LOST, STORED, Run
 
 from ..runs import RADIUS, SPEED, STANCE, circle_run
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")

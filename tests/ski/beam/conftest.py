@@ -6,10 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
 
+from skisnow._support.arrays import FloatArray
 from skisnow.compiled import core
 from skisnow.ski.beam import GAUSS_POINTS, assembled, dense, mass_matrices, stiffness_matrices
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.linalg import eigh
 
+from skisnow._support.arrays import FloatArray
 from skisnow.compiled import core
 from skisnow.ski.beam import (
     HALF_BANDWIDTH,
@@ -22,7 +23,7 @@ from skisnow.ski.beam import (
     twist_shape,
 )
 
-from .conftest import FloatArray, banded_solution, chain, frequencies, observed_order
+from .conftest import banded_solution, chain, frequencies, observed_order
 
 
 def random_band(size: int, seed: int) -> FloatArray:

@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from skisnow._support.errors import ParameterError
@@ -20,8 +19,6 @@ from skisnow.track.course.passages import BEYOND, STRADDLED, STRADDLED_OUTER, TO
 from skisnow.track.track import Axes, Track
 from tests.coded import raises
 from tests.present import present
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def course(*gates: tuple[Point, Side] | tuple[Point, Side, Point]) -> Course:

@@ -4,9 +4,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
+from skisnow._support.arrays import FloatArray
 from skisnow.track.readers.text import moment, spread_times
 from skisnow.track.summary import track_summary
 
@@ -236,9 +236,6 @@ def test_a_moment_needs_a_date_and_minutes_in_plain_figures(cell: str) -> None:
 
 def test_a_moment_without_a_zone_keeps_its_clock() -> None:
     assert moment("2022-12-27T15:51") == datetime(2022, 12, 27, 15, 51)
-
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def straight(time: FloatArray) -> FloatArray:
