@@ -52,44 +52,22 @@ def campaign_of(
         row=np.arange(len(readings)) + 2,
     )
     return Campaign(
-        name="c",
-        place="",
-        observers=(),
-        folder=Path(),
-        gauge_resolution=None if resolution_mm is None else resolution_mm * 1e-3,
-        load_uncertainty=None,
-        moment_uncertainty=None,
-        lever_arm_uncertainty=None,
-        load_steps=(),
-        tools=TOOLS,
-        plates={"b": 0.2},
+        name="c", place="", observers=(), folder=Path(),
+        gauge_resolution=None if resolution_mm is None else resolution_mm * 1e-3, load_uncertainty=None,
+        moment_uncertainty=None, lever_arm_uncertainty=None, load_steps=(), tools=TOOLS, plates={"b": 0.2},
         excluding=frozenset(code for code, flag in QUALITY_FLAGS.items() if flag.excludes_by_default),
-        penetration=tests,
-        shear=None,
-        density=None,
-        drop_cone=None,
-        problems=(),
-        file_hashes={},
-    )
+        penetration=tests, shear=None, density=None, drop_cone=None, problems=(), file_hashes={},
+    )  # fmt: skip
 
 
 def shear_campaign(depth_mm: list[float], cancelled: list[str], resolution_mm: float | None = 0.01) -> Campaign:
     count = len(depth_mm)
     ones = np.ones(count)
     tests = ShearTests(
-        experiment=tuple(f"S{index}" for index in range(count)),
-        site=("s",) * count,
-        plate=("b",) * count,
-        spot=("",) * count,
-        edge_angle=ones,
-        penetration_depth=np.array(depth_mm) * 1e-3,
-        lever_arm=ones,
-        moment=ones,
-        snow_density=ones,
-        drop_cone_depth=ones,
-        cancelled=tuple(cancelled),
-        row=np.arange(count) + 2,
-    )
+        experiment=tuple(f"S{index}" for index in range(count)), site=("s",) * count, plate=("b",) * count,
+        spot=("",) * count, edge_angle=ones, penetration_depth=np.array(depth_mm) * 1e-3, lever_arm=ones, moment=ones,
+        snow_density=ones, drop_cone_depth=ones, cancelled=tuple(cancelled), row=np.arange(count) + 2,
+    )  # fmt: skip
     return dataclasses.replace(campaign_of(GOOD, resolution_mm=resolution_mm), penetration=None, shear=tests)
 
 

@@ -24,15 +24,9 @@ def build_track(
         points = np.column_stack([points, np.full(len(points), np.nan)])
     clock = np.arange(len(points), dtype=float) if time is None else np.asarray(time, dtype=float)
     return Track(
-        name=name,
-        time=clock,
-        place=points,
-        speed=np.full(len(points), np.nan),
-        time_scale=time_scale,
-        frame="made by hand",
-        start=start,
-        first_time=first_time,
-    )
+        name=name, time=clock, place=points, speed=np.full(len(points), np.nan), time_scale=time_scale,
+        frame="made by hand", start=start, first_time=first_time,
+    )  # fmt: skip
 
 
 def arc(radius: float, angle: FloatArray) -> FloatArray:

@@ -42,14 +42,9 @@ def simulated(seed: int, angles_deg: tuple[float, ...], *, exponent: float = 1.0
     volume = (force / LOADS[-1]) ** (1 / exponent) * LOADS[-1] / H[:, None]
     depth = TOOL.depth_at_volume(volume, angle[:, None]).ravel()
     return Readings(
-        load=np.tile(LOADS, m),
-        penetration_depth=depth,
-        edge_angle=angle,
-        first=np.arange(m + 1) * 7,
-        largest=np.arange(m) * 7 + 6,
-        tool=np.zeros(m, dtype=np.int64),
-        tools=(TOOL,),
-    )
+        load=np.tile(LOADS, m), penetration_depth=depth, edge_angle=angle, first=np.arange(m + 1) * 7,
+        largest=np.arange(m) * 7 + 6, tool=np.zeros(m, dtype=np.int64), tools=(TOOL,),
+    )  # fmt: skip
 
 
 def hardnesses(readings: Readings) -> dict[str, np.ndarray]:

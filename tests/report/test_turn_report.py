@@ -72,15 +72,9 @@ def ensemble() -> list[EnsembleRun]:
 def chain() -> TurnChain:
     runs = {"hypoplastic, k_u / H_V = 10": circle_run(), "elastic": circle_run(radius=1.2 * RADIUS)}
     return TurnChain(
-        campaign="A <b> campaign",
-        site="site C",
-        synthetic=True,
-        snow=SNOW,
-        runs=runs,
-        ensemble=ensemble(),
-        seed=1,
+        campaign="A <b> campaign", site="site C", synthetic=True, snow=SNOW, runs=runs, ensemble=ensemble(), seed=1,
         ensemble_error=0.0431,
-    )
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -20,17 +20,10 @@ from skisnow.snow import SnowProperties
 def slalom(*, boot_position: float = 0.0, base: BaseShape | None = None, stations: list[float] | None = None) -> Ski:
     return arc_ski(
         layout_of_lengths(length=1.593, running_length=1.396, sidecut_length=1.458, boot_position=boot_position),
-        name="slalom",
-        source="test",
-        tip_width=0.116,
-        waist_width=0.068,
-        tail_width=0.101,
-        mass=2.231,
-        bending_stiffness=[100, 250, 440, 260, 100],
-        torsional_stiffness=[60, 140, 175, 140, 60],
-        stiffness_station=stations,
-        base=base,
-    )
+        name="slalom", source="test", tip_width=0.116, waist_width=0.068, tail_width=0.101, mass=2.231,
+        bending_stiffness=[100, 250, 440, 260, 100], torsional_stiffness=[60, 140, 175, 140, 60],
+        stiffness_station=stations, base=base,
+    )  # fmt: skip
 
 
 def test_stiffness_is_spread_over_the_running_length_tip_first() -> None:

@@ -136,14 +136,10 @@ def test_written_and_read_again(tmp_path: Path, name: str) -> None:
 def test_every_field_survives(tmp_path: Path) -> None:
     ski = ski_named("slalom")
     moved = dataclasses.replace(
-        ski,
-        name='a "quoted" \\ name\nof Mössner\x7f',
-        station=ski.station - 0.0313,
-        base_height=ski.base_height - ski.at(0.0313).base_height,
-        sidecut_middle=-0.0313,
-        base_bevel=0.0123,
+        ski, name='a "quoted" \\ name\nof Mössner\x7f', station=ski.station - 0.0313,
+        base_height=ski.base_height - ski.at(0.0313).base_height, sidecut_middle=-0.0313, base_bevel=0.0123,
         edge_width=0.0019,
-    )
+    )  # fmt: skip
     write_ski(moved, tmp_path / "moved.toml")
     require_same(read_ski(tmp_path / "moved.toml"), moved)
 

@@ -81,14 +81,9 @@ def test_lengths_in_any_unit(design: Callable[..., Path], text: object) -> None:
 
 def test_what_a_shape_does_not_know_is_the_users(design: Callable[..., Path]) -> None:
     ski = read_monkeycam(
-        design(),
-        mass=2.0,
-        bending_stiffness=[300],
-        torsional_stiffness=[100],
-        running_length=1.5,
-        base=BaseShape(camber=0.004),
-        base_bevel=0.01,
-    )
+        design(), mass=2.0, bending_stiffness=[300], torsional_stiffness=[100], running_length=1.5,
+        base=BaseShape(camber=0.004), base_bevel=0.01,
+    )  # fmt: skip
     assert (ski.running_length, ski.base_bevel) == (1.5, 0.01)
     heights = ski.at([0.06, *ski.contact_points]).base_height
     assert heights[0] - heights[1:] == pytest.approx([0.004, 0.004], abs=1e-12)

@@ -21,15 +21,9 @@ from skisnow.campaign.reference.design import FURTHER_SHEAR_SITES, PENETRATION_S
 from skisnow.campaign.screening import screen_penetration
 
 QUIET = ReferenceNoise(
-    gauge_resolution=0.0,
-    load_sd=0.0,
-    seating_sd=0.0,
-    depth_scatter=0.0,
-    layering_sd=0.0,
-    shear_scatter=0.0,
-    moment_sd=0.0,
-    lever_arm_sd=0.0,
-)
+    gauge_resolution=0.0, load_sd=0.0, seating_sd=0.0, depth_scatter=0.0, layering_sd=0.0, shear_scatter=0.0,
+    moment_sd=0.0, lever_arm_sd=0.0,
+)  # fmt: skip
 SEEDS = range(8)
 L, W = 200.0, 62.0  # mm, the paper's tool
 

@@ -106,14 +106,9 @@ def assert_equal(ours: Any, theirs: Any) -> None:
 def test_tables_problems_and_corrections_are_those_of_the_exported_files(entered: Entered) -> None:
     wrong = entered.append(reading("2", 3, "80", "33"))
     correction = NewEntry(
-        action="correct",
-        file="penetration.csv",
-        test="2",
-        about=wrong,
-        cells={"depth_mm": "3.3"},
-        who="Bea",
+        action="correct", file="penetration.csv", test="2", about=wrong, cells={"depth_mm": "3.3"}, who="Bea",
         why="decimal point",
-    )
+    )  # fmt: skip
     entered.append(correction)
     entered.append(cancellation("1"))
     ours = campaign_in_memory(entered.campaign)

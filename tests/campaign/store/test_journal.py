@@ -45,13 +45,9 @@ length_mm = 100.0
 def reading(test: str, position: int, load: str, depth: str) -> NewEntry:
     cells = {"experiment": test, "site": "A", "tool": "piece", "edge_angle_deg": "30", "load_N": load}
     return NewEntry(
-        action="add",
-        file="penetration.csv",
-        test=test,
-        position=position,
-        cells={**cells, "depth_mm": depth},
+        action="add", file="penetration.csv", test=test, position=position, cells={**cells, "depth_mm": depth},
         who="Ada",
-    )
+    )  # fmt: skip
 
 
 def campaign_with(journals: Journals, *depths: str) -> tuple[str, int]:

@@ -21,18 +21,10 @@ def plain_ski(front: float = 0.9, rear: float = -0.7, width: float = 0.07) -> Sk
     station = np.linspace(front, rear, 801)
     same = np.ones_like(station)
     return Ski(
-        name="plain",
-        source="test",
-        station=station,
-        width=width * same,
-        base_height=0.0 * same,
-        bending_stiffness=EI * same,
-        torsional_stiffness=GJ * same,
-        mass_per_length=1.4 * same,
-        running_length=front - rear,
-        sidecut_length=front - rear,
-        sidecut_middle=(front + rear) / 2.0,
-    )
+        name="plain", source="test", station=station, width=width * same, base_height=0.0 * same,
+        bending_stiffness=EI * same, torsional_stiffness=GJ * same, mass_per_length=1.4 * same,
+        running_length=front - rear, sidecut_length=front - rear, sidecut_middle=(front + rear) / 2.0,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("clamp", "front", "rear"), [(0.0, 0.9, -0.7), (0.3, 0.9, -0.7), (0.25, 0.5, -1.1)])
