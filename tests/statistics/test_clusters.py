@@ -72,29 +72,6 @@ def test_mean_of_balanced_clusters_is_the_t_interval_of_their_means() -> None:
     np.testing.assert_allclose(found.intervals, [[means.mean() - half, means.mean() + half]], rtol=1e-11)
 
 
-def test_clusters_of_one_are_hc2() -> None:
-    # each observation its own cluster: MacKinnon and White's HC2, e²/(1 - h)
-    rng = np.random.default_rng(4)
-    x = rng.uniform(size=15)
-    y = x + x * rng.normal(size=15)
-    X = np.column_stack((np.ones(15), x))
-    bread = np.linalg.inv(X.T @ X)
-    h, e = np.einsum("ij,jk,ik->i", X, bread, X), linear_fit(y, x).residuals
-    expected = np.sqrt(np.diag(bread @ (X.T * (e**2 / (1 - h))) @ X @ bread))
-    np.testing.assert_allclose(cluster_intervals(y, x, np.arange(15)).standard_errors, expected, rtol=1e-10)
-
-
-def test_the_covariance_has_no_bias_where_errors_are_independent() -> None:
-    # the reason of CR2: E(variance) equals σ² (XᵀX)^-1; e = M ε, so it is checked without drawing anything
-    rng = np.random.default_rng(10)
-    x, cluster = rng.uniform(size=12), np.repeat([0, 1, 2], [2, 4, 6])
-    total = np.zeros(2)
-    for k in range(12):  # Σ over unit vectors of a quadratic form is its trace
-        total += cluster_intervals(np.eye(12)[k], x, cluster).standard_errors ** 2
-    X = np.column_stack((np.ones(12), x))
-    np.testing.assert_allclose(total, np.diag(np.linalg.inv(X.T @ X)), rtol=1e-10)
-
-
 def test_coverage_with_few_unequal_clusters() -> None:
     rng = np.random.default_rng(12)
     cluster = np.repeat(np.arange(8), [3, 4, 5, 6, 8, 10, 14, 20])
