@@ -25,6 +25,9 @@ _AT_BOUND: Final = 1e-6  # of the distance of the bounds
 _SAME_RESULT: Final = 0.02  # relative, of squares, of two starts that reached the same optimum
 _SAME_DESIGN: Final = 0.02  # of the bounds
 _MISSED: Final = 1e-4  # relative deviation of a target that is reported
+_CONTRADICTION: Final = Message(
+    "No bound is active: the goals contradict each other, or the search ended at a local optimum."
+)
 CONFIRM: Final = Message(
     "Confirm the ski by simulated runs and on snow: a carve is a steady turn on one snow, without skier."
 )
@@ -91,8 +94,7 @@ class Design(Shown):
     reached
         Whether all goals are reached and all constraints hold.
     remarks
-        Goals that are not reached, with the reason; constraints that are broken; bounds and constraints that are
-        active.
+        Goals that are not reached and constraints that are broken; the reason: bounds and constraints that are active.
     optima
         Local optima, the best first.
     equilibria
@@ -163,7 +165,8 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
     }
     keys = {key: _digits(value) for key, value in keys.items()}
     rounded = {key: _rounded(key, value) for key, value in keys.items()}
-    remarks = [*_missed_goals(search, z), *_constraints_at(search, z, broken=True)]
+    missed = [*_missed_goals(search, z), *_constraints_at(search, z, broken=True)]
+    reasons = _active(search, z) or [_CONTRADICTION] * bool(missed)
     return Design(
         before=task.ski,
         ski=ski_of_keys(keys),
@@ -173,8 +176,8 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
             variable.name: float(value) for variable, value in zip(task.variables, evaluator.values(z), strict=True)
         },
         rows=_rows(search, keys, rounded),
-        reached=not remarks,
-        remarks=(*remarks, *_active(search, z), CONFIRM),
+        reached=not missed,
+        remarks=(*missed, *reasons, CONFIRM),
         optima=_optima(search, starts),
         equilibria=evaluator.equilibria,
     )
@@ -211,12 +214,6 @@ def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tupl
 
 
 def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
-    active = _active(search, z)
-    reason = (
-        Message("Active are: {bounds}", bounds=" ".join(str(bound) for bound in active))
-        if active
-        else Message("No bound is active: the goals contradict each other, or the search ended at a local optimum.")
-    )
     out = []
     for goal in search.evaluator.task.goals:
         values = search.evaluator.goal_values(goal, z)
@@ -225,13 +222,11 @@ def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
         if missed > _MISSED:
             out.append(
                 Message(
-                    "{output}: the goal {wanted:g} is not reached. The design has {values}, {missed:.2g} % off. "
-                    "{reason}",
+                    "{output}: the goal {wanted:g} is not reached. The design has {values}, {missed:.2g} % off.",
                     output=goal.output,
                     wanted=goal.wanted,
                     values=[float(f"{value:.6g}") for value in values],
                     missed=100.0 * missed,
-                    reason=reason,
                 )
             )
     return out
