@@ -268,5 +268,5 @@ def score_in(row: dict[str, Any]) -> Score:
 
 
 def turns_in(row: dict[str, Any]) -> tuple[LineTurn, ...]:
-    """The turns of a row."""
+    """Turns of the line whose evaluation is this row."""
     return tuple(LineTurn(**dict(zip(NUMBERS, numbers, strict=True))) for numbers in row["turns"])

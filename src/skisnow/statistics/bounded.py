@@ -198,12 +198,12 @@ def non_negative_fits(gram: npt.ArrayLike, moment: npt.ArrayLike) -> FloatArray:
     scale = np.sqrt(np.maximum(np.einsum("iib->ib", G), 0.0))
     unit = np.where(scale > 0, scale, 1.0)
     G = np.ascontiguousarray(G / (unit[:, None] * unit[None, :]))
-    result[finite] = (_batch(G, m / unit) / unit).T
+    result[finite] = (_solve_batch(G, m / unit) / unit).T
     return result
 
 
-def _batch(G: FloatArray, m: FloatArray) -> FloatArray:
-    """Solve members G (p, p, B), m (p, B) with unit diagonal; those that meet the conditions leave the batch."""
+def _solve_batch(G: FloatArray, m: FloatArray) -> FloatArray:
+    """Solve B problems with G (p, p, B) of unit diagonal and m (p, B); solved ones leave the batch."""
     p, B = m.shape
     best, least = np.zeros((p, B)), np.full(B, np.inf)
     open_ = np.arange(B)
