@@ -169,6 +169,15 @@ def test_a_constraint_out_of_reach_is_named() -> None:
     assert [row.fields for row in found.remarks if "number" in row.fields] == [{"number": 2, "limit": 175.0}]
 
 
+def test_an_edge_that_slips_is_named() -> None:
+    turn = {**RACE, "edge_angle_deg": 30}
+    task = TWELVE | {"conditions": [turn, {**turn, "S_f_N_per_mm2": 0.1}], "starts": 1}
+    found = skisnow.design_ski(task)
+    (grip,) = (row.after for row in found.rows if row.output == "grip_utilisation" and row.condition == 2)
+    assert [row.fields for row in found.remarks if "grip" in row.fields] == [{"condition": 2, "grip": grip}]
+    assert grip is not None and grip > 1.0
+
+
 def test_a_kept_limit_counts_more_than_any_target() -> None:
     """A radius of 40 m is out of reach by more than a third."""
     goals = [{"output": "turn_radius_boot_m", "target": 40.0}, {"output": "turn_radius_boot_m", "at_least": 12.0}]

@@ -243,10 +243,11 @@ def _design_summary(design: Design) -> str:
     condition, output = str(Message("condition")), str(Message("output"))
     lines = [f"{Message('variable')!s:24} {after:>12}"]
     lines += [f"{name:24} {_number(value, '12.6g')}" for name, value in design.values.items()]
-    lines += ["", f"{condition:>9}  {output:26} {before:>11} {after:>11} {change:>10} {rounded:>11}"]
+    lines += ["", f"{condition:>9}  {output:26} {before:>11} {after:>11} {change:>10} {rounded:>11} {'± 95 %':>11}"]
     for row in design.rows:
-        numbers = (_number(row.before), _number(row.after), _number(row.change_percent, "10.3g"), _number(row.rounded))
-        lines.append("{:9}  {:26} {} {} {} {}".format(row.condition, row.output, *numbers))
+        numbers = [_number(row.before), _number(row.after), _number(row.change_percent, "10.3g"), _number(row.rounded)]
+        numbers += [] if row.half_interval is None else [_number(row.half_interval, "11.3g")]
+        lines.append(" ".join([f"{row.condition:9}  {row.output:26}", *numbers]))
     lines += ["", str(Message("local optima, with the share of starts that reached them, and their objective:"))]
     lines += [f"  {optimum.share:5.0%}  {_number(optimum.result, '.6g')}" for optimum in design.optima]
     lines += ["", *map(str, design.remarks), str(Message("equilibria: {count}", count=design.equilibria))]

@@ -95,6 +95,7 @@ class Design(Shown):
         Whether all goals are reached and all constraints hold.
     remarks
         Goals that are not reached and constraints that are broken; the reason: bounds and constraints that are active.
+        Conditions at which the edge slips.
     optima
         Local optima, the best first.
     equilibria
@@ -167,6 +168,7 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
     rounded = {key: _rounded(key, value) for key, value in keys.items()}
     missed = [*_missed_goals(search, z), *_constraints_at(search, z, broken=True)]
     reasons = _active(search, z) or [_CONTRADICTION] * bool(missed)
+    rows = _rows(search, keys, rounded)
     return Design(
         before=task.ski,
         ski=ski_of_keys(keys),
@@ -175,9 +177,9 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
         values={
             variable.name: float(value) for variable, value in zip(task.variables, evaluator.values(z), strict=True)
         },
-        rows=_rows(search, keys, rounded),
+        rows=rows,
         reached=not missed,
-        remarks=(*missed, *reasons, CONFIRM),
+        remarks=(*missed, *reasons, *_slips(rows), CONFIRM),
         optima=_optima(search, starts),
         equilibria=evaluator.equilibria,
     )
@@ -211,6 +213,19 @@ def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tupl
             half = None if answers[1] is None or after is None else answers[1].half_interval(output, snow)
             rows.append(DesignRow(number + 1, output, before, after, after_rounding, change, half))
     return tuple(rows)
+
+
+def _slips(rows: tuple[DesignRow, ...]) -> list[Message]:
+    """The conditions at which the snow does not hold the edge of the design."""
+    return [
+        Message(
+            "Condition {condition}: the edge slips, as the grip utilisation is {grip:.3g}. Add a goal of at most 1.",
+            condition=row.condition,
+            grip=row.after,
+        )
+        for row in rows
+        if row.output == "grip_utilisation" and row.after is not None and row.after > 1.0
+    ]
 
 
 def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
