@@ -1,7 +1,6 @@
 """Certified data of the NIST Statistical Reference Datasets, where they are next to this repository."""
 
 import csv
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,26 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from skisnow._support.arrays import FloatArray
-
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "regression"
-
-
-class NistFile:
-    """A .dat file of NIST: lines of text, numbers of the certified part, rows of data."""
-
-    def __init__(self, path: Path) -> None:
-        self.lines = path.read_text(encoding="ascii").splitlines()
-
-    def numbers_after(self, label: str) -> list[float]:
-        """All numbers behind the first occurrence of a label in its line."""
-        line = next(line for line in self.lines if label in line)
-        return [float(word) for word in re.findall(r"[-+]?\d+\.?\d*(?:E[-+]\d+)?", line.split(label, 1)[1])]
-
-    @property
-    def data(self) -> FloatArray:
-        start = max(i for i, line in enumerate(self.lines) if line.startswith("Data:")) + 1
-        return np.array([[float(word) for word in line.split()] for line in self.lines[start:] if line.strip()])
 
 
 def _present(name: str) -> Path:
@@ -36,11 +16,6 @@ def _present(name: str) -> Path:
     if not path.exists():
         pytest.skip(f"certified data {name} are not next to this repository")
     return path
-
-
-@pytest.fixture
-def nist() -> Callable[[str], NistFile]:
-    return lambda name: NistFile(_present(f"{name}.dat"))
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """Linear fits against certified data, rational arithmetic and hand calculation."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,19 +13,6 @@ from skisnow.statistics import linear_fit, regress, variance_shares
 from skisnow.statistics.clusters import cluster_intervals
 
 NINE = 9.0  # digits asked for; the certified values have fifteen
-
-
-def test_norris(nist: Callable[[str], Any], digits: Callable[..., float]) -> None:
-    norris = nist("Norris")
-    fit = linear_fit(norris.data[:, 0], norris.data[:, 1])
-    certified = np.array([norris.numbers_after("B0  "), norris.numbers_after("B1  ")])
-    assert digits(fit.coefficients, certified[:, 0]) >= NINE
-    assert digits(fit.standard_errors, certified[:, 1]) >= NINE
-    assert digits(fit.rmse_dof, norris.numbers_after("Standard Deviation  ")) >= NINE
-    assert digits(fit.r2, norris.numbers_after("R-Squared")) >= NINE
-    assert digits(fit.F, norris.numbers_after("Regression  ")[-1]) >= NINE
-    assert digits(fit.sse, norris.numbers_after("Residual  ")[1]) >= NINE
-    assert fit.p < 1e-80
 
 
 def test_longley(table: Callable[[str], list[list[str]]], digits: Callable[..., float]) -> None:
