@@ -1,7 +1,5 @@
 """Designs: confirmed by the public carve from the written file, limits kept, what is out of reach is said."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -1,7 +1,5 @@
 """Skis of what a maker has: any layout gives the same ski, tests give the stiffness back, errors name the way out."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

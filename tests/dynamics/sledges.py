@@ -1,7 +1,5 @@
 """Scenarios as bodies on skis over snow, put together here from their parts; forces on a body at rest."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Bodies on one, two and three skis: they glide straight, and what carries them adds up."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +10,7 @@ import pytest
 
 from skisnow import Scenario
 from skisnow.dynamics import Body, Ended
+from tests.present import present
 
 from .sledges import ahead, body_of, given, left_over, on_one_ski, on_three_skis, sledge, snow_forces
 
@@ -86,8 +85,6 @@ def test_marks() -> None:
 def test_constants() -> None:
     """Of the error's estimate and of the choice of steps."""
     milne, safety = (re.search(rf"\b{name} = ([\d.]+)", SOURCES) for name in ("MILNE", "SAFETY"))
-    assert milne is not None
-    assert safety is not None
-    assert f"e = {milne[1]}" in PAGE
-    assert f"${safety[1]}\\,(\\text{{tolerance}}/e)" in PAGE
+    assert f"e = {present(milne)[1]}" in PAGE
+    assert f"${present(safety)[1]}\\,(\\text{{tolerance}}/e)" in PAGE
     assert "longest * std::exp2(0.25 *" in SOURCES  # four rungs to a factor of two

@@ -1,7 +1,5 @@
 """Where the energy goes: accounts of one run, stores and losses of the snow."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 from typing import Any, Final

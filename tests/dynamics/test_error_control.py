@@ -1,7 +1,5 @@
 """Steps chosen by the error: tolerance, order of the method, and what must not change their choice."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from functools import cache

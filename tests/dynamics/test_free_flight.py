@@ -1,7 +1,5 @@
 """In the air: a parabola, momentum and energy kept, a top that turns as Euler knew it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Final

@@ -1,7 +1,5 @@
 """Boots that move against the body: at rest as if they were fixed; in the air by momentum; forces by weight."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where a body stands, and the start that an earlier solver had found; what cannot start."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -19,6 +19,7 @@ from skisnow.simulation.run import Run
 from skisnow.simulation.run_forces import balance_of
 from skisnow.simulation.run_summary import run_warnings, summary_dict
 from skisnow.simulation.simulated_run import REMEDIES
+from tests.present import present
 
 from .straight_run import STRAIGHT, straight_run
 
@@ -86,13 +87,12 @@ def test_lean_and_pressure_are_those_of_the_places_and_forces() -> None:
 def test_skis_in_a_plough_lean_no_less() -> None:
     """Each turned by 30 degrees: the mean of their axes is shorter than either, and the way ahead is the same."""
     run = moved()
-    assert run.boots is not None
     turned = []
     for ski, angle in enumerate((-math.pi / 6.0, math.pi / 6.0)):
-        own = run.boots.axes[:, ski]
+        own = present(run.boots).axes[:, ski]
         ahead = math.cos(angle) * own[:, 0] + math.sin(angle) * own[:, 1]
         turned.append(np.stack([ahead, np.cross(own[:, 2], ahead), own[:, 2]], axis=1))
-    found = balance_of(replace(run, boots=replace(run.boots, axes=np.stack(turned, axis=1))))
+    found = balance_of(replace(run, boots=replace(present(run.boots), axes=np.stack(turned, axis=1))))
     assert found.lean == pytest.approx(np.full(len(TIME), 0.4))
     assert found.pressure == pytest.approx(balance_of(run).pressure)
 
@@ -100,10 +100,9 @@ def test_skis_in_a_plough_lean_no_less() -> None:
 def test_a_moment_of_the_skis_moves_the_pressure() -> None:
     """40 N m about the axis ahead, under 800 N: 5 cm, to the left as a heavier left ski."""
     run = moved()
-    assert run.boots is not None
     moment = np.zeros((len(TIME), 2, 3))
     moment[:, :, 0] = 20.0
-    turned = balance_of(replace(run, boots=replace(run.boots, own_moment=moment)))
+    turned = balance_of(replace(run, boots=replace(present(run.boots), own_moment=moment)))
     assert turned.pressure - balance_of(run).pressure == pytest.approx(np.full(len(TIME), 40.0 / 800.0))
 
 
@@ -167,14 +166,13 @@ def test_a_straight_profile_is_a_plane() -> None:
 
 def test_of_a_few_moments_nothing_is_in_balance_and_without_boots_nothing_is_known() -> None:
     run = moved()
-    assert run.boots is not None
     for n, known in ((4, 0), (5, 1)):
         few = replace(
             run,
             time=TIME[:n],
             place=run.place[:n],
             attitude=run.attitude[:n],
-            boots=BootHistory(**{name: getattr(run.boots, name)[:n] for name in BootHistory.__slots__}),
+            boots=BootHistory(**{name: getattr(present(run.boots), name)[:n] for name in BootHistory.__slots__}),
         )
         found = balance_of(few)
         assert np.isfinite(found.lean).all()

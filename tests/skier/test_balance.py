@@ -1,7 +1,5 @@
 """A skier that balances: in linked turns, in a steady turn on level snow, pushed, through gates, and when it falls."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,6 +13,7 @@ from skisnow._support.errors import ParameterError
 from skisnow.scenario import Skier
 from skisnow.skier import BalancedSkier
 from skisnow.skier.seen import Moment
+from tests.present import present
 
 
 def tall(skier: Skier | None = None, **changes: object) -> Scenario:
@@ -117,8 +116,7 @@ def test_linked_turns_on_19_degrees(speed: float) -> None:
 
 def one_turn(run: Run, number: int) -> tuple[float, float, float]:
     """Median slip (°), greatest slip (°) and what shear took (J), of a whole turn."""
-    skier = run.scenario.skier
-    assert skier is not None
+    skier = present(run.scenario.skier)
     first, last = (skier.first_turn + skier.turn_time * (number + half) for half in (-0.5, 0.5))
     within = (run.time > first) & (run.time < last)
     path = np.unwrap(np.arctan2(run.velocity[:, 1], run.velocity[:, 0]))
@@ -152,8 +150,7 @@ def test_on_a_race_piste_the_last_turn_carves_too() -> None:
 @pytest.mark.parametrize(("name", "share"), [("leg_gain", 0.5), ("edge_gain", 0.7)])
 def test_numbers_of_the_control_are_not_fine_tuned(name: str, share: float) -> None:
     found = load_scenario("skier-10deg")
-    assert found.skier is not None
-    other = replace(found.skier, **{name: share * getattr(found.skier, name)})
+    other = replace(present(found.skier), **{name: share * getattr(present(found.skier), name)})
     assert simulate(found.with_(skier=other, method="fast")).outcome == "finished"
 
 
@@ -198,8 +195,7 @@ def test_the_slalom_on_15_degrees() -> None:
 def test_twenty_gates(name: str) -> None:
     run = simulate(load_scenario(name).with_(method="fast"))
     assert run.outcome == "finished"
-    course = run.scenario.course
-    assert course is not None
+    course = present(run.scenario.course)
     passages = time_gates(course, run).passages
     assert [each.outcome for each in passages] == 20 * ["passed"]
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-3)

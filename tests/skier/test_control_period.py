@@ -1,7 +1,5 @@
 """The period of a skier's control, and outputs that do not change its run."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

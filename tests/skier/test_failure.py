@@ -1,7 +1,5 @@
 """The cause that a fall or a missed gate is given."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -14,6 +12,7 @@ from skisnow.simulation.simulated_run import _through_gates
 from skisnow.skier import BalanceRecord
 from skisnow.skier.control import Balance
 from skisnow.skier.failure import cause_of
+from tests.present import present
 from tests.simulation.straight_run import STRAIGHT, straight_run
 
 from .test_steps import HEIGHT, saw
@@ -48,8 +47,7 @@ def records(*crossed: tuple[float, dict[str, Any]], wanted: float = 0.5 * HEIGHT
     ],
 )
 def test_each_limit_is_named_with_time_and_place(code: str, seen: dict[str, Any]) -> None:
-    found = cause_of(records((2.0, seen)), Skier(brakes_to=6.0), WEIGHT)
-    assert found is not None
+    found = present(cause_of(records((2.0, seen)), Skier(brakes_to=6.0), WEIGHT))
     assert found.code == code
     assert found.time == pytest.approx(2.0)
     assert found.place[0] == pytest.approx(12.0)
@@ -58,8 +56,7 @@ def test_each_limit_is_named_with_time_and_place(code: str, seen: dict[str, Any]
 def test_the_first_limit_counts() -> None:
     hips, grip = {"body_heading": 2.0}, {"across": 0.0}
     for first, second, code in ((hips, grip, "hips"), (grip, hips, "grip")):
-        found = cause_of(records((2.0, first), (2.2, second)), Skier(brakes_to=6.0), WEIGHT)
-        assert found is not None
+        found = present(cause_of(records((2.0, first), (2.2, second)), Skier(brakes_to=6.0), WEIGHT))
         assert found.code == code
 
 

@@ -1,7 +1,5 @@
 """Parts of the skier: its plan, its line through gates, edges, legs, body, and what a scenario may say of it."""
 
-from __future__ import annotations
-
 import importlib
 import math
 from pathlib import Path
@@ -23,6 +21,7 @@ from skisnow.skier.carve import CarvesOverTime, Pursuit, Underway
 from skisnow.skier.edges import Edges
 from skisnow.skier.plan import HalfWaves, TurnsOverTime
 from tests.coded import Coded, coded, raises
+from tests.present import present
 
 STEEP = 9.81
 
@@ -138,8 +137,7 @@ def test_heights_by_roll_inertia_are_kept_within_people() -> None:
 
 def test_keys_of_a_skier() -> None:
     found = load_scenario("skier-10deg", changes={"skier.turn_time_s": 1.5})
-    assert found.skier is not None
-    assert found.skier.turn_time == 1.5
+    assert present(found.skier).turn_time == 1.5
     assert scenario_values(found)["skier.steers"] == "turns"
     assert load_scenario("carved-46m").skier is None
     assert scenario_values(load_scenario("carved-46m"))["skier.steers"] is None
@@ -210,7 +208,6 @@ def test_twenty_gates_on_a_measured_profile(tmp_path: Path, name: str, begins: f
     changes = {"slope.kind": "profile", "slope.profile": str(profile), "solver.method": "fast"}
     run = simulate(load_scenario(name, changes=changes))
     assert run.outcome == "finished"
-    course = run.scenario.course
-    assert course is not None
+    course = present(run.scenario.course)
     assert [each.outcome for each in time_gates(course, run).passages] == 20 * ["passed"]
     assert run.energy_balance_error == pytest.approx(0.0, abs=1e-3)

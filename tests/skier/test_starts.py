@@ -1,7 +1,5 @@
 """Skidded turns from disturbed starts on unknown snow, as the benchmark of the skier has them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The parts of a skier that pivots, by hand: what it sees, its posture, its limits, the plan, the yaw, the grip."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

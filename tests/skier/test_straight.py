@@ -1,7 +1,5 @@
 """A wedge and a side-slip, down the fall line to a stop."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -17,6 +17,7 @@ from skisnow.scenario.boots import read_boots
 from skisnow.simulation.run import Run
 from skisnow.simulation.run_tables import boots_text, write_boots
 from tests.coded import raises
+from tests.present import present
 
 
 def turn(**changes: object) -> Scenario:
@@ -35,27 +36,25 @@ def test_boots_driven_back_give_the_forces_of_the_run(own: Run, tmp_path: Path) 
     driven = simulate(turn(run__duration_s=0.3, run__output_ms=1.0, boots__file=str(file)))
     assert driven.outcome == "finished"
     assert own.boots is not None
-    assert driven.boots is not None
     assert driven.place == pytest.approx(own.place, abs=1e-9)
     size = np.linalg.norm(own.boots.own_force, axis=-1).mean()
-    apart = np.linalg.norm(driven.boots.own_force - own.boots.own_force, axis=-1) / size
+    apart = np.linalg.norm(present(driven.boots).own_force - own.boots.own_force, axis=-1) / size
     assert apart[own.time > 0.1].max() < 0.01
     assert np.sqrt(np.mean(apart**2)) < 0.02
-    assert driven.boots.force.mean(axis=0) == pytest.approx(own.boots.force.mean(axis=0), abs=0.01 * size)
+    assert present(driven.boots).force.mean(axis=0) == pytest.approx(own.boots.force.mean(axis=0), abs=0.01 * size)
     assert driven.energy_balance_error == pytest.approx(0.0, abs=1e-3)
     assert abs(driven.energies["boots"][-1]) > 1.0
 
 
 def test_forces_are_the_sledge_s_acceleration(own: Run) -> None:
     """Both boots together move the sledge's own mass: F + m g = m a, by differences in time."""
-    assert own.boots is not None
     sledge = own.scenario.sledge
     centre = own.place + own.attitude @ [sledge.centre_of_mass[0], 0.0, sledge.centre_of_mass[1]]
     acceleration = np.gradient(np.gradient(centre, own.time, axis=0), own.time, axis=0)
     slope = own.scenario.slope.angle  # type: ignore[union-attr]
     gravity = 9.81 * np.array([np.sin(slope), 0.0, -np.cos(slope)])
     drag = 0.5 * own.scenario.air.density * own.scenario.air.drag_area * own.speed[:, None] * own.velocity
-    found = own.boots.force.sum(axis=1) + sledge.mass * gravity - drag
+    found = present(own.boots).force.sum(axis=1) + sledge.mass * gravity - drag
     later = slice(150, -2)
     assert found[later] == pytest.approx(sledge.mass * acceleration[later], abs=0.01 * 80.0 * 9.81)
 
@@ -73,8 +72,7 @@ def test_a_function_moves_the_boots_and_the_lean_follows_the_legs() -> None:
     flat = turn(run__duration_s=0.7, sledge__edge_angle_deg=0.0, start__heading_deg=0.0)
     run = simulate(flat, boots=retract)
     assert run.outcome == "finished"
-    assert run.boots_by is not None
-    assert "retract" in run.boots_by
+    assert "retract" in present(run.boots_by)
     lean = np.arcsin(run.attitude[:, 2, 1])
     assert np.degrees(lean[-1]) == pytest.approx(-np.degrees(0.05 / 0.5), abs=1.0)
     replay = replay_of_run(run)
@@ -101,8 +99,7 @@ def test_turning_the_boots_left_is_the_mirror_of_turning_them_right(tmp_path: Pa
         run = simulate(
             turn(run__duration_s=0.5, start__heading_deg=0.0, sledge__edge_angle_deg=5.0, boots__file=str(file))
         )
-        assert run.boots is not None
-        ends.append([*run.place[-1], np.degrees(run.boots.angles[-1, 0, 0])])
+        ends.append([*run.place[-1], np.degrees(present(run.boots).angles[-1, 0, 0])])
     assert ends[0][1] > 0.005
     assert ends[0][0] == pytest.approx(ends[1][0], abs=1e-5)
     assert ends[0][1] == pytest.approx(-ends[1][1], abs=1e-5)
@@ -111,15 +108,14 @@ def test_turning_the_boots_left_is_the_mirror_of_turning_them_right(tmp_path: Pa
 
 
 def test_what_is_written_is_read(own: Run, tmp_path: Path) -> None:
-    assert own.boots is not None
     for ending in (".csv", ".mot", ".sto"):
         file = tmp_path / f"boots{ending}"
         write_boots(own, file)
         read = read_boots(file)
         assert (read.frame, read.over) == ("slope", "time")
         assert np.array_equal(read.at, own.time)
-        assert np.array_equal(read.place, own.boots.place)
-        assert read.axes == pytest.approx(own.boots.axes, abs=1e-14)
+        assert np.array_equal(read.place, present(own.boots).place)
+        assert read.axes == pytest.approx(present(own.boots).axes, abs=1e-14)
     with raises(ParameterError, "wrong_ending"):
         write_boots(own, tmp_path / "boots.txt")
 
@@ -260,10 +256,9 @@ def force_by_inertia(run: Run) -> np.ndarray:
     """Force on the boot, and mass of the ski times its acceleration without gravity (N), (n, 2, 3)."""
     slope, ski, boots = run.scenario.slope, run.scenario.ski, run.boots
     assert isinstance(slope, Plane)
-    assert boots is not None
     gravity = run.scenario.gravity * np.array([np.sin(slope.angle), 0.0, -np.cos(slope.angle)])
-    acceleration = np.gradient(np.gradient(boots.place, run.time, axis=0), run.time, axis=0)
-    return np.asarray(boots.force + ski.mass * (acceleration - gravity))
+    acceleration = np.gradient(np.gradient(present(boots).place, run.time, axis=0), run.time, axis=0)
+    return np.asarray(present(boots).force + ski.mass * (acceleration - gravity))
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from skisnow.scenario.plausibility import implausible_values
 from skisnow.simulation.simulated_run import _through_gates, simulate
 from skisnow.track.course import course_names
 from tests.coded import coded, raises
+from tests.present import present
 
 STRAIGHT = {
     "start.heading_deg": 0.0, "sledge.edge_angle_deg": 0.0, "friction.mu_0": 0.0, "drag.drag_area_m2": 0.0,
@@ -95,13 +96,11 @@ def test_folder_of_a_run_has_its_gates(straight: Run, tmp_path: Path) -> None:
 
 def test_a_course_of_the_catalogue_or_of_a_file_is_read_with_the_scenario(tmp_path: Path) -> None:
     for name in course_names():
-        course = load_scenario("carved-46m", changes={"course.name": name}).course
-        assert course is not None
+        course = present(load_scenario("carved-46m", changes={"course.name": name}).course)
         assert len(course.gates) == 20
         assert [gate.turning for gate in course.gates] == [gate.turning for gate in read_course(name).gates]
     (tmp_path / "c.csv").write_text("gate,x_m,y_m,side\n1,4,1,left\n2,9,-1,right\n", encoding="utf-8")
-    found = load_scenario("carved-46m", changes={"course.file": str(tmp_path / "c.csv")}).course
-    assert found is not None
+    found = present(load_scenario("carved-46m", changes={"course.file": str(tmp_path / "c.csv")}).course)
     assert [gate.turning for gate in found.gates] == [(4.0, 1.0), (9.0, -1.0)]
     with raises(ParameterError, "contradiction", place="carved-46m"):
         load_scenario("carved-46m", changes={"course.name": name, "course.file": str(tmp_path / "c.csv")})
