@@ -30,7 +30,7 @@ GRIP_TIME: Final = 0.05
 FIRST_GRIP: Final = 0.9
 """Measured over computed force in a skid (0.8 to 0.95 at slips of 3 to 20°)."""
 GAIN_TIME: Final = 0.02
-"""Time (s) between two solutions for the yaw (modelling assumption)."""
+"""Time (s) between two plans, with a solution for the yaw (modelling assumption)."""
 EDGE_AHEAD: Final = 0.06
 """Time (s) by which the edge leads, since its filter lags (derived: two over the filter's rate)."""
 REACH: Final = 0.85
@@ -110,19 +110,23 @@ class SkidControl:
     _balanced: Smoothed = field(default_factory=lambda: Smoothed(FORCE_TIME))
     _gain: FloatArray = field(default_factory=lambda: np.zeros((2, 7)))
     _since: float = math.inf
+    _planned: Planned = field(init=False)
 
     def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
         """Command to the body until the next call."""
         self._learn(seen, posture)
-        planned = self._planned(seen)
+        self._since += dt
+        if self._since > GAIN_TIME - 1e-9:
+            self._since = 0.0
+            self._look_ahead(seen)
+        planned = self._planned
         if planned.stands:
             edge = math.copysign(max(abs(posture.edge), STANDING_EDGE), posture.edge)
             return standing(seen, posture, (edge, edge))
-        slips = self._slips(seen, planned)
-        self.slip = float(slips[0])
-        self.balance = self._balance(seen, posture, planned, dt)
-        edge = self._edge(seen, posture, planned)
-        torque, shift = self._yaw(seen, posture, planned, slips, dt)
+        soon = float(np.interp(EDGE_AHEAD + self._since, AHEAD, planned.force))
+        self.balance = self._balance(seen, posture, soon, dt)
+        edge = self._edge(seen, posture, soon)
+        torque, shift = self._yaw(seen, posture)
         return Command(
             edge=(edge, edge),
             hip_torque=torque,
@@ -132,11 +136,16 @@ class SkidControl:
             load=self.body.mass * self.gravity.normal,
         )
 
-    def _planned(self, seen: Seen) -> Planned:
-        """The plan, limited by the largest lean."""
-        found = self.plan.ahead(seen, self.gravity)
-        most = self.gravity.normal * math.tan(self.skier.greatest_lean)
-        return replace(found, force=np.clip(found.force, -most, most))
+    def _look_ahead(self, seen: Seen) -> None:
+        """Plan, limited by the largest lean, with its slip and the gain of the yaw."""
+        found, normal = self.plan.ahead(seen, self.gravity), self.gravity.normal
+        most = normal * math.tan(self.skier.greatest_lean)
+        self._planned = planned = replace(found, force=np.clip(found.force, -most, most))
+        slips = self._slips(seen, planned)
+        self.slip = float(slips[0])
+        if not planned.stands:
+            heading = heading_ahead(planned, slips, normal, self.body.height, seen.speed)
+            self._gain = yaw_gain(planned, heading, slips, self.body, normal, seen.speed)
 
     def _slips(self, seen: Seen, planned: Planned) -> FloatArray:
         """Angle of the skis against the path (rad) that brakes as much as is needed, over the plan."""
@@ -150,7 +159,7 @@ class SkidControl:
         share = np.clip((force - 0.3) / 1.2, 0.0, 1.0)
         return np.asarray(slip * np.sign(planned.force) * share**2 * (3.0 - 2.0 * share))
 
-    def _balance(self, seen: Seen, posture: Posture, planned: Planned, dt: float) -> Balance:
+    def _balance(self, seen: Seen, posture: Posture, soon: float, dt: float) -> Balance:
         """Capture point, and the centre of pressure that leads it to where the plan has it."""
         gravity, height = self.gravity.normal, self.body.height
         slides = min(1.0, max(0.0, (abs(seen.slip) - BLADE) / (SLIDER - BLADE)))
@@ -163,9 +172,10 @@ class SkidControl:
         if seen.bears:
             now = seen.height * (seen.across / seen.load - blade * posture.acceleration / gravity)
             self._balanced.step(now, dt)
-        weights = np.exp(-rate * AHEAD)
-        foreseen = float(weights @ planned.force / weights.sum()) / math.cos(self.slip)
-        share = math.tanh(float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / (0.15 * gravity))
+        weights, force = np.exp(-rate * AHEAD), self._planned.force
+        mean, first = float(weights @ force / weights.sum()), float(force[0])
+        foreseen = (first + (mean - first) * math.exp(rate * self._since)) / math.cos(self.slip)  # the first one lasts
+        share = math.tanh(soon / (0.15 * gravity))
         outer = share * (BY_EDGE - (self.skier.outer_share - 0.5) * self.stance_width)
         wanted = seen.height * foreseen / gravity + outer
         moving = seen.aside_rate if seen.lifted or not seen.bears else posture.aside_rate
@@ -174,15 +184,14 @@ class SkidControl:
         pressure = max(-reach, min(reach, outer + (1.0 + self.skier.leg_gain) * error))
         return Balance(self._balanced.value, wanted, error, pressure, rate)
 
-    def _edge(self, seen: Seen, posture: Posture, planned: Planned) -> float:
+    def _edge(self, seen: Seen, posture: Posture, soon: float) -> float:
         """Edge angle (rad) that gives the planned force, with the correction for balance."""
         mass, gravity = self.body.mass, self.gravity.normal
-        planned_force = float(np.interp(EDGE_AHEAD, AHEAD, planned.force)) / math.cos(self.slip)
-        asked = planned_force + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)
+        asked = soon / math.cos(self.slip) + self.skier.edge_gain * gravity * self.balance.error / max(seen.height, 0.1)
         asked = max(-BOUND, min(BOUND, asked))
         outer = self.skier.outer_share * mass * gravity  # planned loads: measured ones would feed a bounce back
         angle = self.snow.edge(mass * abs(asked), (outer, mass * gravity - outer), self.grip)
-        if abs(posture.edge) < SLIDING and planned.heading is None:
+        if abs(posture.edge) < SLIDING and self._planned.heading is None:
             angle = min(angle, max(math.radians(0.2), 2.0 * seen.slip * math.copysign(1.0, asked)))
         return math.copysign(angle, asked)
 
@@ -196,14 +205,8 @@ class SkidControl:
         found = max(0.3, min(2.5, abs(seen.across) / max(expected, 50.0)))
         self.grip += min(1.0, dt / GRIP_TIME) * (found - self.grip)
 
-    def _yaw(self, seen: Seen, posture: Posture, planned: Planned, slips: FloatArray, dt: float) -> tuple[float, float]:
+    def _yaw(self, seen: Seen, posture: Posture) -> tuple[float, float]:
         """Torque of the hips (N m) and acceleration of the shift (m/s²)."""
-        self._since += dt
-        if self._since > GAIN_TIME - 1e-9:
-            self._since = 0.0
-            normal = self.gravity.normal
-            heading = heading_ahead(planned, slips, normal, self.body.height, seen.speed)
-            self._gain = yaw_gain(planned, heading, slips, self.body, normal, seen.speed)
         torque, shift = -self._gain @ yaw_state(seen, float(posture.numbers[0]), float(posture.rates[0]))
         torque, hip = float(torque), seen.body_heading - seen.heading
         most = self.skier.hip_torque

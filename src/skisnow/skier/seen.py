@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, Protocol
 
+import numpy as np
+
 from .._support.arrays import FloatArray
-from ..geometry.vectors import Vector, applied, combined, cross, dot, minus, plus, times, unit
+from ..geometry.vectors import Vector, combined, cross, minus, plus, times, unit
 
 BEARING: Final = 0.2
 """Share of the weight below which the loads tell nothing (modelling assumption: a leap has all but begun)."""
@@ -128,72 +131,73 @@ def seen_at(
     weight: weight of the skier (N).
     yaw_inertia: moment of inertia of the body (kg m²).
     """
-    rotation, spin = moment.rotation.tolist(), moment.velocity[3:].tolist()
-    boots, wrench = moment.boots.tolist(), moment.wrench.tolist()
-    upright = normal.tolist()
-    up = combined(upright, rotation)
-    middle, direction, rate, turning = (times(0.5, plus(boots[0][i], boots[1][i])) for i in (0, 1, 4, 5))
-    tilt = dot(direction, up)
-    ahead = unit(minus(direction, times(tilt, up)))
-    left = cross(up, ahead)
-    forces, moments = ([combined(wrench[k][i : i + 3], boots[k][1:4]) for k in (0, 1)] for i in (0, 3))
-    centre = (centre_of_mass[0], 0.0, centre_of_mass[1])
+    surface, position = _surface_axes(normal.tolist()), moment.position.tolist()
+    frame = moment.rotation if surface is LEVEL else np.array(surface) @ moment.rotation
+    boots = moment.boots @ frame.T  # these and the vectors below: down the slope, to the left, off the snow
+    (force, twist), (force_right, twist_right) = (moment.wrench.reshape(2, 2, 3) @ boots[:, 1:4]).tolist()
+    (forward, _, upward), (moved, spin) = frame.T.tolist(), (moment.velocity.reshape(2, 3) @ frame.T).tolist()
+    middle, direction, *_, rate, turning = (0.5 * (boots[0] + boots[1])).tolist()
+    centre = plus(times(centre_of_mass[0], forward), times(centre_of_mass[1], upward))
     leg = minus(centre, middle)
-    leg_rate = minus(cross(spin, leg), rate)
-    loads, total = [dot(force, up) for force in forces], plus(*forces)
-    load = loads[0] + loads[1]
-    half = minus(boots[0][0], middle)  # from the middle to the left boot
-    twist = plus(cross(half, minus(*forces)), plus(*moments))
-    bears = load > BEARING * weight
-    down, aside = (combined(each, rotation) for each in _down_and_left(upright))
-    way = plus(moment.velocity[:3].tolist(), cross(spin, centre))
+    leg_rate, way = minus(cross(spin, leg), rate), plus(moved, cross(spin, centre))
     step = minus(way, leg_rate)  # velocity of the feet
-    feet, mass = (dot(step, down), dot(step, aside)), (dot(way, down), dot(way, aside))
-    course = math.atan2(feet[1], feet[0])
-    heading = math.atan2(dot(ahead, aside), dot(ahead, down))
-    position = moment.position.tolist()
-    place, foot = (plus(position, applied(rotation, each)) for each in (centre, middle))
-    lean = math.atan2(dot(leg, left), dot(leg, up))
-    hip = math.atan2(math.cos(lean) * left[0] - math.sin(lean) * up[0], ahead[0])
+    place, foot = (plus(position, combined(each, surface)) for each in (centre, middle))
+    heading, course = (math.atan2(each[1], each[0]) for each in (direction, step))
+    cosine, sine = math.cos(heading), math.sin(heading)
+    half = minus(boots[0, 0].tolist(), middle)  # from the middle to the left boot
+    both = plus(cross(half, minus(force, force_right)), plus(twist, twist_right))
+    (ahead, aside), (ahead_rate, aside_rate), (along, across), (rolling, tilting), (body_ahead, body_left) = (
+        (cosine * each[0] + sine * each[1], cosine * each[1] - sine * each[0])
+        for each in (leg, leg_rate, plus(force, force_right), both, forward)
+    )
+    left, right, height = force[2], force_right[2], leg[2]
+    load, length = left + right, math.hypot(aside, height)
+    bears = load > BEARING * weight
     return Seen(
         time=moment.time,
-        aside=dot(leg, left),
-        aside_rate=dot(leg_rate, left),
-        ahead=dot(leg, ahead),
-        ahead_rate=dot(leg_rate, ahead),
-        height=dot(leg, up),
-        pressure=max(-FARTHEST, min(FARTHEST, dot(twist, ahead) / load)) if bears else 0.0,
-        left=loads[0],
-        right=loads[1],
-        across=dot(total, left),
-        along=dot(total, ahead),
-        moment=dot(twist, up),
+        aside=aside,
+        aside_rate=aside_rate,
+        ahead=ahead,
+        ahead_rate=ahead_rate,
+        height=height,
+        pressure=max(-FARTHEST, min(FARTHEST, rolling / load)) if bears else 0.0,
+        left=left,
+        right=right,
+        across=across,
+        along=along,
+        moment=both[2],
         place=(place[0], place[1]),
-        speed=math.hypot(*mass),
-        course=math.atan2(mass[1], mass[0]),
+        speed=math.hypot(way[0], way[1]),
+        course=math.atan2(way[1], way[0]),
         feet=(foot[0], foot[1]),
-        feet_speed=math.hypot(*feet),
+        feet_speed=math.hypot(step[0], step[1]),
         feet_course=course,
         heading=heading,
-        turn_rate=dot(plus(spin, turning), up),
+        turn_rate=spin[2] + turning[2],
         slip=math.remainder(heading - course, 2.0 * math.pi),
-        body_heading=heading + hip,
-        body_rate=dot(spin, up),
+        body_heading=heading + math.atan2((height * body_left - aside * forward[2]) / length, body_ahead),
+        body_rate=spin[2],
         yaw_inertia=yaw_inertia,
-        edge=(_edge(boots[0], up), _edge(boots[1], up)),
+        edge=(_edge(*boots[0, 2:4, 2].tolist()), _edge(*boots[1, 2:4, 2].tolist())),
         bears=bears,
-        lifted=bears and min(loads) < LIFTED * load,
-        pitching=dot(leg, up) * dot(total, ahead) - load * dot(leg, ahead) - dot(twist, left),
-        pitch=math.asin(max(-1.0, min(1.0, tilt))),
+        lifted=bears and min(left, right) < LIFTED * load,
+        pitching=height * along - load * ahead - tilting,
+        pitch=math.asin(max(-1.0, min(1.0, direction[2]))),
     )
 
 
-def _edge(boot: list[Vector], up: Vector) -> float:
-    """Edge angle (rad) of one boot, given by position, axes ahead, left and up, and two rates."""
-    return math.atan2(-dot(boot[2], up), dot(boot[3], up))
+def _edge(left: float, off: float) -> float:
+    """Edge angle (rad) of a boot by how far its axes to the left and off the base point off the snow."""
+    return math.atan2(-left, off)
 
 
-def _down_and_left(normal: Vector) -> tuple[Vector, Vector]:
-    """Unit vectors in the surface with this normal: towards x as seen from above, and to the left."""
+LEVEL: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+"""Axes of a level surface."""
+
+
+def _surface_axes(normal: Vector) -> Sequence[Vector]:
+    """Unit vectors of a surface with this normal: towards x as seen from above, to the left, off it."""
+    if normal[2] == 1.0:
+        return LEVEL
     down = unit((normal[2], 0.0, -normal[0]))
-    return down, cross(normal, down)
+    return down, cross(normal, down), normal
