@@ -7,7 +7,7 @@ import sys
 import xml.etree.ElementTree as ET
 import zipfile
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,8 +15,10 @@ from typing import cast
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from skisnow import load_scenario, simulate
+from skisnow import BootMoment, BootPose, load_scenario, simulate
+from skisnow._support.arrays import FloatArray
 from skisnow._support.errors import ParameterError
 from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.geometry.surfaces import Grid
@@ -26,6 +28,7 @@ from skisnow.interop.fmu.writing import Version
 from skisnow.scenario.snow_map import SnowMap
 from skisnow.simulation.run_setup import laid_out
 from skisnow.simulation.sledge_body import rotation
+from skisnow.skier import BalancedSkier, Command, Posture, Seen
 from tests.coded import raises
 from tests.present import present
 
@@ -47,6 +50,13 @@ SLEDGE_OUTPUTS = tuple(
         ("velocity", 3),
         *((f"{side}.boot_{what}", 3) for side in ("left", "right") for what in ("force", "moment")),
     )
+    for i in range(1, count + 1)
+)
+MOVING_OUTPUTS = (*SLEDGE_OUTPUTS[:10], *(f"angular_velocity[{i}]" for i in (1, 2, 3)), *SLEDGE_OUTPUTS[10:])
+BOOT_INPUTS = tuple(
+    f"{side}.boot_{what}[{i}]"
+    for side in SIDES
+    for what, count in (("position", 3), ("quaternion", 4), ("velocity", 3), ("angular_velocity", 3))
     for i in range(1, count + 1)
 )
 
@@ -95,6 +105,52 @@ def test_a_sledge_goes_as_the_run_does(sledge: Fmu) -> None:
         assert np.array_equal(found[10:], own.ravel())
         if number + 1 < len(run.time):
             steps(instance, number, number + 1)
+
+
+class Swaying:
+    """Edges that swing, balance by the capture point, hips, shift and toes that move."""
+
+    def command(self, seen: Seen, posture: Posture, dt: float) -> Command:
+        del posture, dt
+        edge, sway = 0.15 * np.sin(6.0 * seen.time), seen.aside + seen.aside_rate / 3.5
+        aside, toe = 12.0 * (seen.aside - 1.7 * sway), 0.05 * min(1.0, seen.time)
+        return Command(
+            (edge, edge), hip_torque=-20.0 * edge, ahead=2.0 * edge, aside=aside, pressure=1.7 * sway, load=800.0,
+            toe=(-toe, toe),
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_controller_outside_moves_the_boots_as_it_does_in_a_run(fmi: Version, tmp_path: Path) -> None:
+    """Steps of the control's period: the observations, speeds, loads and edges are the same up to rounding."""
+    changes = {"solver.method": "fast", "start.heading_deg": 5.0}
+    scenario = load_scenario("skier-10deg", changes=changes).with_(duration_s=0.5)
+    within, outside = BalancedSkier(scenario, Swaying()), BalancedSkier(scenario, Swaying())
+    simulate(scenario, boots=within)
+    instance = Fmu(write_sledge_fmu(scenario, tmp_path / "skier.fmu", fmi=fmi), tmp_path).instance()
+    instance.begin()
+    poses: Sequence[BootPose] = outside.posture.poses()
+    period = outside.period
+    for number in range(len(within.records)):
+        out = instance.get(MOVING_OUTPUTS)
+        turned, now = rotation(out[3:7]), number * period
+        velocity = np.concatenate([turned.T @ out[7:10], turned.T @ out[10:13]])
+        boots = np.array([pose.numbers.reshape(6, 3) for pose in poses])
+        poses = outside(BootMoment(now, now + period, 0.0, out[:3], turned, velocity, boots, out[13:].reshape(2, 6)))
+        instance.set(dict(zip(BOOT_INPUTS, np.concatenate([inputs_of(pose) for pose in poses]), strict=True)))
+        instance.step(now, period)
+    for own, other in zip(within.records, outside.records, strict=True):
+        for name in ("place", "speed", "left", "right", "edge", "heading", "body_heading", "moment", "pressure"):
+            assert getattr(other.seen, name) == pytest.approx(getattr(own.seen, name), rel=1e-6, abs=1e-6), name
+    assert abs(within.records[-1].seen.aside) > 1e-3
+    with pytest.raises(AssertionError, match="bytes"):
+        instance.to_bytes(instance.state())
+
+
+def inputs_of(pose: BootPose) -> FloatArray:
+    """Place, quaternion and rates of a boot, as an FMU has them."""
+    quaternion = np.roll(Rotation.from_matrix(pose.axes.T).as_quat(), 1)
+    return np.concatenate([pose.place, quaternion, pose.velocity, pose.turning])
 
 
 def test_a_sledge_is_pushed_and_begins_when_and_as_fast_as_it_is_reported(sledge: Fmu) -> None:
@@ -404,6 +460,4 @@ def test_wrong_names_numbers_and_scenarios_are_rejected(tmp_path: Path) -> None:
         write_sledge_fmu(SCENARIO, tmp_path / "sledge.fmu", fmi=1)  # type: ignore[arg-type]
     with raises(ParameterError, "out_of_range", skis=3):
         write_contact_fmu(SCENARIO, tmp_path / "contact.fmu", skis=3)
-    with raises(ParameterError, "not_supported"):
-        write_sledge_fmu(load_scenario("skier-10deg"), tmp_path / "skier.fmu")
     assert not list(tmp_path.iterdir())

@@ -25,7 +25,7 @@ std::string contact_data(const Snow& snow, const SnowContact& contact, const Arr
 }
 
 std::string sledge_data(const Snow& snow, const SnowContact& contact, const Dynamics& dynamics, const Array& inertia,
-                        double at_rest, const Array& start) {
+                        double at_rest, const Array& start, int moving) {
   Fields out = begun(1, snow, contact, start);
   put_body(dynamics.body(), out);
   put_rule(dynamics.rule(), out);
@@ -34,6 +34,7 @@ std::string sledge_data(const Snow& snow, const SnowContact& contact, const Dyna
   out.put("pose", pose);
   out.put("inertia", copied(inertia));
   out.put("at_rest", at_rest);
+  out.put("moving", double(moving));
   return out.text();
 }
 

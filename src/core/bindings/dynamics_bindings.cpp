@@ -18,9 +18,7 @@ FlexibleSki flexible_ski(const Array& boot, const Array& axes, const Array& unkn
   std::copy_n(boot.data(), 3, out.boot.begin());
   for (int c = 0; c < 3; c++) std::copy_n(axes.data() + 3 * c, 3, out.axes[c].begin());
   for (std::size_t i = 0; i < unknown.size(); i++) out.unknown.push_back(int(unknown.data()[i]));
-  out.mass = copied(mass);
-  out.stiffness = copied(stiffness);
-  out.coupling = copied(coupling);
+  out.mass = copied(mass), out.stiffness = copied(stiffness), out.coupling = copied(coupling);
   out.damping = damping;
   out.prepare();
   return out;
@@ -31,30 +29,25 @@ Body body(const Array& inertia, double mass, const Array& first_moment, std::vec
   Body out;
   std::copy_n(inertia.data(), 36, &out.inertia[0][0]);
   out.mass = mass;
-  std::copy_n(first_moment.data(), 3, out.first_moment.begin());
+  out.first_moment = vector_at(first_moment.data()), out.gravity = vector_at(gravity.data());
   out.skis = std::move(skis);
-  std::copy_n(gravity.data(), 3, out.gravity.begin());
-  out.drag = drag;
-  out.drag_height = drag_height;
+  out.drag = drag, out.drag_height = drag_height;
   return out;
 }
 
-// Rows of (skis, 31), one for each boot: start, place (4, 3), turn (3, 3) and axes (3, 3).
+// Rows of (skis, 38), one for each boot: start and end (s), and its poses there as 18 numbers.
 void move_boots(Dynamics& self, const Array& motions) {
-  constexpr std::size_t ROW = 31;
-  std::vector<BootMotion> out(motions.size() / ROW);
-  for (std::size_t k = 0; k < out.size(); k++) {
-    const double* row = motions.data() + ROW * k;
-    out[k].start = row[0];
-    for (std::size_t i = 0; i < 4; i++) std::copy_n(row + 1 + 3 * i, 3, out[k].place[i].begin());
-    for (std::size_t i = 0; i < 3; i++) std::copy_n(row + 13 + 3 * i, 3, out[k].turn[i].begin());
-    std::copy_n(row + 22, 9, &out[k].axes[0][0]);
+  std::vector<BootMotion> out;
+  for (const double* row = motions.data(); row != motions.data() + motions.size(); row += 38) {
+    BootPose ends[2];
+    for (std::size_t i = 0; i < 12; i++) ends[i / 6][i % 6] = vector_at(row + 2 + 3 * i);
+    out.push_back(BootMotion::between(row[0], row[1], ends[0], ends[1]));
   }
   self.move_boots(std::move(out));
 }
 
 void set_push(Dynamics& self, const Array& force, const Array& at) {
-  self.set_push({force.data()[0], force.data()[1], force.data()[2]}, {at.data()[0], at.data()[1], at.data()[2]});
+  self.set_push(vector_at(force.data()), vector_at(at.data()));
 }
 
 // Motion of a boot against the body: place, rows of the axes, velocity and angular velocity.

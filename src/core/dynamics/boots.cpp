@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace skisnow {
 
 namespace {
 
-// A vector of the carrier's frame in the ski's axes.
-Vector3 in_axes(const FlexibleSki& ski, const Vector3& v) {
-  return {dot(ski.axes[0], v), dot(ski.axes[1], v), dot(ski.axes[2], v)};
-}
+// A vector of the carrier's frame in a ski's axes.
+Vector3 in_axes(const Vector3* axes, const Vector3& v) { return {dot(axes[0], v), dot(axes[1], v), dot(axes[2], v)}; }
 
 // Angular velocity in the turned axes, of a rotation vector and its rate: the right Jacobian of the exponential.
 Vector3 angular_velocity(const Vector3& turn, const Vector3& rate) {
@@ -19,6 +18,22 @@ Vector3 angular_velocity(const Vector3& turn, const Vector3& rate) {
   const double twice = angle > 1e-4 ? (angle - std::sin(angle)) / (square * angle) : 1.0 / 6.0 - square / 120.0;
   const Vector3 first = cross(turn, rate);
   return rate - once * first + twice * cross(turn, first);
+}
+
+// Its inverse, for an angular velocity and turns well below 2 π.
+Vector3 rate_of_turn(const Vector3& turn, const Vector3& spin) {
+  const double angle = std::sqrt(dot(turn, turn));
+  const double twice = angle > 1e-3 ? 1.0 / (angle * angle) - 0.5 / (angle * std::tan(0.5 * angle)) : 1.0 / 12.0;
+  const Vector3 first = cross(turn, spin);
+  return spin + 0.5 * first + twice * cross(turn, first);
+}
+
+// Linear, square and cubic coefficient of a cubic that goes a way within a span (s), with its rates at both ends.
+void fill_cubic(double span, const Vector3& way, const Vector3& rate, const Vector3& rate_end, Vector3* out) {
+  const Vector3 mean = (1.0 / span) * way;
+  out[0] = rate;
+  out[1] = (1.0 / span) * (3.0 * mean - 2.0 * rate - rate_end);
+  out[2] = (1.0 / (span * span)) * (rate + rate_end - 2.0 * mean);
 }
 
 }  // namespace
@@ -40,9 +55,26 @@ void BootMotion::set(double time, FlexibleSki& stage) const {
   stage.turning = stage.in_body(angular_velocity(angle, rate));
 }
 
+BootMotion BootMotion::between(double start, double end, const BootPose& first, const BootPose& last) {
+  BootMotion out{start, {first[0]}, {}, {}};
+  double by[3][3];  // rotation from the first axes to the last, in the first
+  for (std::size_t c = 0; c < 3; c++)
+    for (std::size_t a = 0; a < 3; a++) out.axes[c][a] = first[1 + c][a], by[c][a] = dot(first[1 + c], last[1 + a]);
+  const Vector3 twist = 0.5 * Vector3{by[2][1] - by[1][2], by[0][2] - by[2][0], by[1][0] - by[0][1]};
+  const double sine = std::sqrt(dot(twist, twist));
+  const double angle = std::atan2(sine, 0.5 * (by[0][0] + by[1][1] + by[2][2] - 1.0));
+  if (!(angle <= 1.0 && start < end)) throw std::invalid_argument("a boot turns by more than a radian in a step");
+  const Vector3 turn = (sine > 1e-12 ? angle / sine : 1.0) * twist;
+  fill_cubic(end - start, last[0] - first[0], first[4], last[4], out.place + 1);
+  const Vector3 rate = in_axes(&first[1], first[5]), rate_end = rate_of_turn(turn, in_axes(&last[1], last[5]));
+  fill_cubic(end - start, turn, rate, rate_end, out.turn);
+  return out;
+}
+
 void carry_rates(const FlexibleSki& stage, const Numbers& rates, double* out) {
   const Vector3 v = vector_at(rates.data()), o = vector_at(rates.data() + 3);
-  const Vector3 a = in_axes(stage, v + cross(o, stage.boot) + stage.velocity), b = in_axes(stage, o + stage.turning);
+  const Vector3 a = in_axes(stage.axes, v + cross(o, stage.boot) + stage.velocity);
+  const Vector3 b = in_axes(stage.axes, o + stage.turning);
   std::copy(a.begin(), a.end(), out);
   std::copy(b.begin(), b.end(), out + 3);
 }
@@ -99,7 +131,7 @@ void MovingSki::accept() {
 }
 
 double MovingSki::power(const FlexibleSki& stage) const {
-  const Vector3 v = in_axes(stage, stage.velocity), o = in_axes(stage, stage.turning);
+  const Vector3 v = in_axes(stage.axes, stage.velocity), o = in_axes(stage.axes, stage.turning);
   double taken = 0.0;
   for (std::size_t a = 0; a < 3; a++) taken += residual_[a] * v[a] + residual_[a + 3] * o[a];
   return -taken;

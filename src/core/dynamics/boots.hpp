@@ -10,6 +10,9 @@
 
 namespace skisnow {
 
+// A boot in the body's frame: its place, axes ahead, left and off the base, velocity and angular velocity.
+using BootPose = std::array<Vector3, 6>;
+
 // Motion of a boot against the body, in the body's frame: its place, and the rotation vector from its axes at the
 // beginning, in those axes, are cubics in the time since then.
 struct BootMotion {
@@ -19,6 +22,8 @@ struct BootMotion {
   double axes[3][3] = {};  // at the beginning, rows ahead, left and up
 
   void set(double time, FlexibleSki& stage) const;  // boot, axes and their rates
+  // From one pose to another, which it meets with their rates. Throws std::invalid_argument beyond a turn of 1 rad.
+  static BootMotion between(double start, double end, const BootPose& first, const BootPose& last);
 };
 
 // From the rates of a body to those of a ski on it, in the ski's axes.

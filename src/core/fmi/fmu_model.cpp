@@ -69,14 +69,11 @@ FmuContact::FmuContact(const Fields& data)
   take_counts(data, SNOW_PARAMETERS, (POSE + MOTION) * count, WRENCH * count);
 }
 
-FmuContact::FmuContact(const FmuContact& other)
-    : FmuModel(other),
-      snow_(std::make_shared<Snow>(*other.snow_)),
-      runners_(other.runners_),
-      spacing_(other.spacing_),
-      accepted_(other.accepted_),
-      contact_(other.contact_) {
-  if (contact_) contact_->set_snow(snow_);
+std::unique_ptr<FmuModel> FmuContact::copy() const {
+  auto out = std::make_unique<FmuContact>(*this);
+  out->snow_ = std::make_shared<Snow>(*snow_);
+  if (contact_) out->contact_->set_snow(out->snow_);
+  return out;
 }
 
 // Those that differ from what the data have, which may vary over the place.
@@ -153,26 +150,36 @@ FmuSledge::FmuSledge(const Fields& data)
   std::copy_n(place.begin(), 3, dynamics_.state.position.begin());
   std::copy_n(place.begin() + 3, 9, &dynamics_.state.rotation[0][0]);
   dynamics_.set_skis(data.at("inertia", dynamics_.body().skis.size() * BODY * BODY));
-  take_counts(data, 1, 6, POSE + MOTION + WRENCH * contact_.runners());
+  boots_.resize(std::size_t(data.whole("moving")));
+  take_counts(data, 1, 6 + (POSE + MOTION) * int(boots_.size()), POSE + MOTION + WRENCH * contact_.runners());
 }
 
-FmuSledge::FmuSledge(const FmuSledge& other)
-    : FmuModel(other),
-      snow_(std::make_shared<Snow>(*other.snow_)),
-      contact_(other.contact_),
-      dynamics_(other.dynamics_),
-      at_rest_(other.at_rest_),
-      begun_(other.begun_) {
-  contact_.set_snow(snow_);
-  dynamics_.set_contact(contact_);
+std::unique_ptr<FmuModel> FmuSledge::copy() const {
+  auto out = std::make_unique<FmuSledge>(*this);
+  out->contact_.set_snow(out->snow_ = std::make_shared<Snow>(*snow_));
+  out->dynamics_.set_contact(out->contact_);
+  return out;
 }
 
-void FmuSledge::push() {
-  const double* given = input();
-  dynamics_.set_push({given[0], given[1], given[2]}, {given[3], given[4], given[5]});
+void FmuSledge::push() { dynamics_.set_push(vector_at(input()), vector_at(input() + 3)); }
+
+// From where the boots are, or at rest, to the inputs.
+void FmuSledge::move_boots(double from, double to, bool at_rest) {
+  std::vector<BootMotion> motions;
+  const double* given = input() + 6;
+  for (BootPose& now : boots_) {
+    double axes[3][3];
+    take_quaternion(given + 3, axes);
+    BootPose next{vector_at(given), {}, {}, {}, vector_at(given + POSE), vector_at(given + POSE + 3)};
+    for (std::size_t c = 0; c < 3; c++) next[1 + c] = {axes[0][c], axes[1][c], axes[2][c]};
+    motions.push_back(BootMotion::between(from, to, at_rest ? next : now, next));
+    now = next, given += POSE + MOTION;
+  }
+  if (!motions.empty()) dynamics_.move_boots(std::move(motions));
 }
 
 void FmuSledge::begin(double time) {
+  move_boots(0.0, 1.0, true);
   if (!(dynamics_.settle() <= at_rest_))
     throw std::runtime_error("the sledge finds no equilibrium to start from on this snow");
   std::fill(dynamics_.state.rate.begin(), dynamics_.state.rate.end(), 0.0);
@@ -188,6 +195,7 @@ void FmuSledge::step(double from, double to) {
   require(std::fabs(from - now) <= SAME_TIME * std::max(1.0, std::fabs(now)),
           "a step begins at " + std::to_string(from) + " s; the sledge is at " + std::to_string(now) + " s");
   push();
+  move_boots(dynamics_.time, to - begun_, false);
   Advance ended;
   do ended = dynamics_.advance(to - begun_, std::numeric_limits<long>::max());
   while (ended == Advance::PAUSED);
@@ -214,9 +222,7 @@ void FmuSledge::tell() {
   put_quaternion(state.rotation, to);
   to += 4;
   for (int part = 0; part < 2; part++) {
-    const Vector3 own{state.rate[std::size_t(3 * part)], state.rate[std::size_t(3 * part + 1)],
-                      state.rate[std::size_t(3 * part + 2)]};
-    const Vector3 in_space = state.in_space(own);
+    const Vector3 in_space = state.in_space(vector_at(state.rate.data() + 3 * part));
     to = std::copy_n(in_space.begin(), 3, to);
   }
   for (int k = 0; k < contact_.runners(); k++)

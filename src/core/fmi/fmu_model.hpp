@@ -48,8 +48,7 @@ class FmuModel {
 class FmuContact : public FmuModel {
  public:
   explicit FmuContact(const Fields& data);
-  FmuContact(const FmuContact& other);
-  std::unique_ptr<FmuModel> copy() const override { return std::make_unique<FmuContact>(*this); }
+  std::unique_ptr<FmuModel> copy() const override;
   void begin(double time) override;
   void step(double from, double to) override;
   void write(ByteWriter& out) const override;
@@ -66,12 +65,12 @@ class FmuContact : public FmuModel {
   void meet(double time);
 };
 
-// A sledge on flexible skis over snow: a force on it in, its motion and what the skis do to the boots out.
+// A sledge on flexible skis over snow: a force on it in, its motion and what the skis do to the boots out; poses of the
+// boots at the end of a step in, where they move.
 class FmuSledge : public FmuModel {
  public:
   explicit FmuSledge(const Fields& data);
-  FmuSledge(const FmuSledge& other);
-  std::unique_ptr<FmuModel> copy() const override { return std::make_unique<FmuSledge>(*this); }
+  std::unique_ptr<FmuModel> copy() const override;
   void begin(double time) override;
   void step(double from, double to) override;
   void write(ByteWriter& out) const override;
@@ -82,8 +81,10 @@ class FmuSledge : public FmuModel {
   SnowContact contact_;
   Dynamics dynamics_;
   double at_rest_, begun_ = 0.0;
+  std::vector<BootPose> boots_;  // where they are, if they move
 
   void push();
+  void move_boots(double from, double to, bool at_rest);
   void tell();
 };
 

@@ -252,5 +252,11 @@ def banded_solution(factors: FloatArray, right: FloatArray, from_row: int, /) ->
 def strip_sums(intervals: FloatArray, /) -> FloatArray: ...
 def contact_data(snow: Snow, contact: Contact, start: FloatArray) -> str: ...
 def sledge_data(
-    snow: Snow, contact: Contact, dynamics: Dynamics, inertia: FloatArray, at_rest: float, start: FloatArray
+    snow: Snow,
+    contact: Contact,
+    dynamics: Dynamics,
+    inertia: FloatArray,
+    at_rest: float,
+    start: FloatArray,
+    moving: int,
 ) -> str: ...

@@ -182,7 +182,7 @@ class Posture:
             moving = combined((-ahead_rate, side * stance_rate - aside_rate, lift_rate - rise_rate), body)
             numbers = plus(arm, origin), plus(moving, cross(spin, arm)), plus(spin, turning)
             place, velocity, whole = map(np.array, numbers)
-            poses.append(BootPose(place, axes, velocity, whole))
+            poses.append(BootPose.unchecked(place, axes, velocity, whole))
         return poses
 
     def _ski(

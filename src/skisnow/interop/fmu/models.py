@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
@@ -15,7 +16,8 @@ from ...compiled import core
 from ...contact import Runner, SnowContact, SnowField
 from ...geometry.surfaces import Grid
 from ...scenario import Plane, Scenario
-from ...simulation.run_setup import AT_REST, Setup, laid_out
+from ...simulation.run_setup import AT_REST, laid_out
+from ...skier import BalancedSkier
 
 SIDES: Final = ("left", "right")
 
@@ -28,6 +30,7 @@ class Model:
     variables: in the order of their references.
     data: data of the core.
     step: that an importer may begin with (s).
+    serializes: whether its states can be stored as bytes.
     """
 
     name: str
@@ -35,6 +38,7 @@ class Model:
     variables: tuple[Variable, ...]
     data: str
     step: float
+    serializes: bool = True
 
 
 def axes_of(scenario: Scenario) -> str:
@@ -51,7 +55,10 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
     sides = SIDES if skis == len(SIDES) else ("ski",)
     runner = Runner.of(scenario.ski)
     contact = SnowContact(setup.snow, [runner] * skis, spacing=setup.numbers["line_spacing_m"])
-    inputs = [variable for k, side in enumerate(sides) for variable in _pose_variables(side, setup, k)]
+    dynamics, inputs = setup.dynamics, list[Variable]()
+    for ski, side in zip(dynamics.body.skis, sides, strict=False):
+        place = dynamics.position + dynamics.rotation @ ski.boot
+        inputs += _pose_variables(f"{side}.", place, dynamics.rotation @ ski.axes.T)
     outputs = [
         variable
         for side in sides
@@ -71,13 +78,9 @@ def contact_model(scenario: Scenario, *, skis: int, step: float) -> Model:
 
 
 def sledge_model(scenario: Scenario, *, step: float) -> Model:
-    """The sledge of a scenario on its flexible skis."""
+    """The sledge of a scenario on its flexible skis; with a skier its boots move."""
     if scenario.boots is not None:
-        raise ParameterError("boots.file: the boots of an FMU are fixed to the sledge; remove boots.file").tag(
-            "not_supported"
-        )
-    if scenario.skier is not None:
-        raise ParameterError("skier: an FMU contains a sledge with fixed boots; use a scenario without a skier").tag(
+        raise ParameterError("boots.file: an FMU gets the motion of its boots as inputs; remove boots.file").tag(
             "not_supported"
         )
     setup = laid_out(scenario)
@@ -94,18 +97,25 @@ def sledge_model(scenario: Scenario, *, step: float) -> Model:
         about = "load of the ski on its boot: ahead, left across the base, off the base"
         outputs += vector(f"{side}.boot_force", "output", "N", about, np.zeros(3))
         outputs += vector(f"{side}.boot_moment", "output", "N.m", about, np.zeros(3))
+    moving = [] if scenario.skier is None else BalancedSkier(scenario).posture.poses()
+    poses = [_pose_variables(f"{SIDES[k]}.boot_", moving[k].place, moving[k].axes.T) for k in range(len(moving))]
     inputs = (
         *vector("push.force", "input", "N", "a force besides on the sledge", np.zeros(3)),
         *vector("push.place", "input", "m", "where it acts, from the boots' middle in the sledge's axes", np.zeros(3)),
+        *itertools.chain(*poses),
     )
     speed = Variable("start.speed", "parameter", "m/s", "ahead, at the start", scenario.start.speed)
     variables = (TIME, speed, *inputs, *outputs)
     inertia = np.array([ski.inertia for ski in dynamics.body.skis])
     data = core.sledge_data(
-        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, _start_values(variables)
-    )
+        setup.snow.compiled, dynamics.contact.compiled, dynamics.compiled, inertia, AT_REST, _start_values(variables),
+        len(moving),
+    )  # fmt: skip
     about = f"A sledge on two flexible skis over snow. {axes_of(scenario)}"
-    return Model("skisnow sledge", about, variables, data, step)
+    if moving:
+        about += " Poses and motions of the boots at a step's end, in the sledge's axes, in."
+    step = step if scenario.skier is None else scenario.skier.control_period
+    return Model("skisnow sledge", about, variables, data, step, serializes=not moving)
 
 
 def _start_values(variables: tuple[Variable, ...]) -> FloatArray:
@@ -138,17 +148,14 @@ def _snow_parameters(snow: SnowField) -> tuple[Variable, ...]:
     )
 
 
-def _pose_variables(side: str, setup: Setup, ski: int) -> list[Variable]:
-    dynamics = setup.dynamics
-    place = dynamics.position + dynamics.rotation @ dynamics.body.skis[ski].boot
-    axes = dynamics.rotation @ dynamics.body.skis[ski].axes.T
+def _pose_variables(name: str, place: FloatArray, axes: FloatArray) -> list[Variable]:
+    """Inputs whose names begin so: place (m) of a boot, axes of its ski as columns, and their rates."""
+    about = "w, x, y, z: ahead, left across the base, off it"
     return [
-        *vector(f"{side}.position", "input", "m", "of the boot", place),
-        *vector(
-            f"{side}.quaternion", "input", "1", "w, x, y, z: ahead, left across the base, off it", _quaternion(axes)
-        ),
-        *vector(f"{side}.velocity", "input", "m/s", "of the boot", np.zeros(3)),
-        *vector(f"{side}.angular_velocity", "input", "rad/s", "of the ski", np.zeros(3)),
+        *vector(f"{name}position", "input", "m", "of the boot", place),
+        *vector(f"{name}quaternion", "input", "1", about, _quaternion(axes)),
+        *vector(f"{name}velocity", "input", "m/s", "of the boot", np.zeros(3)),
+        *vector(f"{name}angular_velocity", "input", "rad/s", "of the ski", np.zeros(3)),
     ]
 
 

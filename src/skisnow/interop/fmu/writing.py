@@ -67,10 +67,12 @@ def write_contact_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2,
 def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) -> Path:
     """Write an FMU of the sledge of a scenario on its flexible skis: a push in, motion and forces on the boots out.
 
+    With a skier the poses of its boots at the end of each step go in, too: the importing program controls them.
+
     Parameters
     ----------
     scenario
-        Scenario without moving boots.
+        Scenario without boots.file.
     path
         Path that ends in .fmu.
     fmi
@@ -84,7 +86,7 @@ def write_sledge_fmu(scenario: Scenario, path: str | Path, *, fmi: Version = 2) 
     Raises
     ------
     ParameterError
-        The path does not end in .fmu, this machine has no library, or the boots move.
+        The path does not end in .fmu, this machine has no library, or a file moves the boots.
     OutputError
         The file cannot be written.
 
@@ -151,7 +153,7 @@ def description(model: Model, token: str, *, fmi: Version) -> bytes:
     capabilities = {
         "modelIdentifier": IDENTIFIER,
         "canHandleVariableCommunicationStepSize": "true",
-        **dict.fromkeys(_STATE[fmi], "true"),
+        **dict(zip(_STATE[fmi], ("true", str(model.serializes).lower()), strict=True)),
     }
     ET.SubElement(root, "CoSimulation", capabilities)
     units = ET.SubElement(root, "UnitDefinitions")
