@@ -376,19 +376,6 @@ def test_a_pole_that_twists_is_taken_off(make_campaign: MakeCampaign) -> None:
     assert results["campaign"]["pole_stiffness_Nm_per_deg"] == pytest.approx(45.0)
 
 
-def test_the_stress_does_not_know_of_the_rising_part(make_campaign: MakeCampaign) -> None:
-    both = analysed_shear_tests(make_campaign, [*turned("S1"), *turned("S2", 1.0)], moment=0.2, arm=1.0).results
-    tops = [rows[6][:-1] for rows in (turned("S1"), turned("S2", 1.0))]
-    alone = skisnow.analyse(make_campaign((), tops, moment=0.2, arm=1.0), n_resamples=100).results
-    for results in (both, alone):
-        results.pop("provenance")
-        results["shear"].pop("displacement")
-        for row in results["shear"]["experiments"]:
-            for key in ("n_turning", "shear_displacement_mm", "shear_displacement_interval_mm"):
-                row.pop(key)
-    assert both == alone
-
-
 def test_two_readings_have_no_interval_and_one_has_nothing(make_campaign: MakeCampaign) -> None:
     rows = turned()
     for kept, known in (([1, 2, 6], True), ([1, 6], False)):

@@ -47,11 +47,6 @@ def test_both_radii_of_a_true_arc() -> None:
     assert ski.sidecut_radius_of_three_widths == pytest.approx(14.0 * (1.0 + math.cos(half_arc)) / 2.0, rel=1e-5)
 
 
-def test_sidecut_depth_of_a_true_arc() -> None:
-    """δ is the sagitta of the arc over the sidecut length: R - √(R² - L²/4)."""
-    assert arc_table(radius=14.0).sidecut_depth == pytest.approx(14.0 - math.sqrt(14.0**2 - 0.75**2), abs=1e-7)
-
-
 def test_tapered_ski_has_the_depth_of_its_mean_width() -> None:
     ski = arc_table(width=0.060 + 0.02 * (STATION / 0.75) ** 2 + 0.004 * STATION / 0.75)
     assert ski.sidecut_widths == pytest.approx((0.084, 0.060, 0.076), abs=1e-6)
@@ -242,13 +237,6 @@ def test_camber_shovel_and_tail_heights() -> None:
     assert boot == 0.0
     assert (front, rear) == pytest.approx((-0.007, -0.007), abs=1e-15)
     assert (tip - front, tail - rear) == pytest.approx((0.060, 0.010), abs=1e-15)
-
-
-def test_camber_half_way_to_the_contact_point() -> None:
-    """Of one curvature k = 2 c/(0.598 · 0.698) up to 0.1 m before the contact point, so k 0.349²/2 down."""
-    assert heights(BaseShape(camber=0.016), FRONT / 2.0) == pytest.approx(
-        [-0.016 * 0.349**2 / (0.598 * 0.698)], abs=1e-15
-    )
 
 
 def test_heights_left_out_are_the_stated_defaults() -> None:
