@@ -178,11 +178,7 @@ def test_store_and_json_before_or_after_actions(folder: Path, place: Path, capsy
 
 TOML = """name = "Nordhang"
 observers = ["Ada"]
-[[tool]]
-name = "ski"
-shape = "ski"
-length_mm = 200
-width_mm = 62
+tool = [{name = "ski", shape = "ski", length_mm = 200, width_mm = 62}]
 """
 
 

@@ -21,10 +21,7 @@ TOML = """
 name = "Hang"
 place = "Kühtai"
 observers = ["A. Müller"]
-[[tool]]
-name = "disc"
-shape = "disc"
-diameter_mm = 100
+tool = [{name = "disc", shape = "disc", diameter_mm = 100}]
 """
 PENETRATION = (
     "experiment,site,tool,edge_angle_deg,load_N,depth_mm,time,snow_temperature_C,air_temperature_C\n"

@@ -146,14 +146,8 @@ def test_only_known_quantities_of_a_station_become_csv(tmp_path: Path) -> None:
 TOML = """
 name = "Hang Süd"
 gauge_resolution_mm = 0.01
-[[tool]]
-name = "ski"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "blade"
-length_mm = 100
+tool = [{name = "ski", shape = "ski", length_mm = 200, width_mm = 62}]
+plate = [{name = "blade", length_mm = 100}]
 """
 PENETRATION = """experiment,site,tool,edge_angle_deg,load_N,depth_mm,branch,remark
 p1,Süd,ski,0,100,1.5,,dry

@@ -3,11 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 DESK = """name = "Desk"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
+tool = [{name = "ski piece", shape = "ski", length_mm = 200, width_mm = 62}]
 """
 SHEARED = DESK + '[[plate]]\nname = "blade"\nlength_mm = 100\n'
 SOFT, HARD = (1.5, 2.1, 2.6), (1.0, 1.4, 1.7)  # mm under 20, 40 and 60 N

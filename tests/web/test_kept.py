@@ -11,14 +11,8 @@ from .conftest import Served, follow, ready
 FILES = {
     "campaign.toml": """name = "From <a> drawer"
 observers = ["Ada", "Bo"]
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "plate"
-length_mm = 100
+tool = [{name = "ski piece", shape = "ski", length_mm = 200, width_mm = 62}]
+plate = [{name = "plate", length_mm = 100}]
 """,
     "penetration.csv": """experiment;site;tool;edge_angle_deg;load_N;depth_mm
 1;A;ski piece;30;20;1,5

@@ -25,18 +25,11 @@ COLUMNS = {
     "Probe": "sample", "Dichte": "snow_density_kg_per_m3",
 }  # fmt: skip
 TOOLS = """
-[[tool]]
-name = "ski"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[tool]]
-name = "disc"
-shape = "disc"
-diameter_mm = 100
-[[plate]]
-name = "blade"
-length_mm = 100
+tool = [
+  {name = "ski", shape = "ski", length_mm = 200, width_mm = 62},
+  {name = "disc", shape = "disc", diameter_mm = 100},
+]
+plate = [{name = "blade", length_mm = 100}]
 """
 LOADS = "1,A,ski,30,10,0.63\n1,A,ski,30,30,1.11\n1,A,ski,30,50,1.41\n"
 SHEAR = "S1,A,blade,90,5.8,250,23.1\nS2,A,blade,60,4.4,250,20.1\n"

@@ -31,14 +31,8 @@ from skisnow.campaign.store.schema import journal_entry
 TOML = """name = "a day"
 gauge_resolution_mm = 0.01
 load_steps_N = [20.0, 40.0, 60.0]
-[[tool]]
-name = "piece"
-shape = "ski"
-length_mm = 200.0
-width_mm = 62.0
-[[plate]]
-name = "p"
-length_mm = 100.0
+tool = [{name = "piece", shape = "ski", length_mm = 200.0, width_mm = 62.0}]
+plate = [{name = "p", length_mm = 100.0}]
 """
 
 
@@ -206,11 +200,7 @@ def test_names_like_formulas_are_exported_as_texts_and_read_as_they_were(store: 
 
 
 EXPORTED_TOML = """name = "Kept"
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
+tool = [{name = "ski piece", shape = "ski", length_mm = 200, width_mm = 62}]
 """
 PLAIN = """experiment,site,tool,edge_angle_deg,load_N,depth_mm
 1,A,ski piece,30,20,1.5

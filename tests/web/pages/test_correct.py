@@ -20,14 +20,8 @@ from .enter.conftest import CANCEL, undo_button
 
 TOML = """name = "From a drawer"
 observers = ["Ada", "Bo"]
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[plate]]
-name = "plate"
-length_mm = 100
+tool = [{name = "ski piece", shape = "ski", length_mm = 200, width_mm = 62}]
+plate = [{name = "plate", length_mm = 100}]
 """
 PENETRATION = """experiment;site;spot;tool;edge_angle_deg;load_N;depth_mm;remark;time;status;colour
 1;A;;ski piece;30;20;1,5;warm;;;red

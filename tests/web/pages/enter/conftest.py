@@ -16,21 +16,11 @@ TOML = """name = "Desk"
 observers = ["Ada", "Bo", "Cy"]
 load_steps_N = [20, 40.5, 60]
 gauge_resolution_mm = 0.01
-[[tool]]
-name = "ski piece"
-shape = "ski"
-length_mm = 200
-width_mm = 62
-[[tool]]
-name = "disc"
-shape = "disc"
-diameter_mm = 40
-[[plate]]
-name = "plate"
-length_mm = 100
-[[plate]]
-name = "blade"
-length_mm = 50
+tool = [
+  {name = "ski piece", shape = "ski", length_mm = 200, width_mm = 62},
+  {name = "disc", shape = "disc", diameter_mm = 40},
+]
+plate = [{name = "plate", length_mm = 100}, {name = "blade", length_mm = 50}]
 """
 PENETRATION, SHEAR, DENSITY, DROP_CONE = "penetration.csv", "shear.csv", "density.csv", "drop_cone.csv"
 SERIES = {"site": "A", "spot": "", "tool": "ski piece", "edge_angle_deg": "30"}
