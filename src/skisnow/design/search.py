@@ -11,6 +11,7 @@ import numpy as np
 
 from .._support.arrays import FloatArray
 from .._support.errors import SolverError
+from .descent import Descent
 from .evaluation import Evaluator
 from .problem import REACHED, Search
 from .result import Design, Start, design_of
@@ -90,7 +91,7 @@ def searched_starts(
 def _searched(search: Search, begin: FloatArray, z: FloatArray, *, polish: bool) -> Start:
     before = search.evaluator.equilibria
     try:
-        end = search.run(z, polish=polish)
+        end = Descent(search).run(z, polish=polish)
         return Start(begin, end, search.result(end), search.evaluator.equilibria - before)
     except SolverError:  # no ski or no equilibrium there: the start is lost
         return Start(begin, None, float("inf"), search.evaluator.equilibria - before)
