@@ -298,7 +298,10 @@ class Posture:
         self.rates[AHEAD] = later
 
     def _step_hips(self, torque: float, seen: Seen, dt: float) -> None:
-        """By the torque and the snow's moment on the boots, each turning its own inertia."""
+        """By the torque and the snow's moment on the boots, each turning its own inertia.
+
+        Rates about the normal serve as that of the hips about the leaning body: a damping that steep turns need.
+        """
         most = self.skier.hip_torque
         torque = max(-most, min(most, torque))
         self._moment += (1.0 - math.exp(-dt / MOMENT_TIME)) * (seen.moment - self._moment)
