@@ -5,6 +5,7 @@ identifications, ``web`` those of the web lab in a browser, ``contact`` those of
 ``identified`` compares identifications of many simulated tracks with those of a former commit.
 ``scenarios`` runs random scenarios and counts how they end, ``frontier`` sets error against cost of a turn, ``former``
 builds a former commit and compares the processor time of turns with it, ``ends`` the ends of the built-in scenarios.
+``counted`` counts what a step executes, with Valgrind.
 ``cases`` reads the inputs of ../shared/cases and prints their results next to the right answers.
 """
 
@@ -19,6 +20,7 @@ from pathlib import Path
 
 TURNS, IDENTIFY, WEB, CONTACT = "turns", "identify", "web", "contact"
 SCENARIOS, FRONTIER, FORMER, ENDS, CASES = "scenarios", "frontier", "former", "ends", "cases"
+COUNTED = "counted"
 IDENTIFIED = "identified"
 PARTS = (TURNS, IDENTIFY, WEB, CONTACT)
 
@@ -28,7 +30,7 @@ def main() -> None:
     parser.add_argument(
         "part",
         nargs="?",
-        choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS, CASES, IDENTIFIED],
+        choices=[*PARTS, SCENARIOS, FRONTIER, FORMER, ENDS, CASES, IDENTIFIED, COUNTED],
         help="these alone; left out: everything",
     )
     parser.add_argument("--rows", type=int, default=1_000_000, help="readings of the large campaign")
@@ -39,6 +41,9 @@ def main() -> None:
     parser.add_argument("--tries", type=int, default=5, help="to open each page of the web lab")
     parser.add_argument("--seed", type=int, default=0, help="of the first random scenario")
     parser.add_argument("--count", type=int, default=200, help="random scenarios, or tracks of identified")
+    parser.add_argument(
+        "--clock", type=float, default=3.7, help="of the processor (GHz), for the counted minimum of former"
+    )
     parser.add_argument("--any-values", action="store_true", help="scenarios with any values that the keys allow")
     parser.add_argument(
         "--out", type=Path, help="of scenarios, frontier or identified: what it holds is not computed again"
@@ -70,19 +75,25 @@ def main() -> None:
         from .turns import frontier
 
         frontier.print_table(options.out or Path("frontier.csv"), repeats=options.repeats)
-    elif options.part == FORMER:
-        from .turns import former
-
-        former.print_table(options.out or Path("former"), options.repeats)
-    elif options.part == ENDS:
-        from .turns import former
-
-        former.print_ends(options.out or Path("former"))
+    elif options.part in {FORMER, ENDS, COUNTED}:
+        _core(options)
     else:
         _everything_else(options.rows)
         print(flush=True)
         for part in PARTS:
             subprocess.run([sys.executable, "-m", "benchmarks", part, *_said(options)], check=True)
+
+
+def _core(options: argparse.Namespace) -> None:
+    from .turns import counted, former
+
+    folder = options.out or Path(options.part)
+    if options.part == FORMER:
+        former.print_table(folder, options.repeats, options.clock)
+    elif options.part == ENDS:
+        former.print_ends(folder)
+    else:
+        counted.print_table(folder, options.duration)
 
 
 def _turns(options: argparse.Namespace) -> None:
