@@ -15,7 +15,7 @@ from skisnow.estimation.errors_in_depth import volume_factor
 from skisnow.estimation.hardness import DEFINITIONS, hardness_at_largest_load
 from skisnow.estimation.parts import seating
 from skisnow.estimation.readings import Readings, ReadingUncertainty
-from skisnow.estimation.spread_groups import fit_in_groups, scatter_warning
+from skisnow.estimation.spread_groups import fit_in_groups, noisier_series_warning
 from skisnow.geometry import Disc, SkiPiece, Tool
 
 from .conftest import MakeCampaign
@@ -233,7 +233,7 @@ def test_noisier_series_among_quieter_ones_have_their_own_spreads() -> None:
     assert model.grouped_by == "scatter"
     assert np.mean(model.group == np.arange(40) % 2) > 0.85
     assert math.sqrt(model.spreads.scatter2[1] / model.spreads.scatter2[0]) == pytest.approx(4.0, rel=0.3)
-    (warning,) = scatter_warning(model, [f"P{number}" for number in range(40)])
+    (warning,) = noisier_series_warning(model, [f"P{number}" for number in range(40)])
     assert warning.fields["n"] == (model.group == 1).sum()
     assert warning.fields["first"][:2] == [f"P{number}" for number in np.flatnonzero(model.group == 1)[:2]]
 
@@ -243,7 +243,7 @@ def test_series_of_one_scatter_stay_one_group(count: int) -> None:
     for seed in range(30):
         model = in_groups(mixed_series(1.0, count=count, seed=seed))
         assert model.grouped_by == "campaign"
-        assert scatter_warning(model, ["P1"] * count) == ()
+        assert noisier_series_warning(model, ["P1"] * count) == ()
 
 
 def test_b_is_corrected_for_its_dilution() -> None:

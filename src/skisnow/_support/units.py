@@ -194,7 +194,7 @@ class Shown:
 
 
 class ShownFields(Shown):
-    """A dataclass that shows one row for each of its fields; units are in its docstring."""
+    """A dataclass displayed with one row for each field, without units, which its docstring states."""
 
     __slots__ = ()
 

@@ -73,9 +73,9 @@ class _Lines(NamedTuple):
         here = table.take(self.row, axis=-1)
         return np.asarray(here + self.share * (table.take(self.row + 1, axis=-1) - here))
 
-    def moved(self, table: FloatArray, station: FloatArray, place: FloatArray) -> FloatArray:
-        """Derivatives of these where the tables' stations and the places grow; the rows stay the same."""
-        share = (self.along(station) - place) / self.spacing
+    def by_parameter(self, table: FloatArray, station_rate: FloatArray, place_rate: FloatArray) -> FloatArray:
+        """Derivatives of `along(table)` by a parameter; rates: those of the table's stations and of the places."""
+        share = (self.along(station_rate) - place_rate) / self.spacing
         return np.asarray(share * (table[..., self.row + 1] - table[..., self.row]))
 
     def to_rows(self, by_value: FloatArray, rows: int) -> FloatArray:
@@ -86,7 +86,7 @@ class _Lines(NamedTuple):
         return np.asarray(np.bincount(ends, pair.ravel(), tables * rows), float).reshape(tables, rows)
 
     def by_station(self, table: FloatArray, by_value: FloatArray) -> FloatArray:
-        """Derivatives by the table's stations at the places, minus that with the places: the transpose of `moved`."""
+        """Derivatives by the table's stations at the places; by the places: negative. Transpose of `by_parameter`."""
         return np.asarray(np.sum(by_value * (table[:, self.row + 1] - table[:, self.row]), axis=0) / self.spacing)
 
 
@@ -133,14 +133,14 @@ def shape_growth(ski: Ski, name: str, clamp_length: float, elements: int) -> Sha
     parts = np.array([float(ski.station[-1]), -half, half, float(ski.station[0])])
     node = np.interp(mesh.node, parts, [by_station[-1], 0.0, 0.0, by_station[0]])
     place, gauss = element_places(node, STATION_POINTS).ravel(), element_places(node, GAUSS_POINTS).ravel()
-    sections = fixed.sections + mesh.stations.moved(np.array([ski.width, ski.base_height]), by_station, place)
+    sections = fixed.sections + mesh.stations.by_parameter(np.array([ski.width, ski.base_height]), by_station, place)
     stiffness = np.array([ski.bending_stiffness, ski.torsional_stiffness])
     return Shape(
         node,
         node[:-1] - node[1:],
         place,
         sections,
-        fixed.stiffness + mesh.gauss.moved(stiffness, by_station, gauss).reshape(fixed.stiffness.shape),
+        fixed.stiffness + mesh.gauss.by_parameter(stiffness, by_station, gauss).reshape(fixed.stiffness.shape),
         np.array([fixed.numbers[0], sections[0, widest], *fixed.numbers[2:]]),
         moves=True,
         widens=True,

@@ -179,7 +179,7 @@ def comparison_dict(comparison: Comparison) -> Json:
     fitted = comparison.fitted
     return {
         "schema_version": SCHEMA_VERSION,
-        **_distances_dict(comparison),
+        **_distances_of_each_kind(comparison),
         "simulated": {"name": comparison.names[0], "length_m": comparison.simulated.length},
         "measured": {"name": comparison.names[1], "length_m": comparison.measured.length},
         "dimensions": comparison.dimensions,
@@ -193,7 +193,7 @@ def comparison_dict(comparison: Comparison) -> Json:
     }
 
 
-def _distances_dict(comparison: Comparison) -> Json:
+def _distances_of_each_kind(comparison: Comparison) -> Json:
     return {kind: _distances_json(getattr(comparison, kind), comparison.measured.length) for kind in KINDS}
 
 
@@ -242,7 +242,7 @@ def _fitted_dict(fitted: FittedOffsets) -> Json:
         "slope_angle_deg": None if fitted.slope_angle is None else fitted.slope_angle / DEGREE,
         "fall_line_azimuth_deg": None if fitted.azimuth is None else fitted.azimuth / DEGREE,
         "undetermined": fitted.undetermined,
-        "before": _distances_dict(fitted.before),
+        "before": _distances_of_each_kind(fitted.before),
     }
 
 

@@ -310,7 +310,7 @@ class Dynamics:
 
     @property
     def snow_energies(self) -> tuple[float, ...]:
-        """Energies that the snow can give back: pressure, shear at edges, friction that sticks, delayed depth (J)."""
+        """Recoverable energies of the snow (J): pressure, shear at edges, sticking friction, delayed penetration."""
         return tuple(self._part("snow_energies").tolist())
 
     @property

@@ -42,7 +42,7 @@ from .regressions import (
 )
 from .screening import reading_uncertainty, screened_penetration, screened_shear
 from .snow_micro_pen import SnowMicroPenAnalysis, evaluate_recordings
-from .spread_groups import scatter_warning
+from .spread_groups import noisier_series_warning
 from .unloading import site_unloading
 from .weather import WeatherAtTests, weather_at_tests
 
@@ -363,7 +363,7 @@ def _analyse_penetration(
         site_growth=site_growth(growing, screened.used, sites),
         unloading=estimates.unloading,
         site_unloading=site_unloading(estimates.unloading, screened.used, sites),
-        warnings=scatter_warning(model, campaign.penetration.experiment),
+        warnings=noisier_series_warning(model, campaign.penetration.experiment),
     )
     if not screened.used.any():
         return of_series

@@ -74,7 +74,7 @@ class Freedom(NamedTuple):
 
 
 class FittedSeries(NamedTuple):
-    """Estimates of each series (ln H, g, δ, their covariance and scatter parts) and the spreads of the groups."""
+    """ln H, exponent g and depth zero δ of each series, their covariance and its share from scatter; group spreads."""
 
     of_series: tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
     misfit: FloatArray

@@ -121,7 +121,7 @@ class _Fit:
         return readings.penetration_depth - depth - b[2][series], slope, weight
 
     def step(self, b: FloatArray, scatter2: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Gauss-Newton steps (3, m) and the variances (3, m) of the three."""
+        """Gauss-Newton steps of b = (ln H_V, g, δ) and the variances of b, both (3, m); `scatter2`: s² of m series."""
         residual, slope, weight = self._line(b, scatter2)
         J = (-slope, slope * self._log_share, np.ones_like(slope))
         step, inverse = _gauss_newton_step(self._readings, J, residual, weight, b[2])

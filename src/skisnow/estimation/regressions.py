@@ -57,14 +57,14 @@ def penetration_observations(
     if pen is not None:
         own[PEN_FORCE_KEY] = pen.at(tests.site, tests.spot, pen.mean_force)
         own[PEN_DENSITY_KEY] = pen.at(tests.site, tests.spot, pen.snow_density)
-    return _make_observations(campaign, tests, own, used)
+    return _observations_of_tests(campaign, tests, own, used)
 
 
 def shear_observations(campaign: Campaign, stress: FloatArray, used: BoolArray) -> Observations:
     """The used shear experiments; ``stress`` is S_f of all of them in N/m²."""
     if campaign.shear is None:
         return _no_observations(STRESS_KEY, ANGLE_KEY, DENSITY_KEY, DROP_CONE_KEY)
-    return _make_observations(campaign, campaign.shear, {STRESS_KEY: stress / N_PER_MM2}, used)
+    return _observations_of_tests(campaign, campaign.shear, {STRESS_KEY: stress / N_PER_MM2}, used)
 
 
 def spot_observations(penetration: Observations, shear: Observations) -> Observations:
@@ -82,12 +82,12 @@ def spot_observations(penetration: Observations, shear: Observations) -> Observa
     )
 
 
-def _make_observations(
-    campaign: Campaign, tests: PenetrationTests | ShearTests, own: dict[str, FloatArray], used: BoolArray
+def _observations_of_tests(
+    campaign: Campaign, tests: PenetrationTests | ShearTests, results: dict[str, FloatArray], used: BoolArray
 ) -> Observations:
     density = campaign.density.site_means() if campaign.density else {}
     cone = campaign.drop_cone.site_means() if campaign.drop_cone else {}
-    columns = own | {
+    columns = results | {
         ANGLE_KEY: tests.edge_angle,
         DENSITY_KEY: _own_or_site(tests.snow_density, tests.site, density),
         DROP_CONE_KEY: _own_or_site(tests.drop_cone_depth, tests.site, cone) / MM,

@@ -134,8 +134,8 @@ def noisier_series(model: CampaignModel) -> BoolArray | None:
     return noisier
 
 
-def scatter_warning(model: CampaignModel, experiment: Sequence[str]) -> tuple[Message, ...]:
-    """The sentence about noisier series mixed with quieter ones, which have their own spreads; else empty."""
+def noisier_series_warning(model: CampaignModel, names: Sequence[str]) -> tuple[Message, ...]:
+    """Warning that lists the noisier of all series (`names`) if the model fits two classes of scatter; otherwise ()."""
     if model.grouped_by != "scatter":
         return ()
     noisier = np.flatnonzero(model.counts & (model.group == 1)).tolist()
@@ -147,7 +147,7 @@ def scatter_warning(model: CampaignModel, experiment: Sequence[str]) -> tuple[Me
             n=len(noisier),
             total=int(model.counts.sum()),
             factor=larger / quieter,
-            first=[experiment[index] for index in noisier[:LISTED_SERIES]] + ["…"] * (len(noisier) > LISTED_SERIES),
+            first=[names[index] for index in noisier[:LISTED_SERIES]] + ["…"] * (len(noisier) > LISTED_SERIES),
         ),
     )
 

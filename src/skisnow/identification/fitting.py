@@ -156,7 +156,7 @@ def identify(
             posterior=posterior,
             rng=np.random.default_rng(0) if rng is None else rng,
             progress=counted.about,
-            warnings=(*measurements.warnings, *_unused_warnings(keys, tables)),
+            warnings=(*measurements.warnings, *_unused_table_warnings(keys, tables)),
             methods=measurements.methods,
         )
         result = _search_parameters(parameters, observations, request)
@@ -229,8 +229,8 @@ def _require_used(keys: Sequence[str], observations: Sequence[Observations]) -> 
             ).tag("unused_key", key=key, kinds=kinds)
 
 
-def _unused_warnings(keys: Sequence[str], own: Mapping[str, object]) -> tuple[str, ...]:
-    fixed = unused_tables(keys, own)
+def _unused_table_warnings(free: Sequence[str], tables: Mapping[str, object]) -> tuple[str, ...]:
+    fixed = unused_tables(free, tables)
     if not fixed:
         return ()
     return (f"{', '.join(fixed)} have a table under [identify] but are not free. They keep the scenario's values",)

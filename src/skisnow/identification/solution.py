@@ -196,7 +196,7 @@ def _result_warnings(solution: Solution, spread: Uncertainty | None) -> Iterator
     correlation = _neighbour_correlation(solution)
     if correlation is not None:
         yield model_warning(correlation)
-    yield from _start_warnings(solution)
+    yield from _multistart_warnings(solution)
 
 
 def _neighbour_correlation(solution: Solution) -> float | None:
@@ -217,7 +217,7 @@ def _neighbour_correlation(solution: Solution) -> float | None:
     return correlation if correlation > max(REPORTED_CORRELATION, 3.0 / np.sqrt(pairs)) else None
 
 
-def _start_warnings(solution: Solution) -> Iterator[str]:
+def _multistart_warnings(solution: Solution) -> Iterator[str]:
     costs = [cost for _, cost in solution.tried if cost is not None]
     missing = len(solution.tried) - len(costs)
     if missing:

@@ -199,7 +199,7 @@ def ski_line(scenario: Scenario, line: RacingLine, *, progress: Progress | None 
 
 
 def run_score(run: Run) -> Score:
-    """Score of a run; an interrupted one has no score."""
+    """Score of a run. Raises KeyboardInterrupt: the run was interrupted."""
     if run.outcome == "interrupted":
         raise KeyboardInterrupt
     end = float(run.place[-1, 0]), float(run.place[-1, 1])

@@ -29,17 +29,17 @@ class QuickestLine(Shown):
     Attributes
     ----------
     scenario
-        Whose course and skier; its course is cut to the gates that were raced through.
+        Scenario of the race; its course is cut to the gates that were raced through.
     model
-        Who raced: "skier" or "point".
+        Racer: "skier" or "point".
     line, score
         The best, and its time as the search computed it.
     start, start_score
-        Start of the search: the follower's line, where no other was given.
+        Start of the search and its time; default: `skisnow.racing.follower_line`.
     history
         Every evaluation.
     seed
-        Statistics of the search.
+        Seed of the random numbers of the search.
 
     See Also
     --------

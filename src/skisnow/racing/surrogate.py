@@ -282,7 +282,7 @@ class SurrogateSearch:
     settled: float = 0.0
 
     def least(self, start: FloatArray, *, alike: bool = True) -> Evaluated:
-        """Minimum; if all turns begin `alike`, first with equal turns, then for each turn separately.
+        """Minimum; with `alike` and equal turns in `start`, first over equal turns, then over each turn separately.
 
         * Jones, Schonlau and Welch (1998), "Efficient global optimization of expensive black-box functions", Journal of
           Global Optimization 13, 455-492, doi 10.1023/A:1008306431147.

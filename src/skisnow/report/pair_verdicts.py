@@ -102,11 +102,11 @@ def read_compared(path: Path) -> Track:
 
     file = path / "track.csv" if path.is_dir() else path
     track = read_track(file)
-    return replace(track, name=str(path), slope_angle=_slope_angle_of_run(file) if track.axes == "file" else None)
+    return replace(track, name=str(path), slope_angle=_slope_angle_from_summary(file) if track.axes == "file" else None)
 
 
-def _slope_angle_of_run(file: Path) -> float | None:
-    """Inclination (rad) of x and y of a run's track.csv, 0 on a profile or grid; None for another track."""
+def _slope_angle_from_summary(file: Path) -> float | None:
+    """Slope angle (rad) of the run that wrote a track.csv, 0 unless its slope is a plane; None for any other file."""
     summary = file.with_name("summary.json")
     if file.name != "track.csv" or not is_file(summary):
         return None

@@ -262,7 +262,7 @@ def _run_rows(summary: Json) -> Iterator[tuple[str, str]]:
     yield "heading at the end", f"{plain(end['heading_deg'])} degrees from the fall line, positive left"
     speed = f"{plain(end['speed_m_per_s'])} m/s at the end, maximum {plain(summary['greatest_speed_m_per_s'])} m/s"
     yield "speed", speed
-    yield "turn radius", _radius_text(summary)
+    yield "turn radius", _turn_radius_text(summary)
     if summary.get("gates_passed") is not None:
         yield "gates", _gates(summary)
     yield "energy residual", _residual_text(summary["energy_balance_error"])
@@ -281,7 +281,7 @@ def _gates(summary: Json) -> str:
     return f"{passed}, {times[-1] - times[0]:.2f} s between the first and the last that was reached"
 
 
-def _radius_text(summary: Json) -> str:
+def _turn_radius_text(summary: Json) -> str:
     median, minimum = summary["turn_radius_median_m"], summary["turn_radius_p5_m"]
     if median is None:
         return "none, the run is straight or was over within half a second"

@@ -52,7 +52,7 @@ class FileParts:
             values.refuse_together(
                 ["stiffness_station_mm"], Message("a table with both stiffnesses"), Message("Remove it.")
             )
-        layout, width, name = self._shaped() if "shape" in values else self._laid_out()
+        layout, width, name = self._outline_from_shape_file() if "shape" in values else self._outline_from_ski_file()
         said = values.said
         mass_per_length = self.table.get("mass_per_length_kg_per_m")
         ski = SkiParts(
@@ -80,8 +80,8 @@ class FileParts:
         self._warn_of_lengths(ski)
         return ski
 
-    def _shaped(self) -> tuple[Layout, StationFunction, str]:
-        """Layout, width and name of a ski whose outline is a shape file of MonkeyCAM."""
+    def _outline_from_shape_file(self) -> tuple[Layout, StationFunction, str]:
+        """Tip, tail and lengths, width along the ski, and name: from a shape file of MonkeyCAM."""
         values = self.values
         outlined = ("table", "length_mm", "sidecut_length_mm", *WIDTHS, TIP_END, "tail_overhang_mm", "boot_position_mm")
         values.refuse_together(outlined, "shape", Message("Remove one of them."))
@@ -89,10 +89,10 @@ class FileParts:
         shape = monkeycam_shape(file, running_length=values.said.running_length)
         return shape.outline.layout, shape.outline.width_at, shape.name
 
-    def _laid_out(self) -> tuple[Layout, StationFunction, str]:
-        """Layout, width and name of a ski by its table or its keys."""
+    def _outline_from_ski_file(self) -> tuple[Layout, StationFunction, str]:
+        """Tip, tail and lengths, width along the ski, and name: from the ski file's table, otherwise from its keys."""
         values = self.values
-        layout = self._layout_of_table() if self.table else self._layout_of_keys()
+        layout = self._lengths_from_table() if self.table else self._lengths_from_keys()
         if "width_mm" in self.table:
             column = Message("the column {column}", column="width_mm")
             values.refuse_together((*WIDTHS, TIP_END), column, Message("Remove one of them."))
@@ -112,7 +112,7 @@ class FileParts:
         outline = ArcOutline(layout=layout, tip_width=tip, waist_width=waist, tail_width=tail, end_width=end)
         return layout, outline.width_at, values.file.stem
 
-    def _layout_of_keys(self) -> Layout:
+    def _lengths_from_keys(self) -> Layout:
         values = self.values
         length = values.needed("length_mm")
         least = _LEAST_LENGTH_IN_WIDTHS * (values.said.tip_width or 0.0)
@@ -132,7 +132,7 @@ class FileParts:
             boot_position=values.said.boot_position,
         )
 
-    def _layout_of_table(self) -> Layout:
+    def _lengths_from_table(self) -> Layout:
         values = self.values
         values.refuse_together(
             ["tail_overhang_mm"], Message("a table, which reaches from tip to tail"), Message("Remove it.")

@@ -102,7 +102,7 @@ class Edges:
         return abs(grip) > self._hold(abs(grip), load) / math.sqrt(2.0)
 
     def _hold(self, grip: float, load: float) -> float:
-        """Multiple of the load (N) that a wedge holds, edged for balance at a given multiple."""
+        """Largest side force over the load (N), at the edge angle that balances a side force of `grip` loads."""
         steep, rest = grip + _MORE, 1.0 - grip * _MORE  # of the tangent of a sum
         tangent = min(steep / rest, self._steepest) if rest > 0.0 else self._steepest
         return math.sqrt(2.0 * self.softness * tangent / load)

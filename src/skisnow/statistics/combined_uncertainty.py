@@ -113,7 +113,7 @@ class RandomEffectsMean(NamedTuple):
 def random_effects_mean(estimates: npt.ArrayLike, standard_errors: npt.ArrayLike) -> RandomEffectsMean:
     """Mean of n ≥ 1 estimates with their standard errors (n,), in their unit.
 
-    Two estimates of one standard error weigh alike: the mean ± t₁ s/√2 with s = √2 of 1 and 3, t₁ = 12.706.
+    Two estimates with equal errors: their mean ± t₁ s/√2. For 1 and 3 the standard deviation s is √2; t₁ = 12.706.
 
     >>> found = random_effects_mean([1.0, 3.0], [0.1, 0.1])
     >>> round(found.mean, 12), round(found.high - found.mean, 3)

@@ -239,11 +239,11 @@ def _read_fixed(table: Mapping[str, Any], keys: Mapping[str, Quantity]) -> Point
             raise ParameterError("fixed.{name} is {value!r}; it takes one value. Put varying values into [grid]").tag(
                 "wrong_kind", name=name, value=value
             )
-        fixed[name] = _in_range(keys[name], value)
+        fixed[name] = _validate_fixed_value(keys[name], value)
     return fixed
 
 
-def _in_range(key: Quantity, value: object) -> InputValue:
+def _validate_fixed_value(key: Quantity, value: object) -> InputValue:
     try:
         return key.in_range(value)
     except ParameterError as error:

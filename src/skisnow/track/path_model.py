@@ -149,7 +149,7 @@ def turn_chain(period: float, step: FloatArray) -> Chain:
 
 
 def speed_chain(correlation_time: float, step: FloatArray) -> Chain:
-    """A speed and its acceleration, an Ornstein-Uhlenbeck process of unit variance."""
+    """Chain of a speed and its acceleration, which is an Ornstein-Uhlenbeck process of unit variance."""
     return Chain(np.array([[0.0, 1.0], [0.0, -1.0 / correlation_time]]), 2.0 / correlation_time, step)
 
 

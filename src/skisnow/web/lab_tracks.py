@@ -198,7 +198,7 @@ def _limited(content: IO[bytes], most: int, sentence: str) -> bytes:
 
 
 def _read_named(place: Path, placing: Placing) -> Track:
-    """Read a track with the name of the uploaded file."""
+    """Read an uploaded track; the track and errors have the name of the uploaded file instead of `place`."""
     try:
         return replace(read_track(place), name=placing.called)
     except FieldDataError as error:

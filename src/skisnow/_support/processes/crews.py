@@ -169,8 +169,8 @@ class ExecutorCrew(Crew):
         """Hand out a chunk."""
         return self._executor.submit(compute_on_worker, self._packed, self._identity, self._folder, points)
 
-    def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - its owner knows how to end it
-        """Close the pool that was opened for the work."""
+    def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - the executor's owner stops its work
+        """Call `close`, for example to end the connection to a scheduler; the executor is not shut down."""
         if self._close is not None:
             self._close()
 

@@ -162,7 +162,7 @@ def parse_tool(name: str, text: str) -> ToolText | None:
 
 
 def parse_plate(name: str, text: str) -> ToolText | None:
-    """Blade of a text such as "100 mm"; None for any other text."""
+    """Blade from its length as text, such as "100 mm", by `name` or else that text; None for any other text."""
     match = PLATE.fullmatch(text.strip())
     return ToolText(name or text.strip(), (("length_mm", f"{length_mm(match[2], match[3]):g}"),)) if match else None
 

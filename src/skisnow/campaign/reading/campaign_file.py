@@ -347,11 +347,11 @@ def _tool_schema() -> Schema:
         "type": "object",
         "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
         "required": ["name", "shape"],
-        "oneOf": [_shape_schema(name, shape) for name, shape in SHAPES.items()],
+        "oneOf": [_tool_schema_of_shape(name, shape) for name, shape in SHAPES.items()],
     }
 
 
-def _shape_schema(name: str, shape: Shape) -> Schema:
+def _tool_schema_of_shape(name: str, shape: Shape) -> Schema:
     lengths = table_schema(shape.lengths)
     return {
         "properties": {"shape": {"const": name}, **lengths["properties"]},

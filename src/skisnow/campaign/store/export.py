@@ -113,12 +113,12 @@ def _combine_corrections(before: bytes, rows: list[AppliedCorrection]) -> str:
 
 def _corrections(entries: Iterable[JournalEntry]) -> Iterator[AppliedCorrection]:
     """Corrections, test by test, in the order of the first correction of each test."""
-    for test in sorted(replay_journal(entries).tests.values(), key=_first_manual_entry):
+    for test in sorted(replay_journal(entries).tests.values(), key=_uid_of_first_manual_entry):
         if test.rows and test.file != ATTACHMENTS:
             yield from _corrections_of_test(test)
 
 
-def _first_manual_entry(test: ReplayedTest) -> str:
+def _uid_of_first_manual_entry(test: ReplayedTest) -> str:
     return min((entry.uid for entry in test.history if not entry.is_from_file), default="")
 
 

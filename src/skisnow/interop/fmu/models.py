@@ -135,7 +135,7 @@ def _quaternion(rotation: FloatArray) -> FloatArray:
 
 
 def _snow_parameters(snow: SnowField) -> tuple[Variable, ...]:
-    """Parameters and outputs; quantities that vary over the place are fixed and not among them."""
+    """Parameters of the snow; a hardness or strength that varies over the place is listed, but not `offered`."""
     hardness, stress = (float(grid.at(0.0, 0.0)[0]) for grid in (snow.compiled.hardness, snow.compiled.strength))
     one_hardness = not isinstance(snow.snow_hardness, Grid)
     one_stress = not isinstance(snow.failure_shear_stress, Grid) and not isinstance(snow.strength_share, Grid)

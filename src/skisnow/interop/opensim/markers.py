@@ -229,7 +229,7 @@ def boots_text(boots: Boots, *, edge_angles_only: bool = False) -> str:
     """Poses in the slope's frame as the text of a CSV file for ``boots.file``.
 
     boots: as `boots_of_markers` gives them.
-    edge_angles_only: edge angles alone: the sledge of the scenario carries the boots, and the snow it.
+    edge_angles_only: only edge angles; the boots then move with the scenario's sledge.
     """
     angles = angles_of(boots.axes) / DEGREE
     columns: dict[str, Sequence[float]] = {"time_s": boots.at.tolist()}

@@ -143,7 +143,7 @@ def _write(data: ReportData, stage: Path, language: str, report: Callable[[str],
 
 
 def _stale_stems(tables: Iterable[Table]) -> Iterator[str]:
-    """Names, without ending, of table files of an earlier report: empty tables, and names with the other data mark."""
+    """Stems of obsolete table files: both stems of an empty table, otherwise the one with the other synthetic mark."""
     for table in tables:
         stems = {replace(table, synthetic=synthetic).file_stem for synthetic in (False, True)}
         yield from sorted(stems - {table.file_stem} if table.rows else stems)

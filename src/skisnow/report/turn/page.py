@@ -154,7 +154,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
     return [
         Section("key-results", Message("Key results"), key=key_sentences(chain)),
         Section(
-            "snow", Message("The snow that was found"), words=[_snow_method()], tables=[parameters_table(chain.snow)]
+            "snow", Message("The snow that was found"), words=[_mean_method()], tables=[parameters_table(chain.snow)]
         ),
         Section(
             "contacts",
@@ -182,7 +182,7 @@ def _make_sections(chain: TurnChain, pictures: Sequence[Picture]) -> list[Sectio
     ]
 
 
-def _snow_method() -> Markup:
+def _mean_method() -> Markup:
     return prose(
         "H_V is the geometric mean over the used penetration experiments of the site, S_f the mean over its used shear "
         "experiments, each with its 95 % interval by Student's t. Where they were measured, k_u / H_V is the harmonic "

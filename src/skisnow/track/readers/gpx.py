@@ -132,7 +132,7 @@ def read_gpx(text: str, name: str) -> Recording:
         height, speed or distance is not a number.
     """
     points = _read_points(text, name)
-    distance = [_optional_number(point, name, place, "distance") for place, point in enumerate(points)]
+    distance = [_metres_or_nan(point, name, place, "distance") for place, point in enumerate(points)]
     moments = [_required_moment(point, name, place) for place, point in enumerate(points)]
     return Recording(
         name=name,
@@ -226,11 +226,11 @@ def _place(point: _Point, name: str, place: int) -> tuple[float, float, float]:
     return (
         _number(point.texts.get("lat", absent), name, place, "lat", "degrees"),
         _number(point.texts.get("lon", absent), name, place, "lon", "degrees"),
-        _optional_number(point, name, place, "ele"),
+        _metres_or_nan(point, name, place, "ele"),
     )
 
 
-def _optional_number(point: _Point, name: str, place: int, key: str) -> float:
+def _metres_or_nan(point: _Point, name: str, place: int, key: str) -> float:
     return _number(point.texts.get(key) or "nan", name, place, key, "m")
 
 

@@ -135,7 +135,7 @@ def changes(
     is_unanswered: Callable[[], bool],
     cancelled: bool = False,
 ) -> None:
-    """Add the buttons and the history of a test.
+    """Show the history of a test with buttons that undo its last change or cancel the test.
 
     view, test: table and test.
     ask: element for questions about reasons.

@@ -279,7 +279,7 @@ def _choice_words(text: str) -> str:
 
 
 def _further_problems(proposal: Proposal) -> list[Problem]:
-    """Errors that are not those of questions."""
+    """Errors that no question of the proposal is about."""
     asked_problems = [question.problem for question in proposal.questions]
     return [problem for problem in proposal.problems if problem not in asked_problems]
 
