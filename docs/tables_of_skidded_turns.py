@@ -1,4 +1,4 @@
-"""The tables of gates, disturbed starts and wedges of the page on the skier: python docs/tables_of_skidded_turns.py."""
+"""Tables of gates, starts, wedges and keys of the skier: python docs/tables_of_skidded_turns.py [TABLE …]."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from benchmarks.skier.__main__ import NEAR, numbers, outcome, passed
 from benchmarks.skier.cases import CASES, Case, Start, starts
 
 from skisnow import Run, load_scenario, simulate
+from skisnow.scenario import scenario_values
+from skisnow.scenario.keys import SCENARIO_KEYS
 from skisnow.skier import BalancedSkier
 from skisnow.skier.posture import LEFT_EDGE, RIGHT_EDGE, RIGHT_TOE
 
@@ -29,6 +31,37 @@ WEDGES = (
     ("10°, recreational piste", 10.0, RECREATIONAL, (1.0, 1.0), 25.0),
 )
 """Name, slope (°), assumed H_V and S_f, the true ones over these, and duration (s)."""
+
+COURSES = (
+    Case("slalom 11.5 m, 17°", 17, 11.5, 3.0, 6.5, gates=5),
+    Case("slalom 13 m, 22°", 22, 13.0, 3.0, 8.5, gates=5),
+    Case("giant slalom 27 m, 17°", 17, 27.0, 6.5, 11.5, gates=5, ski="giant-slalom"),
+)
+"""Courses that are not among the benchmark's cases, and by which no key was chosen."""
+KEYS = (
+    *("greatest_slip_deg", "least_slip_deg", "braking_per_s", "outer_share", "edge_rate_per_s", "leg_gain"),
+    *("leg_yielding_per_s", "edge_gain", "pole_clearance_m"),
+)
+
+
+def keys() -> Iterator[str]:
+    """Each key of skidded turns times 0.5 and 1.5, as far as it may go, on three courses."""
+    yield f"| key | value | {' | '.join(case.name for case in COURSES)} |"
+    yield "| --- | ---: | ---: | ---: | ---: |"
+    values = scenario_values(COURSES[0].scenario(Start()))
+    yield f"| as they are | | {' | '.join(_skied(case) for case in COURSES)} |"
+    for name in KEYS:
+        key, value = SCENARIO_KEYS[f"skier.{name}"], float(str(values[f"skier.{name}"]))
+        for changed in (max(key.lowest, 0.5 * value), min(key.highest, 1.5 * value)):
+            cells = (_skied(case, **{name: changed}) for case in COURSES)
+            yield f"| `{name}` | {value:g} → {changed:g} | {' | '.join(cells)} |"
+
+
+def _skied(case: Case, **changes: float) -> str:
+    """Passed gates of five, largest load over 20 ms (weights), and the end of the run where it fails."""
+    run = simulate(case.scenario(Start()).with_(**changes))
+    end = outcome(run)
+    return f"{passed(run)}, {numbers(run)[1]:.1f}{'' if end == 'finished' else f', {end}'.replace('_', ' ')}"
 
 
 def gates() -> Iterator[str]:
@@ -91,6 +124,6 @@ def _limits(skier: BalancedSkier) -> str:
 
 
 if __name__ == "__main__":
-    TABLES = {"skidded-starts": gates, "disturbed": disturbed, "wedge": wedge}
+    TABLES = {"skidded-starts": gates, "disturbed": disturbed, "wedge": wedge, "keys": keys}
     for chosen in sys.argv[1:] or TABLES:
         write_tables("validation/skier", {chosen: TABLES[chosen]()})
