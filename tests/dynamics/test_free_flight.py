@@ -8,9 +8,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from skisnow.contact import Runner, SnowContact, SnowField
 from skisnow.dynamics import Body, Dynamics, Ended, StepControl
 
-from .sledges import body_of, fixed, given, rigid, sledge
+from ..simulation.runs.sledges import GRAVITY, rigid_ski
+from ..simulation.runs.sledges import scenario as edged_scenario
+from .sledges import body_of, clamped_ski, fixed, given, rigid, sledge
 
 FloatArray = npt.NDArray[np.float64]
 DURATION: Final = 0.3
@@ -57,6 +60,29 @@ def test_energy_of_a_fall() -> None:
     assert sum(flight.energies) + taken == pytest.approx(sum(start.energies), abs=1e-3)
     mass = body.mass
     assert start.energies[0] == pytest.approx(0.5 * mass * float(MOVES @ MOVES), rel=1e-12)
+
+
+def test_snow_that_hardly_holds_an_edge_is_sheared_along_a_parabola() -> None:
+    """Weight g pulls across and turns the sideways motion within a step h, at the end of which y is as at its start.
+
+    At a share s of it the edge of the tip meets a line, beyond y by ½ g h² s (1 - s): so far it comes back. Along the
+    arc of a steady rate it would not move across.
+    """
+    step, speed, depth, displacement = 5e-3, 10.0, 2e-3, 5e-5
+    on_edge = edged_scenario(ski=rigid_ski(), edge_deg=45.0)
+    body = replace(rigid(body_of(on_edge), np.array([6.0, 8.0, 10.0])), gravity=np.array([0.0, GRAVITY, 0.0]))
+    snow = SnowField(1.0, 1.0, 10.0, shear_displacement=displacement, part_along=1e-3, part_across=1.0)
+    contact = SnowContact(snow, [Runner.of(on_edge.ski, nodes=clamped_ski(on_edge, 40).node)] * 2, spacing=1e-3)
+    height = 0.5 * float(on_edge.ski.at(0.0).width) * math.sin(math.radians(45.0)) - depth
+    dynamics = Dynamics(body, contact, np.array([0.0, 0.0, height]), np.eye(3), fixed(step))
+    dynamics.begin(np.array([speed, -7.5 * GRAVITY * step, 0.0, 0.0, 0.0, 0.0]))
+    assert dynamics.advance(8 * step) is Ended.REACHED
+    sections = contact.sections()
+    share = 1.0 - (on_edge.ski.station[0] - sections.position_along_ski) / (speed * step)
+    met = (share > 0.05) & (share < 0.95)
+    sheared = sections.shear[met] / (1e-3 * depth)
+    expected = 0.5 * GRAVITY * step**2 * share[met] * (1.0 - share[met]) / displacement
+    assert sheared == pytest.approx(-expected, abs=0.03)  # half a line, 0.5 mm, of the tip's way of 50 mm
 
 
 def spin(body: Body, dynamics: Dynamics) -> tuple[FloatArray, float]:
