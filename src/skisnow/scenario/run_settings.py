@@ -124,7 +124,10 @@ class Solver:
     ] = False
     elements: Annotated[
         int | None,
-        Quantity("solver.elements", "finite elements over a ski; default: from ski and snow"),
+        Quantity(
+            "solver.elements",
+            "finite elements over a ski, three for one near the ends of its sidecut; default: from ski and snow",
+        ),
         Label(Message("elements of a ski")),
         Allowed(4, MOST_ELEMENTS),
     ] = None

@@ -25,26 +25,20 @@ from .moving_boots import SAME_TIME, BootControl, BootDrive, StrengthDrive, Tabl
 from .run import Strength
 from .sledge_body import sledge_body
 
-ELEMENTS: Final = 40
-"""Finite elements over a ski at least: 4.5 cm each, by the convergence tests of the docs."""
+ELEMENTS: Final = 36
+"""Finite elements over a ski at least, 5 cm each; near the ends of the sidecut there are three for each."""
 LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines."""
 FAST: Final = 10.0
 """Times the tolerance, to which the fast method controls a step's error."""
-LONG_ELEMENT: Final = 0.075
-"""Length (m) of a finite element of the fast method on a shallow edge."""
 FAST_SPACING: Final = 0.025
-"""Spacing (m) of the snow's lines of the fast method under a shallow edge."""
-SHALLOW: Final = 2e-3
-"""Depth (m) of an edge at the start, as if the ski were rigid, below which it is shallow."""
-LONG_WAVE: Final = 0.15
-"""1/λ (m) of a contact above which its waves are long: two elements of the fast method."""
+"""Largest spacing (m) of the snow's lines of the fast method: two lie on an element."""
 FAST_LONGEST: Final = 10e-3
 """Longest step (s) of the fast method (that of outputs)."""
 FAST_GROOVE: Final = 3.0
 """Times the groove's tolerance, to which the fast method simplifies grooves."""
 FAST_PART: Final = 0.02
-"""Path along a ski (m) over which the fast method advances its history at once: the lines' spacing."""
+"""Path along a ski (m) over which the fast method advances its history at once."""
 FLOATING_DEPTH: Final = 0.1
 """Depth (m) by which a flat base must carry the sledge, or it has sunk from the start."""
 SET_DOWN: Final = 0.1
@@ -253,8 +247,8 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     load, depth, wavelength = _contact(scenario)
     solver, air = scenario.solver, scenario.air
     length = float(scenario.ski.station[0] - scenario.ski.station[-1])
-    elements, spacing = _mesh(solver, length, wavelength, depth)
-    ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness)
+    elements, spacing = _mesh(solver, length, wavelength)
+    ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness, finer_ends=True)
     body = sledge_body(
         scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
@@ -267,15 +261,13 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf)
 
 
-def _mesh(solver: Solver, length: float, wavelength: float, depth: float) -> tuple[int, float]:
-    """Number of elements of a ski and spacing (m) of the lines, as given or by depth and 1/λ of the contact (m).
+def _mesh(solver: Solver, length: float, wavelength: float) -> tuple[int, float]:
+    """Number of elements of a ski and spacing (m) of the lines, as given or by its length and 1/λ of its contact (m).
 
-    Two lines lie on an element. The fast method has fewer of both on a shallow edge that bends in long waves. In deep
-    grooves fewer lines move the end of a turn by 1 cm; a flat base meets each new line with a jolt.
+    A flat base meets each new line with a jolt: short waves need close lines.
     """
-    elements, spacing = max(ELEMENTS, math.ceil(5.0 * length / wavelength)), min(LINE_SPACING, wavelength / 10.0)
-    if solver.method == "fast" and depth < SHALLOW and wavelength > LONG_WAVE:
-        elements, spacing = math.ceil(length / LONG_ELEMENT), FAST_SPACING
+    largest = FAST_SPACING if solver.method == "fast" else LINE_SPACING
+    elements, spacing = max(ELEMENTS, math.ceil(3.0 * length / wavelength)), min(largest, wavelength / 10.0)
     return solver.elements or elements, solver.line_spacing or spacing
 
 

@@ -42,6 +42,18 @@ def test_both_ends_are_clamped_beams(clamp: float, front: float, rear: float) ->
     assert twist == pytest.approx([5.0 * ahead / GJ, -4.0 * behind / GJ], rel=1e-9)
 
 
+@pytest.mark.parametrize("elements", [24, 36, 60])
+def test_elements_near_the_ends_of_the_sidecut_are_three_times_as_short(elements: int) -> None:
+    """1.8 m of ski with a sidecut of 1.667 m: within 0.267 m of either end of it, not under the clamp."""
+    node = clamped(read_ski("giant-slalom"), 0.3, elements, finer_ends=True).node
+    middle, length = np.abs(node[:-1] + node[1:]) / 2.0, node[:-1] - node[1:]
+    finer = np.where(middle > 0.8335 - 0.16 * 1.667, 3.0, 1.0)
+    inside = middle < 0.8335
+    assert (finer * length)[inside] == pytest.approx(1.8 / elements, rel=0.08)  # whole numbers of them
+    for place in (0.8335, 0.15, -0.15, -0.8335):
+        assert np.min(np.abs(node - place)) < 1e-12
+
+
 def test_nothing_moves_under_the_clamp() -> None:
     model = clamped(plain_ski(), 0.3, 80)
     u = np.random.default_rng(1).normal(size=model.size)
