@@ -1,12 +1,12 @@
 // The contact behind skisnow_contact.h: checks, arrays in and out, errors as codes.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "bindings/skisnow_contact.h"
 #include "contact/contact.hpp"
@@ -77,6 +77,12 @@ int guarded(std::string& message, const Work& work) noexcept {
   }
 }
 
+// The same for a contact, which keeps the words.
+template <class Work>
+int guarded(skisnow_contact* contact, const Work& work) noexcept {
+  return contact == nullptr ? SKISNOW_BAD_ARGUMENT : guarded(contact->message, work);
+}
+
 Grid surface_of(const skisnow_snow& given) {
   if (given.surface == nullptr) return Grid(0.0);
   require(given.surface_nx >= 1 && given.surface_ny >= 1, "surface needs one row and one column or more");
@@ -103,13 +109,10 @@ std::shared_ptr<Snow> snow_of(const skisnow_snow& given) {
   out->hardness = Grid(given.snow_hardness), out->strength = Grid(given.failure_shear_stress);
   out->unloading_ratio = given.unloading_ratio, out->shear_displacement = given.shear_displacement;
   out->compaction_resistance = given.compaction_resistance != 0;
-  out->friction = {friction[0],
-                   friction[1],
-                   friction[2],
-                   friction[3],
-                   given.friction_film_speed,
-                   given.stick_displacement,
-                   given.friction_along_ski == 0};
+  FrictionLaw& mu = out->friction;
+  mu.constant = friction[0], mu.linear = friction[1], mu.square = friction[2], mu.film = friction[3];
+  mu.film_speed = given.friction_film_speed, mu.stick = given.stick_displacement;
+  mu.is_vector = given.friction_along_ski == 0;
   out->knot_area = given.knot_area, out->part_along = given.part_along, out->part_across = given.part_across;
   return out;
 }
@@ -149,23 +152,23 @@ Runner runner_of(const skisnow_runner& given, const std::string& name) {
                     {given.base_height, given.base_height + count}, std::move(node), edges_of(given, name));
 }
 
-int made(std::shared_ptr<Snow> snow, double spacing, const skisnow_runner* runner, int runners, skisnow_contact** out) {
-  require(runner != nullptr && runners >= 1, "a contact needs one runner or more");
-  std::vector<Runner> shapes;
-  for (int k = 0; k < runners; k++) shapes.push_back(runner_of(runner[k], "runner " + std::to_string(k)));
-  auto made = std::make_unique<skisnow_contact>();
-  made->runners = std::make_unique<SnowContact>(snow, std::move(shapes), spacing, kernels());
-  made->snow = std::move(snow), made->spacing = spacing;
-  *out = made.release();
-  return SKISNOW_OK;
-}
-
-int say(int result, const std::string& words, char* message, std::size_t size) {
-  if (message != nullptr && size > 0) {
-    const std::size_t length = std::min(words.size(), size - 1);
-    std::memcpy(message, words.data(), length);
-    message[length] = '\0';
-  }
+// A contact of runners on the snow that `find_snow` gives with the spacing of its lines; words of an error to
+// `message`.
+template <class FindSnow>
+int made(skisnow_contact** contact, char* message, std::size_t size, const skisnow_runner* runner, int runners,
+         const FindSnow& find_snow) {
+  std::string words;
+  const int result = guarded(words, [&] {
+    require(contact != nullptr, "contact is NULL");
+    *contact = nullptr;
+    const auto [snow, spacing] = find_snow();
+    require(runner != nullptr && runners >= 1, "a contact needs one runner or more");
+    std::vector<Runner> shapes;
+    for (int k = 0; k < runners; k++) shapes.push_back(runner_of(runner[k], "runner " + std::to_string(k)));
+    auto own = std::make_unique<SnowContact>(snow, std::move(shapes), spacing, kernels());
+    *contact = new skisnow_contact{snow, spacing, std::move(own), {}};
+  });
+  if (message != nullptr && size > 0) message[words.copy(message, size - 1)] = '\0';
   return result;
 }
 
@@ -179,16 +182,13 @@ std::vector<double> taken(const double*& from, int nodes, const char* name) {
 }
 
 void require_rotation(const double* from, int k) {
-  double m[3][3];
-  std::copy_n(from + 9 * k, 9, &m[0][0]);
+  Vector3 row[3];
   double off = 0.0;
+  for (int a = 0; a < 3; a++) row[a] = vector_at(from + 9 * k + 3 * a);
   for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++)
-      off = std::max(off, std::fabs(m[0][a] * m[0][b] + m[1][a] * m[1][b] + m[2][a] * m[2][b] - (a == b ? 1.0 : 0.0)));
-  const double turned = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                        m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  require(off < ORTHONORMAL && turned > 0.0, "rotation of runner " + std::to_string(k) + " is none");
+    for (int b = 0; b < 3; b++) off = std::max(off, std::fabs(dot(row[a], row[b]) - (a == b ? 1.0 : 0.0)));
+  require(off < ORTHONORMAL && dot(row[0], cross(row[1], row[2])) > 0.0,
+          "rotation of runner " + std::to_string(k) + " is none");
 }
 
 Situation situation(const SnowContact& contact, const double* position, const double* rotation, const double* velocity,
@@ -224,26 +224,18 @@ void skisnow_snow_defaults(skisnow_snow* snow) {
 
 int skisnow_contact_new(const skisnow_snow* snow, const skisnow_runner* runner, int runners, skisnow_contact** contact,
                         char* message, size_t size) {
-  if (contact == nullptr) return say(SKISNOW_BAD_ARGUMENT, "contact is NULL", message, size);
-  *contact = nullptr;
-  std::string words;
-  const int result = guarded(words, [&] {
+  return made(contact, message, size, runner, runners, [snow] {
     require(snow != nullptr, "snow is NULL");
-    made(snow_of(*snow), snow->spacing, runner, runners, contact);
+    return std::pair{snow_of(*snow), snow->spacing};
   });
-  return say(result, words, message, size);
 }
 
 int skisnow_contact_join(const skisnow_contact* other, const skisnow_runner* runner, int runners,
                          skisnow_contact** contact, char* message, size_t size) {
-  if (contact == nullptr) return say(SKISNOW_BAD_ARGUMENT, "contact is NULL", message, size);
-  *contact = nullptr;
-  std::string words;
-  const int result = guarded(words, [&] {
+  return made(contact, message, size, runner, runners, [other] {
     require(other != nullptr, "other is NULL");
-    made(other->snow, other->spacing, runner, runners, contact);
+    return std::pair{other->snow, other->spacing};
   });
-  return say(result, words, message, size);
 }
 
 void skisnow_contact_free(skisnow_contact* contact) { delete contact; }
@@ -255,8 +247,7 @@ const char* skisnow_contact_message(const skisnow_contact* contact) {
 int skisnow_contact_force(skisnow_contact* contact, const double* position, const double* rotation,
                           const double* velocity, double dt, const double* beams, const double* rates, double* wrench,
                           double* beam_loads) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] {
+  return guarded(contact, [&] {
     require(wrench != nullptr, "wrench is NULL");
     require(beams != nullptr || beam_loads == nullptr, "beam_loads are asked for without beams");
     const auto found =
@@ -271,8 +262,7 @@ int skisnow_contact_force(skisnow_contact* contact, const double* position, cons
 int skisnow_contact_tangent(skisnow_contact* contact, const double* position, const double* rotation,
                             const double* velocity, double dt, const double* beams, const double* rates,
                             double* stiffness, double* damping) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] {
+  return guarded(contact, [&] {
     require(stiffness != nullptr && damping != nullptr, "stiffness or damping is NULL");
     std::vector<double> by_pose, by_motion;
     contact->runners->tangent(situation(*contact->runners, position, rotation, velocity, dt, beams, rates), by_pose,
@@ -284,8 +274,7 @@ int skisnow_contact_tangent(skisnow_contact* contact, const double* position, co
 
 int skisnow_contact_update(skisnow_contact* contact, const double* position, const double* rotation, double dt,
                            const double* beams) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] {
+  return guarded(contact, [&] {
     contact->runners->update(situation(*contact->runners, position, rotation, nullptr, dt, beams, nullptr));
   });
 }
@@ -297,8 +286,7 @@ int skisnow_contact_save(skisnow_contact* contact, skisnow_state** state) {
 }
 
 int skisnow_contact_load(skisnow_contact* contact, const skisnow_state* state) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] {
+  return guarded(contact, [&] {
     require(state != nullptr, "state is NULL");
     require(state->of == contact, "state is another contact's");
     contact->runners->restore(state->kept);
@@ -308,16 +296,14 @@ int skisnow_contact_load(skisnow_contact* contact, const skisnow_state* state) {
 void skisnow_state_free(skisnow_state* state) { delete state; }
 
 int skisnow_contact_state_size(skisnow_contact* contact, size_t* size) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] {
+  return guarded(contact, [&] {
     require(size != nullptr, "size is NULL");
     *size = bytes_of(*contact->runners, contact->runners->state()).size();
   });
 }
 
 int skisnow_contact_state_write(skisnow_contact* contact, unsigned char* bytes, size_t size) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] {
+  return guarded(contact, [&] {
     require(bytes != nullptr, "bytes is NULL");
     const Bytes state = bytes_of(*contact->runners, contact->runners->state());
     require(size >= state.size(),
@@ -327,6 +313,5 @@ int skisnow_contact_state_write(skisnow_contact* contact, unsigned char* bytes, 
 }
 
 int skisnow_contact_state_read(skisnow_contact* contact, const unsigned char* bytes, size_t size) {
-  if (contact == nullptr) return SKISNOW_BAD_ARGUMENT;
-  return guarded(contact->message, [&] { take_bytes(*contact->runners, bytes, size); });
+  return guarded(contact, [&] { take_bytes(*contact->runners, bytes, size); });
 }

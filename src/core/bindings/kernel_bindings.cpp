@@ -16,10 +16,9 @@ nb::tuple runner_tangent(SnowContact& self, const Array& position, const Array& 
                          double dt, double stiffness, double damping) {
   if (self.runners() != 1) throw std::invalid_argument("the tangent is of one runner");
   Situation at{std::vector<Pose>(1), std::vector<Motion>(1), dt};
-  std::copy_n(position.data(), 3, at.poses[0].position.begin());
+  at.poses[0].position = vector_at(position.data());
   std::copy_n(rotation.data(), 9, &at.poses[0].rotation[0][0]);
-  std::copy_n(velocity.data(), 3, at.motions[0].velocity.begin());
-  std::copy_n(velocity.data() + 3, 3, at.motions[0].turning.begin());
+  at.motions[0] = {vector_at(velocity.data()), vector_at(velocity.data() + 3), {}};
   self.begin(at);
   const Wrench& wrench = self.look(0, at.poses[0], at.motions[0], true);
   RunnerTangent found;

@@ -98,14 +98,10 @@ Situation situation_of(const double* position, const double* rotation, const dou
   Situation out{std::vector<Pose>(beams.size()), std::vector<Motion>(beams.size()), dt};
   for (std::size_t k = 0; k < beams.size(); k++) {
     Pose& pose = out.poses[k];
-    Motion& motion = out.motions[k];
-    std::copy_n(position + 3 * k, 3, pose.position.begin());
+    pose.position = vector_at(position + 3 * k);
     std::copy_n(rotation + 9 * k, 9, &pose.rotation[0][0]);
-    if (velocity != nullptr) {
-      std::copy_n(velocity + 6 * k, 3, motion.velocity.begin());
-      std::copy_n(velocity + 6 * k + 3, 3, motion.turning.begin());
-    }
-    pose.beam = std::move(beams[k]), motion.beam = std::move(rates[k]);
+    if (velocity != nullptr) out.motions[k] = {vector_at(velocity + 6 * k), vector_at(velocity + 6 * k + 3), {}};
+    pose.beam = std::move(beams[k]), out.motions[k].beam = std::move(rates[k]);
   }
   return out;
 }

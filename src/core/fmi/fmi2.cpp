@@ -2,7 +2,7 @@
 #include <cstring>
 #include <string>
 
-#include "fmi/fmu_instance.hpp"
+#include "fmi/shared_functions.hpp"
 
 using skisnow::FMU_DISCARD;
 using skisnow::FMU_OK;
@@ -22,8 +22,6 @@ struct Callbacks {
 
 constexpr int CO_SIMULATION = 1;
 constexpr int LAST_SUCCESSFUL_TIME = 2, TERMINATED = 3;
-
-FmuInstance& of(void* component) { return *static_cast<FmuInstance*>(component); }
 
 // The logger's message is a format.
 std::string as_format(const std::string& words) {
@@ -78,16 +76,10 @@ FMI_FUNCTION void* fmi2Instantiate(const char* name, int kind, const char* token
                            log_of(callbacks, name == nullptr ? "" : name));
 }
 
-FMI_FUNCTION void fmi2FreeInstance(void* c) { delete static_cast<FmuInstance*>(c); }
-
 FMI_FUNCTION FmuStatus fmi2SetupExperiment(void* c, int, double, double start, int, double) {
   return of(c).set_up(start);
 }
 FMI_FUNCTION FmuStatus fmi2EnterInitializationMode(void* c) { return of(c).enter_initialization(); }
-FMI_FUNCTION FmuStatus fmi2ExitInitializationMode(void* c) { return of(c).exit_initialization(); }
-FMI_FUNCTION FmuStatus fmi2Terminate(void* c) { return of(c).terminate(); }
-FMI_FUNCTION FmuStatus fmi2Reset(void* c) { return of(c).reset(); }
-
 FMI_FUNCTION FmuStatus fmi2GetReal(void* c, const unsigned* reference, std::size_t count, double* value) {
   return of(c).get(reference, count, value);
 }
@@ -97,19 +89,7 @@ FMI_FUNCTION FmuStatus fmi2SetReal(void* c, const unsigned* reference, std::size
 
 FMI_FUNCTION FmuStatus fmi2DoStep(void* c, double now, double step, int) { return of(c).step(now, step); }
 
-FMI_FUNCTION FmuStatus fmi2GetFMUstate(void* c, void** state) { return of(c).keep(state); }
-FMI_FUNCTION FmuStatus fmi2SetFMUstate(void* c, void* state) { return of(c).take(state); }
-FMI_FUNCTION FmuStatus fmi2FreeFMUstate(void*, void** state) { return FmuInstance::free_state(state); }
-
-FMI_FUNCTION FmuStatus fmi2SerializedFMUstateSize(void* c, void* state, std::size_t* size) {
-  return of(c).size(state, size);
-}
-FMI_FUNCTION FmuStatus fmi2SerializeFMUstate(void* c, void* state, char* bytes, std::size_t size) {
-  return of(c).write(state, bytes, size);
-}
-FMI_FUNCTION FmuStatus fmi2DeSerializeFMUstate(void* c, const char* bytes, std::size_t size, void** state) {
-  return of(c).read(bytes, size, state);
-}
+SHARED_FUNCTIONS(fmi2, FMUstate, DeSerialize, char)
 
 FMI_FUNCTION FmuStatus fmi2GetStatus(void*, int, FmuStatus*) { return FMU_DISCARD; }  // no step is ever pending
 FMI_FUNCTION FmuStatus fmi2GetRealStatus(void* c, int kind, double* value) {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include "fmi/fmu_instance.hpp"
+#include "fmi/shared_functions.hpp"
 
 using skisnow::FMU_OK;
 using skisnow::FmuInstance;
@@ -12,8 +12,6 @@ namespace {
 
 using Reference = std::uint32_t;
 using Logger = void (*)(void* environment, FmuStatus, const char* category, const char* message);
-
-FmuInstance& of(void* instance) { return *static_cast<FmuInstance*>(instance); }
 
 }  // namespace
 
@@ -31,17 +29,11 @@ FMI_FUNCTION void* fmi3InstantiateCoSimulation(const char*, const char* token, c
   return FmuInstance::make(resources, token, events ? "this FMU has no event mode" : nullptr, log);
 }
 
-FMI_FUNCTION void fmi3FreeInstance(void* c) { delete static_cast<FmuInstance*>(c); }
-
 FMI_FUNCTION FmuStatus fmi3EnterInitializationMode(void* c, bool, double, double start, bool, double) {
   const FmuStatus begun = of(c).set_up(start);
   return begun == FMU_OK ? of(c).enter_initialization() : begun;
 }
-FMI_FUNCTION FmuStatus fmi3ExitInitializationMode(void* c) { return of(c).exit_initialization(); }
 FMI_FUNCTION FmuStatus fmi3EnterStepMode(void*) { return FMU_OK; }
-FMI_FUNCTION FmuStatus fmi3Terminate(void* c) { return of(c).terminate(); }
-FMI_FUNCTION FmuStatus fmi3Reset(void* c) { return of(c).reset(); }
-
 FMI_FUNCTION FmuStatus fmi3GetFloat64(void* c, const Reference* reference, std::size_t count, double* value,
                                       std::size_t values) {
   if (count != values) return of(c).refuse("every variable of this model is one number");
@@ -61,19 +53,7 @@ FMI_FUNCTION FmuStatus fmi3DoStep(void* c, double now, double step, bool, bool* 
   return ended;
 }
 
-FMI_FUNCTION FmuStatus fmi3GetFMUState(void* c, void** state) { return of(c).keep(state); }
-FMI_FUNCTION FmuStatus fmi3SetFMUState(void* c, void* state) { return of(c).take(state); }
-FMI_FUNCTION FmuStatus fmi3FreeFMUState(void*, void** state) { return FmuInstance::free_state(state); }
-
-FMI_FUNCTION FmuStatus fmi3SerializedFMUStateSize(void* c, void* state, std::size_t* size) {
-  return of(c).size(state, size);
-}
-FMI_FUNCTION FmuStatus fmi3SerializeFMUState(void* c, void* state, std::uint8_t* bytes, std::size_t size) {
-  return of(c).write(state, bytes, size);
-}
-FMI_FUNCTION FmuStatus fmi3DeserializeFMUState(void* c, const std::uint8_t* bytes, std::size_t size, void** state) {
-  return of(c).read(bytes, size, state);
-}
+SHARED_FUNCTIONS(fmi3, FMUState, Deserialize, std::uint8_t)
 
 // There are no variables of other kinds; none of them is all that can be asked for.
 #define NO_VARIABLES(kind, type)                                                                                 \

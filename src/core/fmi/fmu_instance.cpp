@@ -79,11 +79,12 @@ FmuStatus FmuInstance::set_up(double start_time) {
   });
 }
 
+FmuStatus FmuInstance::change(Stage from, Stage to, const char* what) {
+  return guarded([&] { require(from, what), stage_ = to; });
+}
+
 FmuStatus FmuInstance::enter_initialization() {
-  return guarded([&] {
-    require(Stage::INSTANTIATED, "initialization");
-    stage_ = Stage::INITIALIZING;
-  });
+  return change(Stage::INSTANTIATED, Stage::INITIALIZING, "initialization");
 }
 
 FmuStatus FmuInstance::exit_initialization() {
@@ -106,12 +107,7 @@ FmuStatus FmuInstance::step(double from, double length) {
   });
 }
 
-FmuStatus FmuInstance::terminate() {
-  return guarded([&] {
-    require(Stage::STEPPING, "the end");
-    stage_ = Stage::TERMINATED;
-  });
-}
+FmuStatus FmuInstance::terminate() { return change(Stage::STEPPING, Stage::TERMINATED, "the end"); }
 
 FmuStatus FmuInstance::reset() {
   return guarded([&] {

@@ -64,6 +64,7 @@ class FmuInstance {
   template <class Work>
   FmuStatus guarded(const Work& work) const noexcept;
   void require(Stage stage, const char* what) const;
+  FmuStatus change(Stage from, Stage to, const char* what);
   Bytes bytes(const void* state) const;
   static void replace(void** state, std::unique_ptr<State> by);
 };

@@ -93,13 +93,10 @@ Situation FmuContact::situation(double time) {
   out.dt = std::max(0.0, time - accepted_);
   const double* from = input();
   for (std::size_t k = 0; k < runners_.size(); k++) {
-    Pose pose;
-    Motion motion;
-    std::copy_n(from, 3, pose.position.begin());
+    Pose pose{vector_at(from)};
     take_quaternion(from + 3, pose.rotation);
-    std::copy_n(from + POSE, 3, motion.velocity.begin());
-    std::copy_n(from + POSE + 3, 3, motion.turning.begin());
-    out.poses.push_back(std::move(pose)), out.motions.push_back(std::move(motion));
+    out.poses.push_back(std::move(pose));
+    out.motions.push_back({vector_at(from + POSE), vector_at(from + POSE + 3), {}});
     from += POSE + MOTION;
   }
   return out;
