@@ -96,14 +96,17 @@ def test_boots_that_nothing_carries_turn_as_a_level_between_their_skis() -> None
     assert found == pytest.approx(np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]))
 
 
-def test_a_ski_that_bends_in_short_waves_has_three_elements_to_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    """1.8 m of giant-slalom ski and waves of 0.1 m: 54 elements, and a line of snow every centimetre."""
-    scenario, contact = load_scenario("carved-46m"), run_setup._contact
+@pytest.mark.parametrize(("method", "elements", "spacing"), [("default", 54.0, 0.01), ("fast", 36.0, 0.0125)])
+def test_a_ski_that_bends_in_short_waves_has_elements_and_lines_to_each(
+    method: str, elements: float, spacing: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """1.8 m of giant-slalom ski and waves of 0.1 m: three elements and ten lines each, two and eight of `fast`."""
+    scenario, contact = load_scenario("carved-46m", changes={"solver.method": method}), run_setup._contact
     monkeypatch.setattr(run_setup, "_contact", lambda each: (*contact(each)[:2], 0.1))
     found = laid_out(scenario).numbers
     assert float(scenario.ski.station[0] - scenario.ski.station[-1]) == pytest.approx(1.8)
-    assert found["elements"] == 54.0
-    assert found["line_spacing_m"] == pytest.approx(0.01)
+    assert found["elements"] == elements
+    assert found["line_spacing_m"] == pytest.approx(spacing)
 
 
 @pytest.mark.parametrize("edge_deg", [0.0, 45.0])
@@ -122,12 +125,12 @@ def test_elements_and_lines_follow_from_the_waves_of_a_beam_on_an_elastic_founda
     assert found["elements"] == math.ceil(3.0 * 1.6 / wave) > 36.0
 
 
-@pytest.mark.parametrize(("method", "spacing"), [("default", 0.02), ("fast", 0.025)])
-def test_in_soft_snow_an_element_is_five_centimetres_long(method: str, spacing: float) -> None:
+@pytest.mark.parametrize(("method", "length", "spacing"), [("default", 0.05, 0.02), ("fast", 0.075, 0.025)])
+def test_in_soft_snow_elements_and_lines_have_their_largest_size(method: str, length: float, spacing: float) -> None:
     """1.8 m of giant-slalom ski, and two lines of snow or more on each element."""
     changes = {"snow.H_V_N_per_mm3": 0.02, "solver.method": method}
     found = laid_out(load_scenario("carved-46m", changes=changes)).numbers
-    assert 1.8 / found["elements"] == pytest.approx(0.05)
+    assert 1.8 / found["elements"] == pytest.approx(length)
     assert found["line_spacing_m"] == spacing
 
 

@@ -31,8 +31,10 @@ LINE_SPACING: Final = 0.02
 """Largest spacing (m) of the snow's lines."""
 FAST: Final = 10.0
 """Times the tolerance, to which the fast method controls a step's error."""
+FAST_ELEMENTS: Final = 24
+"""Finite elements of the fast method over a ski at least."""
 FAST_SPACING: Final = 0.025
-"""Largest spacing (m) of the snow's lines of the fast method: two lie on an element."""
+"""Largest spacing (m) of the snow's lines of the fast method."""
 FAST_LONGEST: Final = 10e-3
 """Longest step (s) of the fast method (that of outputs)."""
 FAST_GROOVE: Final = 3.0
@@ -266,8 +268,10 @@ def _mesh(solver: Solver, length: float, wavelength: float) -> tuple[int, float]
 
     A flat base meets each new line with a jolt: short waves need close lines.
     """
-    largest = FAST_SPACING if solver.method == "fast" else LINE_SPACING
-    elements, spacing = max(ELEMENTS, math.ceil(3.0 * length / wavelength)), min(largest, wavelength / 10.0)
+    fast = solver.method == "fast"
+    least, per_wave = (FAST_ELEMENTS, 2.0) if fast else (ELEMENTS, 3.0)
+    largest, lines_per_wave = (FAST_SPACING, 8.0) if fast else (LINE_SPACING, 10.0)
+    elements, spacing = max(least, math.ceil(per_wave * length / wavelength)), min(largest, wavelength / lines_per_wave)
     return solver.elements or elements, solver.line_spacing or spacing
 
 
