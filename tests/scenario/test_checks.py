@@ -49,7 +49,7 @@ def other_value(key: Quantity, value: float | bool | None) -> float | bool:
     if key.kind == "switch":
         return not value
     if value is None:
-        return max(key.lowest, 0.0) + (21 if key.kind == "whole number" else 10.0 if key.unit == "mm" else 0.01)
+        return max(key.lowest, 0.0) + (17 if key.kind == "whole number" else 10.0 if key.unit == "mm" else 0.01)
     larger = value + 1 if key.kind == "whole number" else 1.3 * value + 0.013
     return larger if larger < key.highest else 0.7 * value
 
