@@ -59,7 +59,15 @@ class Sheet:
 
     def outline(self) -> list[str]:
         """A line for each heading, sentence, field, button, link and chart below the head of the page."""
-        return list(filter(None, map(_line, _seen(self.content, None))))
+
+        def lines() -> list[str]:
+            return list(filter(None, map(_line, _seen(self.content, None))))
+
+        try:
+            asyncio.get_running_loop()
+        except RuntimeError:  # in the loop of the page, which may draw a list again at any time
+            return self.desk.do(lines)
+        return lines()
 
     def between(self, first: str, last: str = "") -> list[str]:
         """Lines of the outline from the one to before the other, or one that begins so, or to the end."""
