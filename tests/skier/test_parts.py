@@ -190,8 +190,15 @@ def test_a_profile_is_that_of_the_way(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "begins", "length"),
     [
-        ("slalom-20-gates", 4420.0, 203.0),
-        ("slalom-20-gates", 11710.0, 203.0),
+        *(
+            pytest.param(
+                "slalom-20-gates",
+                begins,
+                203.0,
+                marks=pytest.mark.xfail(reason="the skier is too slow for the last gates within 60 s", strict=True),
+            )
+            for begins in (4420.0, 11710.0)
+        ),
         pytest.param(
             "giant-slalom-20-gates",
             11600.0,
