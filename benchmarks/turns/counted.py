@@ -112,7 +112,7 @@ def counts(folder: Path, simulated_s: float) -> Iterator[tuple[str, Count]]:
     operations = _operations(library)
     rows = json.loads(done.stdout)
     for number, (name, numbers) in enumerate(rows, 1):
-        last = number == len(rows)  # what was collected after the last dump
+        last = number == len(rows)  # Valgrind writes the rest to the plain name
         yield name, _count(folder / ("counted" if last else f"counted.{number}"), operations, numbers)
 
 

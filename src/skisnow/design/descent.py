@@ -26,7 +26,7 @@ _GOOD: Final = 0.75  # and above which it is twice the step
 _NEAR: Final = 0.02  # distance of a design whose lines are still trusted at the end
 _FLAT: Final = 1e-3  # weight of the variables: of two steps with the same deviations the shorter
 _BREACH: Final = 1e3  # weight of a limit that the step breaks
-_LARGEST_WEIGHT: Final = 100.0  # of a broken limit against the squares
+_LARGEST_WEIGHT: Final = 100.0  # largest weight of a broken limit against the squares
 _ROUNDING: Final = 1e-13
 
 

@@ -187,7 +187,7 @@ def passed_of(evaluations: Sequence[Evaluated]) -> BoolArray:
 
 
 def times_of(evaluations: Sequence[Evaluated]) -> FloatArray:
-    """Times (n,) (s) at the last gate, with an upper limit, which also stands for runs that never come there."""
+    """Times (n,) (s) at the last gate, with an upper limit, which runs that never come there get as well."""
     times = np.array([_time_at_last_gate(evaluation) for evaluation in evaluations])
     finite = np.isfinite(times)
     if not finite.any():
