@@ -127,8 +127,8 @@ def test_strength_is_that_of_the_law_times_its_share() -> None:
     for law in (machined, ConstantShear(S), AngleShear(S, 0.5)):
         assert snow(shear=law).shear_in_python is None
     assert snow(shear=AngleShear(4e5, 0.5))._strength() == 4e5
-    assert snow(shear=AngleShear(4e5, 0.5))._shear().decrease == 0.5
-    assert snow(shear=machined)._shear().friction_angle == pytest.approx(math.atan(0.3))
+    assert snow(shear=AngleShear(4e5, 0.5))._core_shear_law().decrease == 0.5
+    assert snow(shear=machined)._core_shear_law().friction_angle == pytest.approx(math.atan(0.3))
 
 
 @pytest.mark.parametrize("spacing", [0.0, -0.01, math.nan, math.inf])
@@ -162,9 +162,9 @@ def test_poses_that_cannot_be(changes: dict[str, Any], words: str | Coded) -> No
         "position": [np.zeros(3)], "rotation": [np.eye(3)], "velocity": None, "dt": 0.0, "beams": None, "rates": None,
     }  # fmt: skip
     contact = SnowContact(snow(), [SKI])
-    contact._asked(**usual)
+    contact._checked_motion(**usual)
     with raises(ParameterError, words):
-        contact._asked(**usual | changes)
+        contact._checked_motion(**usual | changes)
 
 
 # A runner's shape, and laws as the core asks them, by hand

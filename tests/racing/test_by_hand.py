@@ -18,7 +18,7 @@ from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.racing import LineTurn, RacingLine, follower_line, quickest_line, surrogate
 from skisnow.racing.line import first_gates, turn_lengths
 from skisnow.racing.point import Racer, run_score, ski_line
-from skisnow.racing.quickest import _method, _require, _start_line, _window_and_step
+from skisnow.racing.quickest import _require_settings, _search_method, _start_line, _window_and_step
 from skisnow.racing.score import score_of
 from skisnow.racing.search import Evaluations, optimiser_within
 from skisnow.racing.surrogate import BATCH, PointChoice, SurrogateSearch, _best_within
@@ -208,17 +208,19 @@ def test_a_skier_is_scored_by_its_run() -> None:
 
 
 def test_values_at_the_limits_are_accepted() -> None:
-    _require(evaluations=1, population=4, spread=1.0, settled=0.0, room=1.0)
-    _require(evaluations=2, population=None, spread=0.01, settled=999.0, room=0.0)
+    _require_settings(evaluations=1, population=4, spread=1.0, settled=0.0, room=1.0)
+    _require_settings(evaluations=2, population=None, spread=0.01, settled=999.0, room=0.0)
+    usual = {"evaluations": 1, "population": None, "spread": 0.1, "settled": 0.0, "room": 0.0}
     for wrong in ({"spread": 1.01}, {"settled": 1000.0}, {"room": -0.1}):
         with pytest.raises(ParameterError):
-            _require(**({"evaluations": 1, "population": None, "spread": 0.1, "settled": 0.0, "room": 0.0} | wrong))  # type: ignore[arg-type]
+            _require_settings(**(usual | wrong))  # type: ignore[arg-type]
     assert _window_and_step(6, None, 1, 0) == (6, 1)
     assert (_window_and_step(6, 2, 2, 9), _window_and_step(6, 6, 6, 0)) == ((2, 2), (6, 6))
     for window, step in ((1, 1), (7, 1), (3, 0)):
         with pytest.raises(ParameterError):
             _window_and_step(6, window, step, 0)
-    assert (_method(None, "skier"), _method(None, "point"), _method("cma", "skier")) == ("surrogate", "cma", "cma")
+    cases = ((None, "skier"), (None, "point"), ("cma", "skier"))
+    assert [_search_method(*case) for case in cases] == ["surrogate", "cma", "cma"]
 
 
 def test_a_search_begins_from_a_line_of_some_of_the_gates() -> None:

@@ -188,7 +188,7 @@ def test_a_rounding_of_the_camber_is_that_of_the_ski_file(tmp_path: Path) -> Non
 @pytest.mark.parametrize("law", ["constant", "by-angle", "machining"])
 def test_the_law_of_shear_is_that_of_the_scenarios_snow(law: str) -> None:
     given = load_scenario("carved-46m", changes={"shear.law": law, "snow.S_f_N_per_mm2": 0.3})
-    found = run_setup._snow(given, Laws())
+    found = run_setup._snow_field(given, Laws())
     assert found.failure_shear_stress == pytest.approx(0.3e6)
     assert found.shear == given.shear.of(0.3e6)
     assert (found.shear is None) == (law == "constant")

@@ -267,11 +267,15 @@ class CarveDerivatives:
 
     def force_at(self, place: FloatArray) -> FloatArray:
         """Force per length (N/m) at places (m), linear between the stations."""
-        return np.interp(place, self._rising, self.at.solution.force_per_length[::-1])
+        return np.interp(place, self._rising_stations, self.at.solution.force_per_length[::-1])
 
     def force_growth_at(self, parameter: str, place: FloatArray) -> FloatArray:
         """Derivatives of `force_at` by a parameter, per its unit; stations may move with it."""
-        force, rising, shape = (self.at.solution.force_per_length[::-1], self._rising, self._direction(parameter).shape)
+        force, rising, shape = (
+            self.at.solution.force_per_length[::-1],
+            self._rising_stations,
+            self._direction(parameter).shape,
+        )
         out = np.interp(place, rising, self.force_growth(parameter)[::-1])
         if shape is None or not shape.moves:
             return out
@@ -280,7 +284,7 @@ class CarveDerivatives:
         return np.asarray(out - slope * np.interp(place, rising, shape.place[::-1]))
 
     @property
-    def _rising(self) -> FloatArray:
+    def _rising_stations(self) -> FloatArray:
         return self.request.model.stations.station[::-1]
 
     def fields(self, output: str) -> dict[str, FloatArray]:
@@ -377,7 +381,7 @@ class CarveDerivatives:
     def _direction(self, name: str) -> _Direction:
         if name not in self._directions:
             if name in CONDITIONS:
-                self._directions[name] = self._of_conditions(name)
+                self._directions[name] = self._direction_of_condition(name)
             else:
                 request = self.request
                 shape = shape_growth(request.model.ski, name, request.model.clamp_length, request.elements)
@@ -386,7 +390,7 @@ class CarveDerivatives:
                 self._directions[name] = _Direction(numbers, 0.0, shape)
         return self._directions[name]
 
-    def _of_conditions(self, name: str) -> _Direction:
+    def _direction_of_condition(self, name: str) -> _Direction:
         conditions, numbers, strength = self.request.conditions, np.zeros(_COUNT), 0.0
         turns = conditions.side_force > 0.0
         if name == "edge_angle_deg":

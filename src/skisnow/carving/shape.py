@@ -90,18 +90,18 @@ class _Lines(NamedTuple):
         return np.asarray(np.sum(by_value * (table[:, self.row + 1] - table[:, self.row]), axis=0) / self.spacing)
 
 
-class _Mesh(NamedTuple):
+class _NodesAndLines(NamedTuple):
     node: FloatArray
     stations: _Lines
     gauss: _Lines
 
 
 @functools.lru_cache(maxsize=16)
-def _mesh(station: bytes, clamp_length: float, elements: int) -> _Mesh:
+def _mesh(station: bytes, clamp_length: float, elements: int) -> _NodesAndLines:
     """Mesh on a ski with these stations, the same for all skis of its lengths."""
     rows = np.frombuffer(station)
     node = model_nodes(float(rows[0]), float(rows[-1]), clamp_length, elements)
-    return _Mesh(
+    return _NodesAndLines(
         node,
         _table_lines(station, element_places(node, STATION_POINTS).ravel()),
         _table_lines(station, element_places(node, GAUSS_POINTS).ravel()),

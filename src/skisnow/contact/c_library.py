@@ -24,7 +24,7 @@ def c_library() -> Path:
     ImportError
         In a checkout: it was built from other sources than those that lie there.
     """
-    path = _first(*(_FOLDER / name for name in NAMES))
+    path = _first_existing(*(_FOLDER / name for name in NAMES))
     sources = ctypes.CDLL(os.fspath(path)).skisnow_contact_sources
     sources.restype = ctypes.c_char_p
     compiled.require_current(sources().decode(), compiled.SOURCES)
@@ -39,13 +39,13 @@ def c_header() -> Path:
     FileNotFoundError
         The package was put together without it.
     """
-    return _first(_FOLDER / HEADER, compiled.SOURCES / "bindings" / HEADER)
+    return _first_existing(_FOLDER / HEADER, compiled.SOURCES / "bindings" / HEADER)
 
 
 _FOLDER: Final = Path(compiled.__file__).parent
 
 
-def _first(*paths: Path) -> Path:
+def _first_existing(*paths: Path) -> Path:
     for path in paths:
         if path.is_file():
             return path

@@ -93,21 +93,21 @@ class PressureCallback:
 
     def residual(self, deepest: FloatArray, /) -> FloatArray:
         """Depth (m) that remains after unloading at places with these maximum depths (m)."""
-        return self._sound(self.law.residual_depth(deepest), deepest.shape, deepest)
+        return self._require_finite(self.law.residual_depth(deepest), deepest.shape, deepest)
 
     def bear(self, depth: FloatArray, deepest: FloatArray, edge_angle: FloatArray, /) -> FloatArray:
         """Stress (N/m²) and energy (J/m²), (2, n), at depths (m), maximum depths so far and edge angles (rad)."""
-        return self._sound(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
+        return self._require_finite(self.law.stress_and_energy(depth, deepest, edge_angle), (2, len(depth)), depth)
 
     def lost(self, deepest: FloatArray, /) -> FloatArray:
         """Energy (J/m²) lost in the snow at places with these maximum depths (m)."""
-        return self._sound(self.law.lost_energy(deepest), deepest.shape, deepest)
+        return self._require_finite(self.law.lost_energy(deepest), deepest.shape, deepest)
 
     def refuse(self, reason: Message) -> None:
         """Act on an answer that is not finite."""
         raise ParameterError(reason).tag("invalid_law")
 
-    def _sound(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
+    def _require_finite(self, found: FloatArray, shape: tuple[int, ...], depth: FloatArray) -> FloatArray:
         found = np.ascontiguousarray(np.broadcast_to(found, shape), float)
         bad = ~np.isfinite(found).reshape(-1, len(depth)).all(axis=0)
         if bad.any():

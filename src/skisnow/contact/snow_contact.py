@@ -186,13 +186,15 @@ class SnowContact(Shown):
         beam_rates: Beams = None,
     ) -> ContactForces:
         """Forces at a pose that may or may not be accepted later; nothing of it is stored."""
-        found, loads = self.compiled.force(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        found, loads = self.compiled.force(
+            *self._checked_motion(position, rotation, velocity, dt, beam_dofs, beam_rates)
+        )
         self.require_finite_laws()
         return ContactForces(found, tuple(loads))
 
     def update(self, position: npt.ArrayLike, rotation: npt.ArrayLike, dt: float, *, beam_dofs: Beams = None) -> None:
         """Accept the step to a pose: the snow's history (its internal variables) is updated along the path to it."""
-        where, axes, _, step, beams, _ = self._asked(position, rotation, None, dt, beam_dofs, None)
+        where, axes, _, step, beams, _ = self._checked_motion(position, rotation, None, dt, beam_dofs, None)
         self.compiled.update(where, axes, step, beams)
 
     def tangent(
@@ -211,7 +213,7 @@ class SnowContact(Shown):
         unsymmetric; by central differences of 10⁻⁷ m and rad and 10⁻⁴ m/s and rad/s. Where a branch of a law changes
         within that, the mean of both sides.
         """
-        found = self.compiled.tangent(*self._asked(position, rotation, velocity, dt, beam_dofs, beam_rates))
+        found = self.compiled.tangent(*self._checked_motion(position, rotation, velocity, dt, beam_dofs, beam_rates))
         self.require_finite_laws()
         return found
 
@@ -272,7 +274,7 @@ class SnowContact(Shown):
         except ValueError as error:
             raise ParameterError("SnowContact: {error}").tag("invalid", error=error) from error
 
-    def _asked(
+    def _checked_motion(
         self,
         position: npt.ArrayLike,
         rotation: npt.ArrayLike,
@@ -282,7 +284,7 @@ class SnowContact(Shown):
         rates: Beams,
     ) -> tuple[FloatArray, FloatArray, FloatArray, float, list[FloatArray] | None, list[FloatArray] | None]:
         k = len(self.runners)
-        where, axes = _array("position", position, (k, 3)), _array("rotation", rotation, (k, 3, 3))
+        where, axes = _checked_array("position", position, (k, 3)), _checked_array("rotation", rotation, (k, 3, 3))
         off = np.abs(np.swapaxes(axes, 1, 2) @ axes - np.eye(3)).max()
         if off > ORTHONORMAL or np.any(np.linalg.det(axes) < 0.0):
             raise ParameterError(
@@ -290,10 +292,10 @@ class SnowContact(Shown):
             ).tag("not_a_rotation", off=off)
         if not (np.isfinite(dt) and dt >= 0.0):
             raise ParameterError("SnowContact: dt is {dt!r} s; it must be 0 or more").tag("out_of_range", dt=dt)
-        moves = np.zeros((k, 6)) if velocity is None else _array("velocity", velocity, (k, 6))
-        return where, axes, moves, dt, self._beams("beam_dofs", beams), self._beams("beam_rates", rates)
+        moves = np.zeros((k, 6)) if velocity is None else _checked_array("velocity", velocity, (k, 6))
+        return where, axes, moves, dt, self._checked_beams("beam_dofs", beams), self._checked_beams("beam_rates", rates)
 
-    def _beams(self, name: str, beams: Beams) -> list[FloatArray] | None:
+    def _checked_beams(self, name: str, beams: Beams) -> list[FloatArray] | None:
         if beams is None:
             return None
         if len(beams) != len(self.runners):
@@ -301,10 +303,10 @@ class SnowContact(Shown):
                 "wrong_shape", name=name, n_beams=len(beams), n_runners=len(self.runners)
             )
         counts = [2 if each.nodes is None else len(each.nodes) for each in self.runners]
-        return [_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
+        return [_checked_array(name, beam, (count, 3)) for beam, count in zip(beams, counts, strict=True)]
 
 
-def _array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
+def _checked_array(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> FloatArray:
     array = np.ascontiguousarray(given, float)
     if array.shape != shape:
         raise ParameterError("SnowContact: {name} has shape {shape}; it must be {needed}").tag(

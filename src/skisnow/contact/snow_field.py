@@ -156,7 +156,7 @@ class SnowField(Shown):
         for name in ("knot_area", "damping", "delayed_share"):
             _require(name, getattr(self, name), minimum=0.0)
         self._require_own_law_for_rate()
-        object.__setattr__(self, "compiled", self._compiled())
+        object.__setattr__(self, "compiled", self._core_snow())
 
     def _require_one_side_force(self) -> None:
         law = self.penetration
@@ -192,19 +192,19 @@ class SnowField(Shown):
                 "remove the penetration law"
             ).tag("contradiction", kind=type(self.penetration).__name__)
 
-    def _compiled(self) -> core.Snow:
+    def _core_snow(self) -> core.Snow:
         snow = core.Snow()
-        snow.hardness, snow.strength = _grid(self.snow_hardness), _grid(self._strength())
-        snow.friction_share = _grid(self.friction_share)
-        snow.surface = _grid(0.0 if isinstance(self.surface, Plane) else self.surface, goes_on=True)
+        snow.hardness, snow.strength = _core_grid(self.snow_hardness), _core_grid(self._strength())
+        snow.friction_share = _core_grid(self.friction_share)
+        snow.surface = _core_grid(0.0 if isinstance(self.surface, Plane) else self.surface, goes_on=True)
         snow.unloading_ratio, snow.shear_displacement = self.unloading_ratio, self.shear_displacement
         snow.compaction_resistance, snow.friction = self.compaction_resistance, self._friction()
-        snow.friction_on_base, snow.shear = self.friction_acts_on == "base-normal", self._shear()
-        snow.rate = self._rate()
+        snow.friction_on_base, snow.shear = self.friction_acts_on == "base-normal", self._core_shear_law()
+        snow.rate = self._core_rate_law()
         snow.knot_area, snow.part_along, snow.part_across = self.knot_area, self.part_along, self.part_across
         return snow
 
-    def _rate(self) -> core.RateLaw:
+    def _core_rate_law(self) -> core.RateLaw:
         out = core.RateLaw()
         out.damping, out.delayed_share = self.damping, self.delayed_share
         out.retardation, out.spacing = self.retardation_time, self.delayed_spacing
@@ -246,7 +246,7 @@ class SnowField(Shown):
             return strength
         return strength * share
 
-    def _shear(self) -> core.ShearLaw:
+    def _core_shear_law(self) -> core.ShearLaw:
         law, out = self.shear, core.ShearLaw()
         out.residual_ratio, out.weakening = self.residual_ratio, self.slip_weakening
         out.loaded_only = self.shear_bearing == "loaded-height"
@@ -261,7 +261,7 @@ class SnowField(Shown):
     def shear_in_python(self) -> ShearLaw | None:
         """The shear law, if the core does not have it."""
         known = (AngleShear, ConstantShear, DensityShear, NaturalDensityShear)
-        if isinstance(self.shear, known) or (isinstance(self.shear, MachiningShear) and self._shear().cuts):
+        if isinstance(self.shear, known) or (isinstance(self.shear, MachiningShear) and self._core_shear_law().cuts):
             return None
         return self.shear
 
@@ -303,7 +303,7 @@ def _require(name: str, value: float, *, minimum: float | None = None, above: fl
         raise ParameterError(problem).tag("out_of_range")
 
 
-def _grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:
+def _core_grid(value: float | Grid, *, goes_on: bool = False) -> core.Grid:
     if not isinstance(value, Grid):
         return core.Grid(float(value))
     steps = [float(np.ptp(places)) / (len(places) - 1) if len(places) > 1 else 1.0 for places in (value.x, value.y)]

@@ -72,7 +72,7 @@ class Descent:
     def _smallest(self, z: FloatArray, tolerance: float) -> FloatArray:
         """The best design found from z; ends where less than the tolerance can be gained, to first order."""
         self.best = self.search.result(z), z
-        here, beside = self._lines(z), None
+        here, beside = self._linearise(z), None
         for _ in range(_MOST_TRIALS):
             lines = [here] if beside is None else [here, self._cut(here, beside)]
             step = self._step(lines)
@@ -81,9 +81,9 @@ class Descent:
             if gain >= tolerance:
                 share = self._share_of_gain(here.z + step, value, gain, float(np.max(np.abs(step))))
                 if share > 0.0:
-                    here = self._lines(here.z + step)
+                    here = self._linearise(here.z + step)
                 elif np.isfinite(share):
-                    beside = self._lines(here.z + step)
+                    beside = self._linearise(here.z + step)
             elif beside is not None and np.max(np.abs(beside.z - here.z)) > _NEAR:
                 beside = None
             elif self.weight < _LARGEST_WEIGHT and self.search.broken(here.z) > REACHED:
@@ -95,7 +95,7 @@ class Descent:
     def _share_of_gain(self, trial: FloatArray, value: float, gain: float, size: float) -> float:
         """Gain at a trial over the expected one, which sets the reach; minus infinity: no ski or no equilibrium."""
         try:
-            share = (value - self._merit(self._values(trial))) / gain
+            share = (value - self._merit(self._values_of_lines(trial))) / gain
         except SolverError:
             self.reach = size / 4.0
             return -np.inf
@@ -107,7 +107,7 @@ class Descent:
         """The design nearest to `home` that reaches all targets and keeps the limits, from one that nearly does."""
         one, end, moved, full = np.eye(len(z)), self.rooms.start, np.zeros(len(z)), np.zeros(len(z))
         for _ in range(_MOST_STEPS):
-            here, (low, high) = self._lines(z), _ends(z, _FIRST_REACH)
+            here, (low, high) = self._linearise(z), _ends(z, _FIRST_REACH)
             rows = np.vstack([here.growth, -here.growth[:end], one, -one])
             least = np.concatenate([-here.values, here.values[:end], low, -high])
             step = np.clip(_least_squares(one, home - z, rows, least), low, high)
@@ -119,16 +119,16 @@ class Descent:
             z = z + moved
         return z
 
-    def _values(self, z: FloatArray) -> FloatArray:
+    def _values_of_lines(self, z: FloatArray) -> FloatArray:
         search, (matrix, lowest) = self.search, self.search.linear
         deviations = [search.deviations(goal, z) for goal in search.targets]
         return np.concatenate([*deviations, *(search.room(goal, z) for goal in search.limits), matrix @ z - lowest])
 
-    def _lines(self, z: FloatArray) -> _Lines:
+    def _linearise(self, z: FloatArray) -> _Lines:
         search = self.search
         growths = [search.deviation_growth(goal, z) for goal in search.targets]
         growths += [search.room_growth(goal, z) for goal in search.limits]
-        return _Lines(z, self._values(z), np.concatenate([*growths, search.linear[0]]))
+        return _Lines(z, self._values_of_lines(z), np.concatenate([*growths, search.linear[0]]))
 
     def _merit(self, *values: FloatArray) -> float:
         """Mean squares, squares of worst deviations, and the largest breach of a limit; the worse of several lines."""

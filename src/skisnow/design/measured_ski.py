@@ -106,10 +106,10 @@ def measured_ski(measured: Measured) -> MeasuredSki:
     ParameterError
         A table cannot be read, or something is needed that is not known.
     """
-    return _Maker(measured).made()
+    return _SkiMaker(measured).made()
 
 
-class _Maker:
+class _SkiMaker:
     def __init__(self, measured: Measured) -> None:
         self._measured = measured
         self._like = read_ski(measured.like)
@@ -125,22 +125,22 @@ class _Maker:
         torsion = self._stiffness("GJ_N_m2", TORSION_TEST, layout)
         like, base = self._like, self._column("base_height_mm")
         if base is None:
-            self._assume(Message("camber, shovel and tail of {ski}", ski=like.name))
+            self._note_assumption(Message("camber, shovel and tail of {ski}", ski=like.name))
         ski = SkiParts(
             name=self._measured.name,
             source="",
             layout=layout,
             width=width,
             base=self._of_like("base_height", layout) if base is None else self._station_table(base, MM, layout).at,
-            bending_stiffness=self._along(bending, "bending_stiffness", layout),
-            torsional_stiffness=self._along(torsion, "torsional_stiffness", layout),
+            bending_stiffness=self._stiffness_along_ski(bending, "bending_stiffness", layout),
+            torsional_stiffness=self._stiffness_along_ski(torsion, "torsional_stiffness", layout),
             mass=self._measured.mass or 1.0,
         ).assembled()
         if self._measured.mass is None:
             per_area = like.mass / -np.trapezoid(like.width, like.station)
             mass = float(per_area * -np.trapezoid(ski.width, ski.station))
             ski = replace(ski, mass_per_length=ski.mass_per_length * mass)
-            self._assume(Message("mass per area of {ski}", ski=like.name))
+            self._note_assumption(Message("mass per area of {ski}", ski=like.name))
         files = ", ".join(path.name for path in self._measured.tables)
         assumed = "; ".join(map(str, self._assumed))
         return MeasuredSki(
@@ -150,7 +150,7 @@ class _Maker:
             tuple(self._assumed),
         )
 
-    def _assume(self, what: Message) -> None:
+    def _note_assumption(self, what: Message) -> None:
         self._assumed.append(what)
 
     def _column(self, *names: str) -> tuple[FloatArray, ...] | None:
@@ -165,7 +165,7 @@ class _Maker:
         if length is None and self._width is not None:
             length = float(np.ptp(self._width[0])) * MM
         if length is None:
-            raise _missing(
+            raise _missing_error(
                 template(
                     "The length of the ski is not known. Give --length-mm, or a table with widths from tip to tail."
                 )
@@ -178,7 +178,7 @@ class _Maker:
         running_share = like.running_length / like.sidecut_length
         if self._width is None:
             if known.widths is None:
-                raise _missing(
+                raise _missing_error(
                     template("The widths of the ski are not known. Give --widths-mm, or a table with widths.")
                 )
             tip, waist, tail = known.widths
@@ -196,16 +196,16 @@ class _Maker:
         else:
             layout, width = self._layout_of_widths(running_share)
         if known.boot is None and known.stations_from != "boot":
-            self._assume(Message("the boot in the middle of the sidecut length"))
+            self._note_assumption(Message("the boot in the middle of the sidecut length"))
         if known.running_length is None:
-            self._assume(Message("running length over sidecut length of {ski}", ski=like.name))
+            self._note_assumption(Message("running length over sidecut length of {ski}", ski=like.name))
         return layout, width
 
     def _sidecut_of_radius(self, tip: float, waist: float, tail: float) -> float:
         """Sidecut length (m) for the measured radius and these widths; without a radius scaled from the similar ski."""
         if self._measured.radius is not None:
             return math.sqrt(8.0 * self._measured.radius * ((tip + tail) / 4.0 - waist / 2.0))
-        self._assume(Message("sidecut length over length of {ski}", ski=self._like.name))
+        self._note_assumption(Message("sidecut length over length of {ski}", ski=self._like.name))
         return self._length * self._like.sidecut_length / self._like.length
 
     def _layout_of_widths(self, running_share: float) -> tuple[Layout, StationFunction]:
@@ -217,7 +217,9 @@ class _Maker:
         place, width = from_tail[order], self._width[1][order] * MM
         front, rear = place > self._length / 2.0, place < self._length / 2.0
         if not (front.any() and rear.any()):
-            raise _missing(template("The table needs widths in front of and behind the middle of the ski. Add rows."))
+            raise _missing_error(
+                template("The table needs widths in front of and behind the middle of the ski. Add rows.")
+            )
         ends = float(place[front][np.argmax(width[front])]), float(place[rear][np.argmax(width[rear])])
         middle, sidecut = sum(ends) / 2.0, known.sidecut_length or ends[0] - ends[1]
         boot = known.boot
@@ -235,14 +237,18 @@ class _Maker:
     def _boot_of_tables(self) -> float:
         """Distance of the boot from the tail (m) where stations count from the boot and widths reach to the tail."""
         if self._width is None:
-            raise _missing(template("The place of the boot is not known. Give --boot-mm, its distance from the tail."))
+            raise _missing_error(
+                template("The place of the boot is not known. Give --boot-mm, its distance from the tail.")
+            )
         return -float(self._width[0].min()) * MM
 
     def _from_tail(self, station_mm: FloatArray) -> FloatArray:
         """Distances from the tail (m)."""
         known = self._measured
         if known.stations_from is None:
-            raise _missing(template("The origin of the stations is missing. Add --stations-from tip, tail or boot."))
+            raise _missing_error(
+                template("The origin of the stations is missing. Add --stations-from tip, tail or boot.")
+            )
         station = station_mm * MM
         if known.stations_from == "boot":
             return station + (known.boot if known.boot is not None else self._boot_of_tables())
@@ -280,11 +286,11 @@ class _Maker:
             station, span * MM, reading / load, step / math.sqrt(12.0) / load, bend=test == BEND_TEST
         )
 
-    def _along(self, stiffness: Stiffness | None, name: str, layout: Layout) -> StationFunction:
+    def _stiffness_along_ski(self, stiffness: Stiffness | None, name: str, layout: Layout) -> StationFunction:
         if stiffness is not None:
             return StationTable(stiffness.station, stiffness.value).at
         words = {"bending_stiffness": "EI", "torsional_stiffness": "GJ"}
-        self._assume(Message("{quantity} of {ski}", quantity=words[name], ski=self._like.name))
+        self._note_assumption(Message("{quantity} of {ski}", quantity=words[name], ski=self._like.name))
         return self._of_like(name, layout)
 
     def _of_like(self, name: str, layout: Layout) -> StationFunction:
@@ -342,5 +348,5 @@ def stiffness_of_tests(
     return Stiffness(station, 1.0 / c, np.sqrt((inverse**2) @ error**2) / c**2)
 
 
-def _missing(problem: str) -> ParameterError:
+def _missing_error(problem: str) -> ParameterError:
     return ParameterError(problem).tag("missing")

@@ -165,10 +165,10 @@ def design_of(search: Search, z: FloatArray, starts: tuple[Start, ...]) -> Desig
         "source": f"designed by skisnow from the ski {task.ski.name}",
     }
     keys = {key: _digits(value) for key, value in keys.items()}
-    rounded = {key: _rounded(key, value) for key, value in keys.items()}
+    rounded = {key: _rounded_value(key, value) for key, value in keys.items()}
     missed = [*_missed_goals(search, z), *_constraints_at(search, z, broken=True)]
-    reasons = _active(search, z) or [_CONTRADICTION] * bool(missed)
-    rows = _rows(search, keys, rounded)
+    reasons = _active_bounds_and_constraints(search, z) or [_CONTRADICTION] * bool(missed)
+    rows = _output_rows(search, keys, rounded)
     return Design(
         before=task.ski,
         ski=ski_of_keys(keys),
@@ -192,15 +192,15 @@ def _digits(value: Any) -> Any:
     return float(f"{value:.9g}") if isinstance(value, float) else value
 
 
-def _rounded(key: str, value: Any) -> Any:
+def _rounded_value(key: str, value: Any) -> Any:
     if isinstance(value, list):
-        return [_rounded(key, item) for item in value]
+        return [_rounded_value(key, item) for item in value]
     if not isinstance(value, float):
         return value
     return round(value, 0 if key.endswith("N_m2") else 1 if key.endswith("_mm") else 3)
 
 
-def _rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tuple[DesignRow, ...]:
+def _output_rows(search: Search, keys: dict[str, Any], rounded: dict[str, Any]) -> tuple[DesignRow, ...]:
     evaluator = search.evaluator
     skis = [search.evaluator.task.ski, ski_of_keys(keys), ski_of_keys(rounded)]
     rows = []
@@ -247,7 +247,7 @@ def _missed_goals(search: Search, z: FloatArray) -> list[Message]:
     return out
 
 
-def _active(search: Search, z: FloatArray) -> list[Message]:
+def _active_bounds_and_constraints(search: Search, z: FloatArray) -> list[Message]:
     out = []
     for variable, share in zip(search.evaluator.task.variables, z, strict=True):
         for at, bound in ((share, variable.lowest), (1.0 - share, variable.highest)):

@@ -77,18 +77,18 @@ def searched_starts(
     """Ends of a search from several starts, the best first; that one is searched on to a smaller tolerance."""
     starts = []
     for number, begin in enumerate(begins):
-        starts.append(_searched(search, begin, begin, polish=False))
+        starts.append(_search_from(search, begin, begin, polish=False))
         if progress is not None:
             progress(number + 1, len(begins))
     first, *others = sorted(starts, key=lambda start: start.result)
     if first.end is not None and search.worst_deviation(first.end) > REACHED:
-        polished = _searched(search, first.begin, first.end, polish=True)
+        polished = _search_from(search, first.begin, first.end, polish=True)
         better = polished if polished.result < first.result else first
         first = replace(better, equilibria=first.equilibria + polished.equilibria)
     return first, *others
 
 
-def _searched(search: Search, begin: FloatArray, z: FloatArray, *, polish: bool) -> Start:
+def _search_from(search: Search, begin: FloatArray, z: FloatArray, *, polish: bool) -> Start:
     before = search.evaluator.equilibria
     try:
         end = Descent(search).run(z, polish=polish)

@@ -103,14 +103,16 @@ def read_ski_table(path: Path, mapped: Mapped) -> dict[str, FloatArray]:
         for row, cells in enumerate(sheet.filled):
             places = {name: place for place, cell in enumerate(cells) if (name := mapped.column(cell))}
             if "station_mm" in places and len(places) > 1:
-                return _columns(path, sheet, row, places, mapped)
+                return _read_columns(path, sheet, row, places, mapped)
     raise ParameterError(
         "{path} has no row with a heading for the station and one for another column. Allowed: {names}. State a "
         "heading by --column HEADING=NAME."
     ).tag("missing", path=path, names=list(SYNONYMS))
 
 
-def _columns(path: Path, sheet: Sheet, header: int, places: Mapping[str, int], mapped: Mapped) -> dict[str, FloatArray]:
+def _read_columns(
+    path: Path, sheet: Sheet, header: int, places: Mapping[str, int], mapped: Mapped
+) -> dict[str, FloatArray]:
     below = {place: sheet.cell(header + 1, place).strip("[]()") for place in places.values()}
     has_units = any(map(known_unit, below.values()))
     rows = [
@@ -126,7 +128,7 @@ def _columns(path: Path, sheet: Sheet, header: int, places: Mapping[str, int], m
         heading = sheet.cell(header, place, filled=True)
         unit = mapped.unit(heading) or (below[place] if has_units else "")
         factor = _factor(path, heading, unit, name)
-        columns[name] = np.array([_number(path, sheet, row, place, mark, factor) for row in rows])
+        columns[name] = np.array([_read_number(path, sheet, row, place, mark, factor) for row in rows])
     return columns
 
 
@@ -148,7 +150,7 @@ def _factor(path: Path, heading: str, unit: str, name: str) -> float:
     return factor
 
 
-def _number(path: Path, sheet: Sheet, row: int, place: int, mark: str, factor: float) -> float:
+def _read_number(path: Path, sheet: Sheet, row: int, place: int, mark: str, factor: float) -> float:
     cell = sheet.cell(row, place)
     value = factor * number(cell, "." if (row, place) in sheet.fractions else mark) if cell else np.nan
     if cell and not abs(value) <= _LARGEST:

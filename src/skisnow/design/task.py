@@ -160,19 +160,21 @@ def design_task(values: Mapping[str, Any], *, sources: Sources | None = None) ->
             "no_keys",
         )
     tables = enumerate(values["conditions"], start=1)
-    conditions = tuple(itertools.chain.from_iterable(_conditions(n, table, ski.name, sources) for n, table in tables))
-    goals = tuple(_goal(n, table, len(conditions)) for n, table in enumerate(values["goals"], start=1))
-    constraints = [_constraint(n, table, ski) for n, table in enumerate(values.get("constraints", ()), start=1)]
+    conditions = tuple(
+        itertools.chain.from_iterable(_read_conditions(n, table, ski.name, sources) for n, table in tables)
+    )
+    goals = tuple(_read_goal(n, table, len(conditions)) for n, table in enumerate(values["goals"], start=1))
+    constraints = [_read_constraint(n, table, ski) for n, table in enumerate(values.get("constraints", ()), start=1)]
     for key in values.get("monotone", ()):
         constraints += _monotone(ski, str(key))
     return DesignTask(
         ski=ski,
-        variables=tuple(_variable(ski, name, bounds) for name, bounds in values["variables"].items()),
+        variables=tuple(_read_variable(ski, name, bounds) for name, bounds in values["variables"].items()),
         conditions=conditions,
         goals=goals,
         constraints=tuple(constraints),
-        starts=_whole("starts", values.get("starts", FEWEST_STARTS), 1),
-        seed=_whole("seed", values.get("seed", 1), 0),
+        starts=_require_whole_number("starts", values.get("starts", FEWEST_STARTS), 1),
+        seed=_require_whole_number("seed", values.get("seed", 1), 0),
         sources=sources,
     )
 
@@ -194,7 +196,7 @@ def _refuse(problem: Message, code: str) -> None:
     raise ParameterError(problem).tag(code)
 
 
-def _whole(name: str, value: object, lowest: int) -> int:
+def _require_whole_number(name: str, value: object, lowest: int) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < lowest:
         raise ParameterError("{name} is {value}. Allowed: a whole number from {lowest}.").tag(
             "out_of_range", name=name, value=value, lowest=lowest
@@ -211,7 +213,7 @@ def _require_variable(place: str, ski: Ski, name: str) -> None:
         )
 
 
-def _variable(ski: Ski, name: str, bounds: object) -> Variable:
+def _read_variable(ski: Ski, name: str, bounds: object) -> Variable:
     _require_variable("variables", ski, name)
     if (
         not isinstance(bounds, list | tuple)
@@ -229,9 +231,9 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _conditions(number: int, table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+def _read_conditions(number: int, table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
     try:
-        questions = _questions(table, ski, sources)
+        questions = _read_questions(table, ski, sources)
         for question in questions:
             asked_snow(question, sources)
     except ParameterError as error:
@@ -239,7 +241,7 @@ def _conditions(number: int, table: Mapping[str, Any], ski: str, sources: Source
     return questions
 
 
-def _questions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
+def _read_questions(table: Mapping[str, Any], ski: str, sources: Sources) -> list[CarveQuestion]:
     table = dict(table)
     over_intervals = table.pop(INTERVALS, False)
     if not isinstance(over_intervals, bool):
@@ -285,7 +287,7 @@ def _over_intervals(question: CarveQuestion, sources: Sources) -> list[CarveQues
     ]
 
 
-def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
+def _read_goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     place = f"goals, {number}"
     goal: Goal = build_declared(Goal, checked_table(Goal, table, place))
     if goal.output not in (*OUTPUTS, FORCE_ALONG_EDGE):
@@ -313,7 +315,7 @@ def _goal(number: int, table: Mapping[str, Any], conditions: int) -> Goal:
     return goal
 
 
-def _constraint(number: int, table: Mapping[str, Any], ski: Ski) -> Constraint:
+def _read_constraint(number: int, table: Mapping[str, Any], ski: Ski) -> Constraint:
     place = f"constraints, {number}"
     terms = table.get("terms")
     limits = {name: table[name] for name in ("at_least", "at_most") if name in table}

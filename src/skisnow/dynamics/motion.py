@@ -278,17 +278,17 @@ class Dynamics:
         """All of the present moment as one row of numbers; `moment_parts` names them."""
         return self._core.moment
 
-    def _part(self, name: str) -> FloatArray:
+    def _part_of_moment(self, name: str) -> FloatArray:
         return moment_parts(self.moment, self.body.skis)[name]
 
     @property
     def beam_dofs(self) -> FloatArray:
         """Degrees of freedom of the beams, (skis, n): deflection (m), its slope and twist (rad) at each free node."""
-        return self._part("beam_dofs")
+        return self._part_of_moment("beam_dofs")
 
     def along(self, ski: int) -> FloatArray:
         """At the last time reached: depth of the edge (m), force and shear per length (N/m) at the nodes, (3, m)."""
-        return self._part("along")[ski]
+        return self._part_of_moment("along")[ski]
 
     @property
     def pushes(self) -> FloatArray:
@@ -296,7 +296,7 @@ class Dynamics:
 
         Along the edge, forward positive; of friction across it, and off the surface.
         """
-        return self._part("pushes")
+        return self._part_of_moment("pushes")
 
     @property
     def touches(self) -> bool:
@@ -306,12 +306,12 @@ class Dynamics:
     @property
     def energies(self) -> tuple[float, ...]:
         """Kinetic, potential, elastic in the skis (J)."""
-        return tuple(self._part("energies").tolist())
+        return tuple(self._part_of_moment("energies").tolist())
 
     @property
     def snow_energies(self) -> tuple[float, ...]:
         """Recoverable energies of the snow (J): pressure, shear at edges, sticking friction, delayed penetration."""
-        return tuple(self._part("snow_energies").tolist())
+        return tuple(self._part_of_moment("snow_energies").tolist())
 
     @property
     def snow_losses(self) -> tuple[float, ...]:
@@ -319,7 +319,7 @@ class Dynamics:
 
         A loss never falls. Owed is the energy that the snow gave beyond the energy that it had stored.
         """
-        return tuple(self._part("snow_losses").tolist())
+        return tuple(self._part_of_moment("snow_losses").tolist())
 
     @property
     def work(self) -> tuple[float, ...]:
@@ -327,12 +327,12 @@ class Dynamics:
 
         The last: the part of the normal force's work that the snow's dashpot absorbed.
         """
-        return tuple(self._part("work").tolist())
+        return tuple(self._part_of_moment("work").tolist())
 
     @property
     def work_given(self) -> tuple[float, ...]:
         """Work since `begin` (J) of the motion of the boots, and of the push."""
-        return tuple(self._part("work_given").tolist())
+        return tuple(self._part_of_moment("work_given").tolist())
 
     @property
     def counts(self) -> tuple[int, int, int, int, int]:

@@ -115,8 +115,8 @@ class SnowMicroPenAnalysis(Shown):
     def at(self, sites: tuple[str, ...], spots: tuple[str, ...], values: FloatArray) -> FloatArray:
         """The mean of the values at each place: of the recordings at its spot, else of those at its site, else NaN."""
         finite = np.isfinite(values)
-        of_spot = _means(zip(self.recordings.site, self.recordings.spot, strict=True), values, finite)
-        of_site = _means(((site, "") for site in self.recordings.site), values, finite)
+        of_spot = _means_by_site_and_spot(zip(self.recordings.site, self.recordings.spot, strict=True), values, finite)
+        of_site = _means_by_site_and_spot(((site, "") for site in self.recordings.site), values, finite)
         return np.array(
             [
                 of_spot[site, spot] if spot and (site, spot) in of_spot else of_site.get((site, ""), math.nan)
@@ -125,7 +125,9 @@ class SnowMicroPenAnalysis(Shown):
         )
 
 
-def _means(places: Iterable[tuple[str, str]], values: FloatArray, usable: BoolArray) -> dict[tuple[str, str], float]:
+def _means_by_site_and_spot(
+    places: Iterable[tuple[str, str]], values: FloatArray, usable: BoolArray
+) -> dict[tuple[str, str], float]:
     collected: dict[tuple[str, str], list[float]] = {}
     for place, value, use in zip(places, values.tolist(), usable.tolist(), strict=True):
         if use:
@@ -165,10 +167,10 @@ def evaluate_profile(
     top = _surface(profile, settings, surface)
     flags = [CANCELLED] if is_cancelled else []
     if top is None:
-        return _empty((*flags, NO_SURFACE))
+        return _unevaluated_recording((*flags, NO_SURFACE))
     reach = float(profile.depth[-1]) - top.depth
     if reach < settings.to_depth:
-        return _empty((*flags, TOO_SHORT), top, reach)
+        return _unevaluated_recording((*flags, TOO_SHORT), top, reach)
     force = profile.force - top.air_force if settings.subtract_air_force else profile.force
     first, last = (
         round((top.depth + depth) / profile.sample_distance) for depth in (settings.from_depth, settings.to_depth)
@@ -188,7 +190,9 @@ def _surface(profile: SnowMicroPenProfile, settings: SnowMicroPenSettings, state
     return snow_surface(profile.force, profile.sample_distance, rise=settings.surface_rise, hold=settings.surface_hold)
 
 
-def _empty(flags: tuple[str, ...], surface: SnowSurface | None = None, reach: float = math.nan) -> EvaluatedRecording:
+def _unevaluated_recording(
+    flags: tuple[str, ...], surface: SnowSurface | None = None, reach: float = math.nan
+) -> EvaluatedRecording:
     none = WindowMeans(*(math.nan,) * 5, n=0)
     depth, air = (math.nan, math.nan) if surface is None else (surface.depth, surface.air_force)
     windows = dict.fromkeys(PENETROMETER_RELATIONS, none)

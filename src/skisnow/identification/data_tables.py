@@ -322,7 +322,7 @@ def parse_grooves(table: TableFile) -> MeasuredGrooves:
             columns[name] = (values, sd)
             continue
         stated = False
-        columns[name] = (values, np.full(len(values), _scatter(table.name, name, values[measured])))
+        columns[name] = (values, np.full(len(values), _standard_deviation(table.name, name, values[measured])))
     (depth, depth_sd), (width, width_sd), (radius, radius_sd) = (columns[name] for name in GROOVE_COLUMNS)
     if not any(np.isfinite(values).any() for values in (depth, width, radius)):
         raise ParameterError("{name} has no column of {columns}").tag(
@@ -337,7 +337,7 @@ def _read_column(table: TableFile, quantity: Quantity) -> FloatArray:
     return table.numbers(quantity)
 
 
-def _scatter(file: str, name: str, values: FloatArray) -> float:
+def _standard_deviation(file: str, name: str, values: FloatArray) -> float:
     if len(values) < FEWEST_FOR_SCATTER:
         raise ParameterError(
             "{file}: {name} has no standard deviation ({column}), and {count} places are too few to estimate it; "

@@ -156,9 +156,9 @@ class PhotoCellTimes:
         fixed = {**self.scenario.values, **self.starts.get(run.name, {})}
         sets = [{**fixed, **run_values(values, run.name)} for values in many]
         descriptions = float(run.time[-1] - (run.time[0] if self.clock_is_free else 0.0))
-        return passage_times(self._line_of(sets), self._make_glide(sets), station, max(descriptions, 1e-3))
+        return passage_times(self._slope_line(sets), self._make_glide(sets), station, max(descriptions, 1e-3))
 
-    def _line_of(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
+    def _slope_line(self, sets: Sequence[Mapping[str, Any]]) -> SlopeLine:
         if not isinstance(self.scenario.scenario.slope, Plane):
             return self._line
         angle = np.array([values["slope.angle_deg"] for values in sets]) * DEGREE

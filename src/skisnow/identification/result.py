@@ -244,11 +244,11 @@ def _parameter_dict(identified: Identified) -> dict[str, Any]:
     parameter = identified.parameter
     return {
         "value": identified.value,
-        "interval": _pair(identified.interval),
+        "interval": _interval_list(identified.interval),
         "standard_error": identified.standard_error,
-        "profile_interval": _pair(identified.profile_interval),
-        "bootstrap_interval": _pair(identified.bootstrap_interval),
-        "posterior_interval": _pair(identified.posterior_interval),
+        "profile_interval": _interval_list(identified.profile_interval),
+        "bootstrap_interval": _interval_list(identified.bootstrap_interval),
+        "posterior_interval": _interval_list(identified.posterior_interval),
         "unit": parameter.unit,
         "start": parameter.start,
         "lower": parameter.lower,
@@ -260,7 +260,7 @@ def _parameter_dict(identified: Identified) -> dict[str, Any]:
     }
 
 
-def _pair(interval: Interval | None) -> list[float | None] | None:
+def _interval_list(interval: Interval | None) -> list[float | None] | None:
     return None if interval is None else list(interval)
 
 

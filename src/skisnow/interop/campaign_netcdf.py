@@ -95,7 +95,7 @@ def _variables(campaign: Campaign) -> Iterator[_Variable]:
     if campaign.density is not None:
         yield from _density_variables(campaign.density)
     if campaign.drop_cone is not None:
-        yield from _drop_cone(campaign.drop_cone)
+        yield from _drop_cone_variables(campaign.drop_cone)
 
 
 def _penetration_variables(tests: PenetrationTests) -> Iterator[_Variable]:
@@ -149,7 +149,7 @@ def _density_variables(samples: DensitySamples) -> Iterator[_Variable]:
     yield from _further(of, samples.further)
 
 
-def _drop_cone(tests: DropConeTests) -> Iterator[_Variable]:
+def _drop_cone_variables(tests: DropConeTests) -> Iterator[_Variable]:
     of = "drop_cone_repeat"
     yield from _text_variables(of, test=tests.test, repeat=tests.repeat, site=tests.site, cancelled=tests.cancelled)
     yield _Variable(f"{of}_depth", of, tests.drop_cone_depth, "m", "depth of the drop cone; larger is softer")

@@ -181,7 +181,7 @@ class SnowForces:
             raise ParameterError("SnowForces: RK4 requires forces at times that are not accepted; use Euler").tag(
                 "not_supported"
             )
-        self._sites = [self._site_index(model, name) for name in sites]
+        self._sites = [self._require_site_index(model, name) for name in sites]
         self.model, self.contact = model, contact
         self._fresh, self._accepted = contact.state(), None
         self.wrench: FloatArray = np.zeros((len(sites), 6))
@@ -189,7 +189,7 @@ class SnowForces:
 
     _accepted: float | None
 
-    def _site_index(self, model: Any, name: str) -> int:
+    def _require_site_index(self, model: Any, name: str) -> int:
         index = int(self._engine.mj_name2id(model, self._engine.mjtObj.mjOBJ_SITE, name))
         if index < 0:
             names = ", ".join(model.site(i).name for i in range(model.nsite))

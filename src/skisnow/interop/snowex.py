@@ -106,7 +106,7 @@ def _pit_header(pit: SnowPit) -> Iterable[Sequence[str]]:
     yield "# Date/Local Time", pit.time or NO_DATA
     yield "# Latitude", _number_text(pit.latitude_deg)
     yield "# Longitude", _number_text(pit.longitude_deg)
-    yield "# HS (cm)", _cm(pit.snow_height)
+    yield "# HS (cm)", _centimetre_text(pit.snow_height)
 
 
 def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str], list[Sequence[str]]]]:
@@ -121,7 +121,10 @@ def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str
     yield (
         "temperature",
         TEMPERATURE,
-        [(_cm(height - temperature.depth), f"{temperature.temperature_C:g}") for temperature in pit.temperatures],
+        [
+            (_centimetre_text(height - temperature.depth), f"{temperature.temperature_C:g}")
+            for temperature in pit.temperatures
+        ],
     )
     yield (
         "stratigraphy",
@@ -141,10 +144,10 @@ def _pit_tables(pit: SnowPit, height: float) -> Iterable[tuple[str, Sequence[str
 
 
 def _top_and_bottom(height: float, top: float, thickness: float | None) -> tuple[str, str]:
-    return _cm(height - top), NO_DATA if thickness is None else _cm(height - top - thickness)
+    return _centimetre_text(height - top), NO_DATA if thickness is None else _centimetre_text(height - top - thickness)
 
 
-def _cm(length: float | None) -> str:
+def _centimetre_text(length: float | None) -> str:
     return NO_DATA if length is None else f"{length / CM:.10g}"
 
 
@@ -179,7 +182,7 @@ def site_pit(analysis: Analysis, site: str) -> SnowPit:
         _numbers_of_text_column(campaign, site, "air_temperature_C"),
     )
     densities = tuple(_densities(campaign, site))
-    profiles = tuple(_recordings(analysis, site))
+    profiles = tuple(_used_recordings(analysis, site))
     first = profiles[0][0] if profiles else None
     assumed = [_NO_DEPTH.format("Temperatures")] if temperatures else []
     assumed += [_NO_DEPTH.format("Densities")] if not all(layer.top or layer.thickness for layer in densities) else []
@@ -260,7 +263,7 @@ def _samples(table: DensitySamples, site: str) -> Iterator[LayerDensity]:
             yield LayerDensity(top, density, thickness if is_placed else None)
 
 
-def _recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:
+def _used_recordings(analysis: Analysis, site: str) -> Iterator[tuple[SnowMicroPenProfile, EvaluatedRecording]]:
     pen = analysis.snow_micro_pen
     if pen is not None:
         for index, evaluated in enumerate(pen.evaluated):

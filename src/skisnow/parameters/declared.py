@@ -107,7 +107,7 @@ def require_effect(thing: Any) -> None:
             continue
         if not condition.holds(values[condition.key]):
             raise ParameterError("{name} is {value}; it goes with {condition}. Change one of them").tag(
-                "contradiction", name=quantity.name, value=_in_short(value), condition=condition.in_words
+                "contradiction", name=quantity.name, value=_short_text(value), condition=condition.in_words
             )
 
 
@@ -125,7 +125,7 @@ def build_declared(owner: type[T], values: Mapping[str, Any], *, section: str = 
     """
     several: dict[str, list[tuple[int, Any]]] = {}
     for quantity in own_quantities(owner):
-        value = values.get(_full(section, quantity.name))
+        value = values.get(_full_key(section, quantity.name))
         if isinstance(quantity, Word):
             continue
         if quantity.index is not None:
@@ -155,7 +155,7 @@ def replace_declared(thing: T, values: Mapping[str, Any], *, section: str = "") 
     for slot in _slots_of(type(thing)):
         current = getattr(thing, slot.field.name)
         for quantity in slot.own:
-            name = _full(section, quantity.name)
+            name = _full_key(section, quantity.name)
             if isinstance(quantity, Word) or name not in values:
                 if _loses_effect(quantity, values):
                     parts[slot.field.name] = slot.field.default
@@ -187,7 +187,7 @@ def values_of(thing: Any, *, section: str = "") -> dict[str, Any]:
         value = getattr(thing, slot.field.name)
         for quantity in slot.own:
             single = value if quantity.index is None else value[quantity.index]
-            values[_full(section, quantity.name)] = (
+            values[_full_key(section, quantity.name)] = (
                 quantity.word_of(value) if isinstance(quantity, Word) else quantity.in_unit(single)
             )
         if slot.parts and value is not None:
@@ -212,14 +212,14 @@ def declared_text(thing: Any) -> str:
     """
     pairs = ((name.rpartition(".")[2], value) for name, value in values_of(thing).items() if value is not None)
     glue = "\xa0"  # a name stays beside its value
-    values = ", ".join(f"{name} = {_in_short(value)}".replace(" ", glue) for name, value in pairs)
+    values = ", ".join(f"{name} = {_short_text(value)}".replace(" ", glue) for name, value in pairs)
     lines = textwrap.wrap(f"<{type(thing).__name__}: {values}>", _WIDEST, subsequent_indent="    ")
     return "\n".join(lines).replace(glue, " ")
 
 
-def _in_short(value: Any) -> str:
+def _short_text(value: Any) -> str:
     if isinstance(value, list):
-        return f"[{', '.join(map(_in_short, value))}]"
+        return f"[{', '.join(map(_short_text, value))}]"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
@@ -230,11 +230,11 @@ def _all_quantities(owner: type) -> Iterator[Quantity]:
         for part in slot.parts:
             for quantity in quantities(part):
                 yield replace(
-                    quantity, name=_full(slot.section.name, quantity.name), needed=quantity.needed and not otherwise
+                    quantity, name=_full_key(slot.section.name, quantity.name), needed=quantity.needed and not otherwise
                 )
 
 
-def _full(section: str, name: str) -> str:
+def _full_key(section: str, name: str) -> str:
     return f"{section}.{name}" if section and "." not in name else name
 
 

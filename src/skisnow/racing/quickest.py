@@ -171,8 +171,8 @@ def quickest_line(
     require_choice("model", model, get_args(RacerModel))
     begun = _start_line(scenario, gates, start)
     window, step = _window_and_step(len(begun.turns), window, step, ahead)
-    _require(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
-    search = _method(search, model)
+    _require_settings(evaluations=evaluations, population=population, spread=spread, settled=settled, room=room)
+    search = _search_method(search, model)
     if evaluations > 1:
         require_cmaes()
     require_executor(executor)
@@ -225,14 +225,14 @@ def _window_and_step(gates: int, window: int | None, step: int, ahead: int) -> t
     return window, step
 
 
-def _method(search: Search | None, model: RacerModel) -> Search:
+def _search_method(search: Search | None, model: RacerModel) -> Search:
     if search is None:
         return "surrogate" if model == "skier" else "cma"
     require_choice("search", search, get_args(Search))
     return search
 
 
-def _require(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
+def _require_settings(*, evaluations: int, population: int | None, spread: float, settled: float, room: float) -> None:
     require_range("evaluations", evaluations, 1)
     require_range("population", 4 if population is None else population, 4)
     require_range("spread", spread, 0.0, 1.0, above=True)

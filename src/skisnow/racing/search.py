@@ -95,7 +95,7 @@ class Batches:
     @property
     def least(self) -> Evaluated:
         """The first minimum so far."""
-        return min(self.found, key=lambda evaluation: _finite(evaluation.value))
+        return min(self.found, key=lambda evaluation: _finite_or_failed(evaluation.value))
 
     def evaluate(self, batch: Sequence[FloatArray]) -> None:
         """Evaluate a batch of places in the unit cube."""
@@ -138,7 +138,7 @@ def minimise(
     while len(batches.found) < count and not optimiser.should_stop():
         candidates = [optimiser.ask() for _ in range(optimiser.population_size)]
         batches.evaluate(candidates)
-        values = [_finite(evaluation.value) for evaluation in batches.found[-len(candidates) :]]
+        values = [_finite_or_failed(evaluation.value) for evaluation in batches.found[-len(candidates) :]]
         optimiser.tell(list(zip(candidates, values, strict=True)))
         if max(values) - min(values) < settled:
             break
@@ -153,5 +153,5 @@ def optimiser_within(
     return require_cmaes().CMA(mean=mean, sigma=spread, bounds=limits, seed=state, population_size=population)
 
 
-def _finite(value: float) -> float:
+def _finite_or_failed(value: float) -> float:
     return value if np.isfinite(value) else FAILED

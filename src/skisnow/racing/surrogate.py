@@ -75,10 +75,10 @@ class Surrogate:
         begin = np.array([math.log(0.7)] * kinds + [math.log(0.05)])
         logs = minimize(misfit, begin, method="L-BFGS-B", bounds=bounds, options={"maxiter": 40}).x
         lengths = np.tile(np.exp(logs[:kinds]), places.shape[1] // kinds)
-        return cls._of_values(places, standard, lengths, level, scale, math.exp(logs[kinds]))
+        return cls._fitted_to(places, standard, lengths, level, scale, math.exp(logs[kinds]))
 
     @classmethod
-    def _of_values(
+    def _fitted_to(
         cls,
         places: FloatArray,
         standard: FloatArray,
@@ -103,7 +103,7 @@ class Surrogate:
         variance = (
             _kernel(self.places, self.places, self.lengths) @ self._weights + (self.noise**2 + SMALLEST) * self._weights
         )
-        return self._of_values(
+        return self._fitted_to(
             np.vstack([self.places, place]), np.concatenate([variance, expected]), self.lengths, self.level, self.scale,
             self.noise,
         )  # fmt: skip

@@ -204,14 +204,14 @@ def changed_scenario(scenario: Scenario, changes: Mapping[str, object]) -> Scena
     if isinstance(parts.get("ski"), str | Path):
         parts["ski"] = read_ski(parts["ski"])
     if "snow" in parts:
-        parts["contact"] = _on_snow(parts.get("contact", scenario.contact), parts.pop("snow"))
+        parts["contact"] = _contact_on_snow(parts.get("contact", scenario.contact), parts.pop("snow"))
     if "snow_map" in parts:
-        parts["contact"] = _on_map(parts.get("contact", scenario.contact), parts.pop("snow_map"))
+        parts["contact"] = _contact_on_map(parts.get("contact", scenario.contact), parts.pop("snow_map"))
     scenario = replace(scenario, **parts)
     _require_changeable(scenario, numbers)
     _require_effect(scenario, numbers)
     measured = {"unloading": UNLOADING in numbers, "displacement": DISPLACEMENT in numbers}
-    snow = with_numbers(scenario.contact.snow.without_measured(**measured), _in_range(numbers))
+    snow = with_numbers(scenario.contact.snow.without_measured(**measured), _strengths_in_range(numbers))
     if snow is not scenario.contact.snow:
         scenario = replace(scenario, contact=replace(scenario.contact, snow=snow))
     return replace_declared(scenario, numbers)
@@ -241,11 +241,11 @@ def _require_effect(scenario: Scenario, numbers: Mapping[str, object]) -> None:
             )
 
 
-def _in_range(numbers: Mapping[str, object]) -> dict[str, Any]:
+def _strengths_in_range(numbers: Mapping[str, object]) -> dict[str, Any]:
     return {name: SCENARIO_KEYS[name].in_range(numbers[name]) for name in (H_V, S_F) if name in numbers}
 
 
-def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
+def _contact_on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     new = published_snow(snow) if isinstance(snow, str) else snow
     if not isinstance(new, SnowProperties):
         raise ParameterError(
@@ -257,7 +257,7 @@ def _on_snow(contact: Contact, snow: SnowProperties | str) -> Contact:
     return replace(contact, snow=new, snow_map=None, unloading_ratio=ratio, shear_displacement=displacement)
 
 
-def _on_map(contact: Contact, snow_map: SnowMap | None) -> Contact:
+def _contact_on_map(contact: Contact, snow_map: SnowMap | None) -> Contact:
     snow = contact.snow if snow_map is None else snow_map.means_of(contact.snow)
     return replace(contact, snow=snow, snow_map=snow_map)
 

@@ -306,7 +306,10 @@ class Run(Shown):
         rows = (
             *([("laws", f"given in Python: {law_names}")] if law_names else []),
             ("run length", f"{amount(self.run_length, 'm')} in {amount(self.simulated_s, 's')}"),
-            ("speed", f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_fastest(self.speed)}"),
+            (
+                "speed",
+                f"{span(float(self.speed[0]), float(self.speed[-1]), 'm/s')}, maximum {_fastest_text(self.speed)}",
+            ),
             ("heading", span(float(self.heading[0]) / DEGREE, float(self.heading[-1]) / DEGREE, "°")),
             ("turn radius", "straight" if radius is None else f"{amount(radius, 'm')} (median)"),
             ("edge depth", f"maximum {amount(float(np.nanmax(self.skis.edge_depth)) / MM, 'mm')}"),
@@ -368,6 +371,6 @@ class Run(Shown):
         return float(np.quantile(radius, share)) if radius.size else None
 
 
-def _fastest(values: FloatArray) -> str:
+def _fastest_text(values: FloatArray) -> str:
     finite = values[np.isfinite(values)]
     return amount(float(finite.max()) if finite.size else None, "m/s")

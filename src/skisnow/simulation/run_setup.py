@@ -252,13 +252,13 @@ def laid_out(scenario: Scenario, snow: SnowField | None = None, *, laws: Laws | 
     elements, spacing = _mesh(solver, length, wavelength)
     ski = clamped(scenario.flexing_ski, scenario.clamp_length, elements, scenario.footprint_stiffness, finer_ends=True)
     body = sledge_body(
-        scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity(scenario),
+        scenario.sledge, ski, damping_ratio=scenario.damping_ratio, gravity=_gravity_vector(scenario),
         drag=0.5 * air.density * air.drag_area, drag_height=air.centre_of_pressure_height,
     )  # fmt: skip
-    snow = snow or _snow(scenario, laws or Laws())
+    snow = snow or _snow_field(scenario, laws or Laws())
     runner = Runner.of(scenario.ski, nodes=ski.node)
     contact = SnowContact(snow, [runner, runner], spacing=spacing)
-    dynamics = Dynamics(body, contact, *_start(scenario, depth), _control(scenario))
+    dynamics = Dynamics(body, contact, *_start(scenario, depth), _step_control(scenario))
     numbers = {"elements": float(elements), "line_spacing_m": spacing, "load_N": load}
     return Setup(scenario, dynamics, snow, ski.node, numbers, math.inf)
 
@@ -275,7 +275,7 @@ def _mesh(solver: Solver, length: float, wavelength: float) -> tuple[int, float]
     return solver.elements or elements, solver.line_spacing or spacing
 
 
-def _control(scenario: Scenario) -> StepControl:
+def _step_control(scenario: Scenario) -> StepControl:
     solver = scenario.solver
     tolerance = solver.tolerance * (FAST if solver.method == "fast" else 1.0)
     longest = FAST_LONGEST if solver.method == "fast" else LONGEST_STEP
@@ -305,7 +305,7 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     return load, depth, wavelength
 
 
-def _snow(scenario: Scenario, laws: Laws) -> SnowField:
+def _snow_field(scenario: Scenario, laws: Laws) -> SnowField:
     contact = scenario.contact
     over_place = contact.snow_map
     carries_side_force = laws.penetration is not None and laws.penetration.along_base_normal
@@ -346,7 +346,7 @@ def _strength_share(snow_map: SnowMap | None) -> float | Grid:
     return Grid(grid.x, grid.y, grid.values / snow_map.mean_stress)
 
 
-def _gravity(scenario: Scenario) -> FloatArray:
+def _gravity_vector(scenario: Scenario) -> FloatArray:
     slope, g = scenario.slope, scenario.gravity
     if isinstance(slope, Plane):
         return np.array([g * math.sin(slope.angle), 0.0, -g * math.cos(slope.angle)])

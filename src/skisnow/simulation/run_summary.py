@@ -54,8 +54,8 @@ def summary_dict(
         "wall_s": json_number(run.wall_s),
         "steps": int(run.steps),
         "rejected_steps": int(run.rejected_steps),
-        **_moments(run),
-        **_gates(run),
+        **_moments_json(run),
+        **_gates_json(run),
         "energies": energies_dict(run),
         "energy_balance_error": json_number(run.energy_balance_error),
         "numbers": {name: json_number(value) for name, value in run.numbers.items()},
@@ -65,7 +65,7 @@ def summary_dict(
         "ski": {"name": run.scenario.ski.name, "source": run.scenario.ski.source},
         **checked,
         "warnings": [*warnings, *run_warnings(run)],
-        "provenance": _provenance(files),
+        "provenance": _provenance_json(files),
     }
 
 
@@ -116,14 +116,14 @@ def run_warnings(run: Run) -> tuple[str, ...]:
     )
 
 
-def _gates(run: Run) -> dict[str, Any]:
+def _gates_json(run: Run) -> dict[str, Any]:
     result = run_gates(run)
     if result is None:
         return {"gates_passed": None, "gates_missed": [], "gate_times_s": []}
     return gates_dict(result)
 
 
-def _moments(run: Run) -> dict[str, Any]:
+def _moments_json(run: Run) -> dict[str, Any]:
     finite = run.speed[np.isfinite(run.speed)]
     return {
         "end": end_dict(run),
@@ -133,7 +133,7 @@ def _moments(run: Run) -> dict[str, Any]:
     }
 
 
-def _provenance(files: Iterable[Path]) -> dict[str, Any]:
+def _provenance_json(files: Iterable[Path]) -> dict[str, Any]:
     packages = ("skisnow", "numpy", "scipy")
     return {
         "files": {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in files},

@@ -80,7 +80,7 @@ _TO_OPENSIM: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0
 
 def boots_columns(run: Run) -> dict[str, FloatArray]:
     """Columns by name, (n,) each: time, and of each boot pose, forces and moments in the slope's and its own axes."""
-    boots = _boots(run)
+    boots = _boot_history(run)
     columns = {"time_s": run.time}
     for k, side in enumerate(SIDES):
         values = {name: boots.place[:, k, axis] for axis, name in enumerate(OF_SLOPE)}
@@ -102,7 +102,7 @@ def opensim_columns(run: Run) -> dict[str, FloatArray]:
     """
     columns = boots_columns(run)
     columns = {"time": columns.pop("time_s"), **columns}
-    boots = _boots(run)
+    boots = _boot_history(run)
     for k, side in enumerate(SIDES):
         for name, values in (("force_v", boots.force), ("force_p", boots.place), ("moment_m", boots.moment)):
             turned = values[:, k] @ _TO_OPENSIM.T
@@ -161,7 +161,7 @@ def write_boots(run: Run, path: str | Path) -> None:
         write_file(path.with_name(f"{path.stem}_external_loads.xml"), external_loads(path.name))
 
 
-def _boots(run: Run) -> BootHistory:
+def _boot_history(run: Run) -> BootHistory:
     if run.boots is None:
         raise ParameterError("this run has no data of its boots: it was not made by skisnow.simulate").tag("no_data")
     return run.boots

@@ -91,16 +91,16 @@ def largest_standing(setup: Setup, value: float, sledge_with: Callable[[float], 
 
     Sledges with boots that move are not tried: their control decides where the weight is.
     """
-    if setup.drive is not None or value == 0.0 or not _stands(setup, sledge_with(_LOWEST * value)):
+    if setup.drive is not None or value == 0.0 or not _rests_upright(setup, sledge_with(_LOWEST * value)):
         return None
     low, high = _LOWEST, 1.0
     for _ in range(HALVINGS):
         middle = (low + high) / 2.0
-        low, high = (middle, high) if _stands(setup, sledge_with(middle * value)) else (low, middle)
+        low, high = (middle, high) if _rests_upright(setup, sledge_with(middle * value)) else (low, middle)
     return _two_digits(low * value)
 
 
-def _stands(setup: Setup, sledge: RigidSledge) -> bool:
+def _rests_upright(setup: Setup, sledge: RigidSledge) -> bool:
     trial = laid_out(replace(setup.scenario, sledge=sledge), setup.snow)
     rests = trial.dynamics.find_equilibrium() <= AT_REST
     leaning, pitching = trial.tilt

@@ -134,7 +134,7 @@ def verify(run: Run, simulate: Simulate | None = None) -> tuple[Refinement, ...]
     """
     again = simulate or _repeat_with_laws(run)
     finer = refine(run, again)
-    return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_nudge(run, again))
+    return finer if len(finer) < len(refined_solvers(run)) else (*finer, *_slightly_changed_runs(run, again))
 
 
 def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
@@ -145,12 +145,14 @@ def refine(run: Run, simulate: Simulate) -> tuple[Refinement, ...]:
         if finer.outcome == "interrupted":
             break
         refinements.append(
-            Refinement(key, _used_setting(run, key), _solver_number(solver, key), _distance(run, finer), finer.outcome)
+            Refinement(
+                key, _used_setting(run, key), _solver_number(solver, key), _distance_of_ends(run, finer), finer.outcome
+            )
         )
     return tuple(refinements)
 
 
-def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
+def _slightly_changed_runs(run: Run, simulate: Simulate) -> Iterator[Refinement]:
     for key, scenarios in nudged_scenarios(run).items():
         moved: list[Refinement] = []
         for scenario in scenarios:
@@ -158,7 +160,7 @@ def _nudge(run: Run, simulate: Simulate) -> Iterator[Refinement]:
             if other.outcome == "interrupted":
                 return
             was, value = _scenario_number(run.scenario, key), _scenario_number(scenario, key)
-            moved.append(Refinement(key, was, value, _distance(run, other), other.outcome))
+            moved.append(Refinement(key, was, value, _distance_of_ends(run, other), other.outcome))
         yield max(moved, key=lambda refinement: math.inf if refinement.end_moves is None else refinement.end_moves)
 
 
@@ -214,5 +216,5 @@ def _solver_number(solver: Solver, key: str) -> float:
     return value
 
 
-def _distance(run: Run, finer: Run) -> float | None:
+def _distance_of_ends(run: Run, finer: Run) -> float | None:
     return json_number(float(np.linalg.norm(run.place[-1] - finer.place[-1])))

@@ -261,16 +261,18 @@ def table_growth(ski: Ski, name: str) -> TableGrowth:
     step = _LENGTH_STEP if key.endswith("_mm") else 1e-4 * abs(value) or _LENGTH_STEP
     if table in STIFFNESSES:
         rows = _stiffness_table(parsed, table, _layout_of(parsed)).growths(ski.station)
-        memo |= {f"ski.{table}[{row}]": _of_table(EDITED_COLUMNS[table], of) for row, of in enumerate(rows, start=1)}
+        memo |= {
+            f"ski.{table}[{row}]": _growth_of_table(EDITED_COLUMNS[table], of) for row, of in enumerate(rows, start=1)
+        }
     elif table == "base_height":
-        memo[name] = _of_table(table, _part_growth(parsed, key, step, table, ski.station)[1])
+        memo[name] = _growth_of_table(table, _part_growth(parsed, key, step, table, ski.station)[1])
     elif table == "width" and parsed.tip_end_width is None:
         units = MM * _unit_widths(parsed, _layout_of(parsed), ski.station)
-        memo |= {f"ski.{width}": _of_table(table, unit) for width, unit in zip(WIDTHS, units, strict=True)}
+        memo |= {f"ski.{width}": _growth_of_table(table, unit) for width, unit in zip(WIDTHS, units, strict=True)}
     elif table == "width":
         sides = (_with_changed_key(parsed, key, side * step * MM) for side in (1.0, -1.0))
         ends = [_outline_of(side, _layout_of(side)).width_at(ski.station) for side in sides]
-        return _of_table(table, (ends[0] - ends[1]) / (2.0 * step))
+        return _growth_of_table(table, (ends[0] - ends[1]) / (2.0 * step))
     else:
         return _of_several(ski, name, step)
     return memo[name]
@@ -286,15 +288,17 @@ def table_growths(ski: Ski, names: tuple[str, ...]) -> tuple[FloatArray, FloatAr
 def _of_edit(ski: Ski, name: str) -> TableGrowth:
     """Derivatives by a factor, or by the value of a curve at one of the `edit_stations`."""
     if name == SIDECUT:
-        return _of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
+        return _growth_of_table("width", ski.width * (_with_deeper_sidecut(ski, 2.0) - 1.0))
     if name in EDITED_COLUMNS:
-        return _of_table(EDITED_COLUMNS[name], np.asarray(getattr(ski, EDITED_COLUMNS[name])))
+        return _growth_of_table(EDITED_COLUMNS[name], np.asarray(getattr(ski, EDITED_COLUMNS[name])))
     column, row = _column_and_row(name)
     stations, unit = edit_stations(ski), COLUMNS[column].factor
     share, table = StationTable(stations, np.eye(len(stations))[row]).at(ski.station), EDITED_COLUMNS[column]
     if column == "base_height_mm":
-        return _of_table(table, unit * (share - np.interp(0.0, ski.station[::-1], share[::-1])))
-    return _of_table(table, unit * share * np.asarray(getattr(ski, table)) / values_at(ski, stations)[column][row])
+        return _growth_of_table(table, unit * (share - np.interp(0.0, ski.station[::-1], share[::-1])))
+    return _growth_of_table(
+        table, unit * share * np.asarray(getattr(ski, table)) / values_at(ski, stations)[column][row]
+    )
 
 
 def _of_several(ski: Ski, name: str, step: float) -> TableGrowth:
@@ -349,7 +353,7 @@ def _tip_end_ratio(keys: SkiFile) -> float | None:
     return None if keys.tip_end_width is None else keys.tip_end_width / (keys.tip_width or 1.0)
 
 
-def _of_table(table: str, growth: FloatArray) -> TableGrowth:
+def _growth_of_table(table: str, growth: FloatArray) -> TableGrowth:
     tables = np.zeros((len(_TABLES), len(growth)))
     tables[_TABLES.index(table)] = growth
     return TableGrowth(tables, np.zeros(len(_NUMBERS)))

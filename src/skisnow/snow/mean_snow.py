@@ -54,10 +54,10 @@ def mean_snow(
         snow_hardness=math.exp(H_V) * N_PER_MM3,
         failure_shear_stress=None if S_f is None else S_f * N_PER_MM2,
         source=source,
-        snow_hardness_interval=_scaled(
+        snow_hardness_interval=_interval_in_unit(
             H_V_interval and (math.exp(H_V_interval[0]), math.exp(H_V_interval[1])), N_PER_MM3
         ),
-        failure_shear_stress_interval=_scaled(S_f_interval, N_PER_MM2),
+        failure_shear_stress_interval=_interval_in_unit(S_f_interval, N_PER_MM2),
     )
 
 
@@ -113,7 +113,7 @@ def no_used_experiment(source: object, site: str | None, sites: Sequence[str]) -
     return ParameterError(message).tag("no_data")
 
 
-def _scaled(interval: Interval | None, unit: float) -> Interval | None:
+def _interval_in_unit(interval: Interval | None, unit: float) -> Interval | None:
     return interval and (interval[0] * unit, interval[1] * unit)
 
 

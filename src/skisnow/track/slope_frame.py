@@ -84,7 +84,7 @@ def in_slope_frame(
     ----------
     The page docs/files/track.md.
     """
-    _require(track, fall_line_azimuth, slope_angle, origin)
+    _require_frame_arguments(track, fall_line_azimuth, slope_angle, origin)
     angle = slope_angle or 0.0
     axes = slope_axes(fall_line_azimuth, angle)
     place = _rotate(track.place - np.asarray(origin, float), axes, missing_height)
@@ -116,7 +116,9 @@ def _rotate_sd(sd: FloatArray, axes: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(parts.sum(axis=-1)))
 
 
-def _require(track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray) -> None:
+def _require_frame_arguments(
+    track: Track, azimuth: float, slope_angle: float | None, origin: Sequence[float] | FloatArray
+) -> None:
     if track.axes == "slope":
         raise ParameterError("the track {name} is in a slope's frame already: {frame}").tag(
             "already_on_slope", name=track.name, frame=track.frame

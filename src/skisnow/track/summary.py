@@ -188,11 +188,13 @@ def summary_dict(summary: TrackSummary) -> Json:
         "distance_m": json_number(summary.distances[summary.motion.arc_length_source]),
         "distance_source": summary.motion.arc_length_source.replace(" ", "_"),
         "distances_m": {name.replace(" ", "_"): json_number(value) for name, value in summary.distances.items()},
-        "distance_interval_m": _pair(summary.distance_interval if from_places else None),
+        "distance_interval_m": _interval_list(summary.distance_interval if from_places else None),
         "horizontal_distance_m": json_number(None if horizontal is None else horizontal.value),
-        "horizontal_distance_interval_m": _pair(None if horizontal is None else (horizontal.low, horizontal.high)),
+        "horizontal_distance_interval_m": _interval_list(
+            None if horizontal is None else (horizontal.low, horizontal.high)
+        ),
         "max_speed_m_per_s": json_number(summary.max_speed),
-        "max_speed_interval_m_per_s": _pair(summary.max_speed_interval),
+        "max_speed_interval_m_per_s": _interval_list(summary.max_speed_interval),
         "speed_source": summary.motion.speed_source,
         "smoothing": {
             "method": "local cubic least squares",
@@ -230,14 +232,14 @@ def _stretch_dict(stretch: Stretch, height_key: str, sign: float) -> Json:
         "end_s": json_number(stretch.end),
         "distance_m": json_number(stretch.distance),
         height_key: json_number(None if stretch.descent is None else sign * stretch.descent),
-        "distance_interval_m": _pair(stretch.distance_interval),
+        "distance_interval_m": _interval_list(stretch.distance_interval),
         "max_speed_m_per_s": json_number(stretch.max_speed),
-        "max_speed_interval_m_per_s": _pair(stretch.max_speed_interval),
+        "max_speed_interval_m_per_s": _interval_list(stretch.max_speed_interval),
         "gaps": stretch.gaps,
     }
 
 
-def _pair(interval: tuple[float, float] | None) -> list[float | None] | None:
+def _interval_list(interval: tuple[float, float] | None) -> list[float | None] | None:
     return None if interval is None else [json_number(end) for end in interval]
 
 

@@ -111,7 +111,7 @@ def read_gate_gaps(folder: Path, other: Path) -> tuple[GateGap, ...] | None:
     Raises ParameterError: a gates.csv cannot be read.
     """
     tables = [_gate_rows(run / GATES_FILE) for run in (folder, other) if (run / GATES_FILE).is_file()]
-    if len(tables) < 2 or not _same_course(*tables):
+    if len(tables) < 2 or not _are_gates_at_same_places(*tables):
         return None
     return compare_gates(*tables)
 
@@ -132,7 +132,7 @@ def compare_gates(rows: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str
     return tuple(gaps)
 
 
-def _same_course(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
+def _are_gates_at_same_places(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
     def apart(own: dict[str, Any], its: dict[str, Any]) -> float:
         return math.hypot(own["x_m"] - its["x_m"], own["y_m"] - its["y_m"])
 
