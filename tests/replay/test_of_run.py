@@ -151,7 +151,7 @@ def test_settings_are_words_for_people() -> None:
     assert facts["S_f"] == "0.5 N/mm²"
     assert facts["Skis"].startswith("giant-slalom, ") and "30°" in facts["Skis"]
     for stress, word in ((None, "not given"), (0.5, "0.5 N/mm²")):
-        told = dict(facts_of(outcome="energy_open", hardness=0.2, stress=stress, ratio=10.0, skis=""))
+        told = dict(facts_of(outcome="energy_open", hardness=0.2, stress=stress, ratio=10.0, ski="", edge_angle=None))
         assert (told["Outcome"], told["S_f"], told["k_u / H_V"]) == ("energy open", word, "10")
 
 

@@ -124,13 +124,12 @@ def compare_tracks(
         plain = _fit_and_compare(plain, set(fit), clock)
     _require_near(plain.simulated, plain.measured, names)
     fitted = plain.fitted
-    if fitted is not None:
-        azimuth = None if together or not placed else _azimuth(fitted, measured)
+    if placed and fitted is not None:
+        azimuth = None if together else _azimuth(fitted, measured)
         fitted = replace(fitted, slope_angle=laid.angle, azimuth=azimuth)
-    if not together and fitted is not None and placed:
-        warnings.append(
-            f"{_frames_sentence(simulated, measured)}; {_direction_sentence(fitted, laid, simulated, measured)}"
-        )
+        if not together:
+            direction = _direction_sentence(fitted, laid, simulated, measured)
+            warnings.append(f"{_frames_sentence(simulated, measured)}; {direction}")
     return replace(
         plain,
         fitted=fitted,
@@ -278,16 +277,14 @@ def _direction_sentence(fitted: FittedOffsets, laid: LaidTracks, simulated: Trac
 
 
 def _coverage_warnings(comparison: Comparison) -> list[str]:
-    warnings = []
-    for name in ("nearest", "arc_length", "time"):
-        numbers = getattr(comparison, name).numbers
-        if numbers is not None and numbers.compared < MOST_COMPARED * comparison.measured.length:
-            warnings.append(
-                f"{name.replace('_', ' ')}: only {numbers.compared:.4g} of the "
-                f"{comparison.measured.length:.4g} m of the "
-                "measured track could be compared"
-            )
-    return warnings
+    whole = comparison.measured.length
+    compared = {name: getattr(comparison, name).numbers for name in DEFINITIONS}
+    return [
+        f"{name.replace('_', ' ')}: only {numbers.compared:.4g} of the {whole:.4g} m of the measured track could be "
+        "compared"
+        for name, numbers in compared.items()
+        if numbers is not None and numbers.compared < MOST_COMPARED * whole
+    ]
 
 
 def _ambiguity_warnings(comparison: Comparison) -> list[str]:

@@ -51,29 +51,64 @@ class NearestPlaces:
     beyond: BoolArray
 
 
-class PieceTree:
-    """Search structure for the nearest of many straight pieces.
+class Path:
+    """Path of straight pieces through points, with a search for nearest places.
 
     Long pieces are divided by further nodes, and SciPy's k-d tree finds the nodes next to a point. A place within a
     piece of length L at the distance r from a point has an end of its piece within √(r² + L²/4). The number of
     neighbouring nodes is therefore doubled until the next one is farther than that for the nearest piece so far.
 
-    places: (m + 1, d) m, ends of m pieces, at least one.
+    points: (m, d) m, points in their order, d = 2 or 3, all finite, at least two different ones.
     """
 
-    def __init__(self, places: FloatArray) -> None:
+    def __init__(self, points: FloatArray) -> None:
+        places = points[np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])]
+        if len(places) < 2:
+            raise ParameterError("a path needs two points in different places; all of these are in one").tag(
+                "one_place"
+            )
         self._start, self._along = places[:-1], np.diff(places, axis=0)
         self._squared = (self._along**2).sum(axis=1)
-        lengths = np.sqrt(self._squared)
-        counts = np.maximum(1, np.ceil(lengths / (_LONGEST * lengths.mean()))).astype(np.intp)
+        self._piece = np.sqrt(self._squared)
+        self._arc_length = np.concatenate([[0.0], np.cumsum(self._piece)])
+        counts = np.maximum(1, np.ceil(self._piece / (_LONGEST * self._piece.mean()))).astype(np.intp)
         piece = np.repeat(np.arange(len(counts)), counts)
         share = (np.arange(len(piece)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[piece]
         nodes = self._start[piece] + share[:, None] * self._along[piece]
         self._tree = cKDTree(np.concatenate([nodes, places[-1:]]))
         self._before, self._after = np.append(piece[:1], piece), np.append(piece, piece[-1:])
-        self._slack = 0.25 * float((lengths / counts).max()) ** 2
+        self._slack = 0.25 * float((self._piece / counts).max()) ** 2
 
-    def nearest(self, points: FloatArray) -> IntArray:
+    @property
+    def first(self) -> FloatArray:
+        """Its first point, (d,) (m)."""
+        return self._start[0]
+
+    @property
+    def length(self) -> float:
+        """Length of all pieces (m)."""
+        return float(self._arc_length[-1])
+
+    def nearest(self, points: FloatArray) -> NearestPlaces:
+        """Nearest places on the pieces for points (n, d)."""
+        piece = self._nearest_pieces(points)
+        start, along = self._start[piece], self._along[piece]
+        raw = ((points - start) * along).sum(axis=1) / self._squared[piece]
+        share = np.clip(raw, 0.0, 1.0)
+        foot = start + share[:, None] * along
+        distance = np.linalg.norm(points - foot, axis=1)
+        ahead = np.where(piece == len(self._piece) - 1, raw - 1.0, -np.inf)
+        ahead = np.maximum(ahead, np.where(piece == 0, -raw, -np.inf)) * self._piece[piece]
+        return NearestPlaces(
+            foot=foot,
+            distance=distance,
+            arc_length=self._arc_length[piece] + share * self._piece[piece],
+            direction=along / self._piece[piece, None],
+            where=2 * piece + np.sign(raw - share).astype(np.intp),
+            beyond=ahead > np.maximum(BESIDE_END * distance, 1e-9 * self.length),
+        )
+
+    def _nearest_pieces(self, points: FloatArray) -> IntArray:
         """Number (n,) of the piece nearest to each point (n, d); the first of several equally near ones."""
         nearest = np.empty(len(points), dtype=np.intp)
         for first in range(0, len(points), _CHUNK):
@@ -103,55 +138,6 @@ class PieceTree:
         share = np.clip(np.divide(share, squared, out=np.zeros_like(share), where=squared > 0.0), 0.0, 1.0)
         apart -= share[:, None] * along
         return np.asarray(np.einsum("nd,nd->n", apart, apart)).reshape(piece.shape)
-
-
-class Path:
-    """Path of straight pieces through points, with a search for nearest places.
-
-    points: (m, d) m, points in their order, d = 2 or 3, all finite, at least two different ones.
-    """
-
-    def __init__(self, points: FloatArray) -> None:
-        places = points[np.concatenate([[True], np.any(np.diff(points, axis=0) != 0.0, axis=1)])]
-        if len(places) < 2:
-            raise ParameterError("a path needs two points in different places; all of these are in one").tag(
-                "one_place"
-            )
-        self._start = places[:-1]
-        self._along = np.diff(places, axis=0)
-        self._squared = (self._along**2).sum(axis=1)
-        self._piece = np.sqrt(self._squared)
-        self._arc_length = np.concatenate([[0.0], np.cumsum(self._piece)])
-        self._tree = PieceTree(places)
-
-    @property
-    def first(self) -> FloatArray:
-        """Its first point, (d,) (m)."""
-        return self._start[0]
-
-    @property
-    def length(self) -> float:
-        """Length of all pieces (m)."""
-        return float(self._arc_length[-1])
-
-    def nearest(self, points: FloatArray) -> NearestPlaces:
-        """Nearest places on the pieces for points (n, d)."""
-        piece = self._tree.nearest(points)
-        start, along = self._start[piece], self._along[piece]
-        raw = ((points - start) * along).sum(axis=1) / self._squared[piece]
-        share = np.clip(raw, 0.0, 1.0)
-        foot = start + share[:, None] * along
-        distance = np.linalg.norm(points - foot, axis=1)
-        ahead = np.where(piece == len(self._piece) - 1, raw - 1.0, -np.inf)
-        ahead = np.maximum(ahead, np.where(piece == 0, -raw, -np.inf)) * self._piece[piece]
-        return NearestPlaces(
-            foot=foot,
-            distance=distance,
-            arc_length=self._arc_length[piece] + share * self._piece[piece],
-            direction=along / self._piece[piece, None],
-            where=2 * piece + np.sign(raw - share).astype(np.intp),
-            beyond=ahead > np.maximum(BESIDE_END * distance, 1e-9 * self.length),
-        )
 
 
 def distance_from_path(points: FloatArray, path: FloatArray) -> FloatArray:

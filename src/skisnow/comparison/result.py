@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
@@ -30,16 +30,10 @@ MEANS: Final = (
 class Distances(Shown):
     """Distances by one of the three definitions.
 
-    Attributes
-    ----------
-    definition
-        Definition in words.
-    apart
-        Offsets along the measured track; None if they cannot be computed.
-    numbers
-        Largest, mean and rms distance (m); None if nothing can be compared.
-    reason
-        Reason for missing numbers.
+    definition: definition in words.
+    apart: offsets along the measured track; None if they cannot be computed.
+    numbers: largest, mean and rms distance (m); None if nothing can be compared.
+    reason: reason for missing numbers.
     """
 
     definition: str
@@ -63,30 +57,18 @@ class Distances(Shown):
 class FittedOffsets(Shown):
     """Fitted offsets of the simulated track, and the comparison without them.
 
-    Attributes
-    ----------
-    what
-        Names of the fitted offsets: start, heading, time.
-    moved
-        Displacement (m) of the first point, (2,) or (3,).
-    turned
-        Rotation (rad) about the vertical through the first point, positive to the left.
-    turned_error
-        Half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another heading.
-    later
-        Fitted change (s) of the simulated track's time relative to the measured one's.
-    undetermined
-        Number of undetermined directions; the track was not moved along them.
-    rms
-        Root mean square (m) of the minimised nearest distances; None if only the time was fitted.
-    rival
-        Another motion that fits nearly as well, or None.
-    before
-        Comparison without the fit.
-    slope_angle
-        Inclination (rad) by which a track was rotated onto the map before the fit; None if it was not.
-    azimuth
-        Compass direction (rad, clockwise from north) of x of the track in the slope's axes; None without a compass.
+    what: names of the fitted offsets: start, heading, time.
+    moved: displacement (m) of the first point, (2,) or (3,).
+    turned: rotation (rad) about the vertical through the first point, positive to the left.
+    turned_error: half of the 95 % interval of `turned` (rad); 0 if no heading was fitted, None if `rival` has another
+        heading.
+    later: fitted change (s) of the simulated track's time relative to the measured one's.
+    undetermined: number of undetermined directions; the track was not moved along them.
+    rms: root mean square (m) of the minimised nearest distances; None if only the time was fitted.
+    rival: another motion that fits nearly as well, or None.
+    before: comparison without the fit.
+    slope_angle: inclination (rad) by which a track was rotated onto the map before the fit; None if it was not.
+    azimuth: compass direction (rad, clockwise from north) of x of the track in the slope's axes, if there is one.
     """
 
     what: tuple[str, ...]
@@ -198,52 +180,45 @@ def _distances_of_each_kind(comparison: Comparison) -> Json:
 
 
 def _distances_json(distances: Distances, length: float) -> Json:
-    numbers = distances.numbers
-    metres = {
-        "max_m": None if numbers is None else numbers.max,
-        "mean_m": None if numbers is None else numbers.mean,
-        "rms_m": None if numbers is None else numbers.rms,
-    }
-    shares = {
-        f"{key.removesuffix('_m')}_share": None if value is None else value / length for key, value in metres.items()
-    }
+    numbers = {} if distances.numbers is None else asdict(distances.numbers)
+    metres = {name: numbers.get(name) for name in ("max", "mean", "rms")}
     return {
-        **metres,
-        **shares,
-        "max_at_m": numbers and numbers.max_at,
-        "compared_m": numbers.compared if numbers else 0.0,
-        "compared_share": numbers.compared / length if numbers else 0.0,
+        **{f"{name}_m": value for name, value in metres.items()},
+        **{f"{name}_share": None if value is None else value / length for name, value in metres.items()},
+        "max_at_m": numbers.get("max_at"),
+        "compared_m": numbers.get("compared", 0.0),
+        "compared_share": numbers.get("compared", 0.0) / length,
         "definition": distances.definition,
         "reason": distances.reason,
     }
 
 
-def _rival_dict(rival: Motion) -> Json:
-    return {
-        "moved_x_m": float(rival.moved[0]),
-        "moved_y_m": float(rival.moved[1]),
-        "turned_deg": rival.turned / DEGREE,
-        "rms_m": rival.rms,
-        "compared_share": rival.share,
-    }
-
-
 def _fitted_dict(fitted: FittedOffsets) -> Json:
-    height = fitted.moved[2] if len(fitted.moved) > 2 else None
+    rival = fitted.rival
     return {
         "what": list(fitted.what),
         "moved_x_m": fitted.moved[0],
         "moved_y_m": fitted.moved[1],
-        "moved_z_m": height,
+        "moved_z_m": fitted.moved[2] if len(fitted.moved) > 2 else None,
         "turned_deg": fitted.turned / DEGREE,
         "later_s": fitted.later,
-        "turned_error_deg": None if fitted.turned_error is None else fitted.turned_error / DEGREE,
-        "rival": None if fitted.rival is None else _rival_dict(fitted.rival),
-        "slope_angle_deg": None if fitted.slope_angle is None else fitted.slope_angle / DEGREE,
-        "fall_line_azimuth_deg": None if fitted.azimuth is None else fitted.azimuth / DEGREE,
+        "turned_error_deg": _degrees(fitted.turned_error),
+        "rival": rival and {
+            "moved_x_m": float(rival.moved[0]),
+            "moved_y_m": float(rival.moved[1]),
+            "turned_deg": rival.turned / DEGREE,
+            "rms_m": rival.rms,
+            "compared_share": rival.share,
+        },
+        "slope_angle_deg": _degrees(fitted.slope_angle),
+        "fall_line_azimuth_deg": _degrees(fitted.azimuth),
         "undetermined": fitted.undetermined,
         "before": _distances_of_each_kind(fitted.before),
-    }
+    }  # fmt: skip
+
+
+def _degrees(angle: float | None) -> float | None:
+    return None if angle is None else angle / DEGREE
 
 
 TimeFrom: TypeAlias = Literal["first_point", "clock"]

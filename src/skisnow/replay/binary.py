@@ -14,8 +14,8 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from dataclasses import dataclass, fields, replace
+from typing import Any, Final, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -62,9 +62,9 @@ _NAMES: Final[dict[tuple[str, str], str]] = {
 }
 ARRAY_TYPES: Final = {name: _ArrayType(*of) for of, names in _NAMES.items() for name in names.split()}
 """Types of all arrays of a file; uint16 has an error of at most half a step, 1/131070 of the array's range."""
-_OF_SHAPE: Final = ("station", "half_width", "base_height", "middle")
-_OVER_TIME: Final = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")
-"""Fields of the skis: shape, and histories."""
+_MOTION: Final = ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
+_SKI_HISTORIES: Final = ("bending", "twist", "edge_depth", "force_per_length", "force", "normal_force")
+_Part = TypeVar("_Part", Replay, ReplayBoots, ReplayGroove, ReplaySkier, ReplaySkis, ReplayTerrain, ReplayTrack)
 
 
 def replay_bytes(replay: Replay) -> bytes:
@@ -124,40 +124,30 @@ def thin_replay(replay: Replay) -> Replay:
 
 def select_moments(replay: Replay, moments: IntArray) -> Replay:
     """Replay with only the moments of these indices, and the whole groove."""
-    skis = replay.skis
-    along: dict[str, Any] = {name: getattr(skis, name)[moments] for name in _OVER_TIME}
-    if skis.boots is not None:
-        along["boots"] = ReplayBoots(place=skis.boots.place[moments], attitude=skis.boots.attitude[moments])
-    over: dict[str, Any] = {
-        name: getattr(replay, name)[moments]
-        for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth")
-    }
-    if replay.skier is not None:
-        over["skier"] = replace(replay.skier, joints=replay.skier.joints[moments])
-    return replace(replay, skis=replace(skis, **along), **over)
+
+    def select(part: _Part, *names: str) -> _Part:
+        return replace(part, **{name: getattr(part, name)[moments] for name in names})
+
+    boots, skier = replay.skis.boots, replay.skier
+    skis = replace(select(replay.skis, *_SKI_HISTORIES), boots=boots and select(boots, "place", "attitude"))
+    return replace(select(replay, *_MOTION), skis=skis, skier=skier and select(skier, "joints"))
 
 
 def _arrays_by_name(replay: Replay) -> dict[str, FloatArray]:
-    skis, groove = replay.skis, replay.groove
-    arrays: dict[str, Any] = {
-        name: getattr(replay, name)
-        for name in ("time", "place", "attitude", "speed", "curvature", "heading", "depth", "profile")
-    }
-    for name in (*_OF_SHAPE, *_OVER_TIME):
-        arrays[name] = getattr(skis, name)
-    arrays["thickness"] = drawn_thickness(skis.station)
-    for name in ("middle", "left", "width", "depth", "residual_depth", "time", "ski"):
-        arrays[f"groove_{name}"] = getattr(groove, name)
-    if replay.track is not None:
-        arrays |= {"track_place": replay.track.place, "track_time": replay.track.time}
-    arrays |= {"gate_place": replay.gates, "gate_time": replay.gate_times}
-    if skis.boots is not None:
-        arrays |= {"boot_place": skis.boots.place, "boot_attitude": skis.boots.attitude}
-    if replay.terrain is not None:
-        arrays |= {f"terrain_{name}": getattr(replay.terrain, name) for name in ("x", "y", "height")}
-    if replay.skier is not None:
-        arrays |= {"skier_joints": replay.skier.joints} | _shape_arrays(skier_parts(replay.skier.height))
+    skis, skier = replay.skis, replay.skier
+    arrays: dict[str, Any] = {name: getattr(replay, name) for name in (*_MOTION, "profile")}
+    arrays |= _arrays_of(skis) | {"thickness": drawn_thickness(skis.station)} | _arrays_of(replay.groove, "groove_")
+    arrays |= _arrays_of(replay.track, "track_") | {"gate_place": replay.gates, "gate_time": replay.gate_times}
+    arrays |= _arrays_of(skis.boots, "boot_") | _arrays_of(replay.terrain, "terrain_") | _arrays_of(skier, "skier_")
+    if skier is not None:
+        arrays |= _shape_arrays(skier_parts(skier.height))
     return {name: np.asarray(values, dtype=float) for name, values in arrays.items() if values is not None}
+
+
+def _arrays_of(part: _Part | None, prefix: str = "") -> dict[str, FloatArray]:
+    """Arrays among the fields of a part of a replay by their names in a file; empty without the part."""
+    values = {} if part is None else {field.name: getattr(part, field.name) for field in fields(part)}
+    return {f"{prefix}{name}": value for name, value in values.items() if isinstance(value, np.ndarray)}
 
 
 def _shape_arrays(parts: list[Part]) -> dict[str, FloatArray]:
@@ -223,34 +213,30 @@ def _unpack(content: bytes, base: int, description: Mapping[str, Any]) -> FloatA
 
 
 def _build_replay(header: Mapping[str, Any], arrays: dict[str, FloatArray]) -> Replay:
-    def some(*names: str, before: str = "") -> dict[str, Any]:
-        return {name: arrays[f"{before}{name}"] for name in names}
+    def build(part: type[_Part], prefix: str = "", **further: Any) -> _Part:
+        """A part of the replay from its arrays, whose names in the file begin with the prefix."""
+        named = {field.name: arrays.get(f"{prefix}{field.name}") for field in fields(part)}
+        return part(**{name: values for name, values in named.items() if values is not None} | further)
 
-    along = some(*_OF_SHAPE, *_OVER_TIME)
-    pieces = some("middle", "left", "width", "depth", "residual_depth", "time", before="groove_")
-    boots = ReplayBoots(**some("place", "attitude", before="boot_")) if "boot_place" in arrays else None
-    terrain = None
+    terrain = skier = track = None
     if "terrain_height" in arrays:
         grade = header["terrain_grade"]
-        terrain = ReplayTerrain(**some("x", "y", "height", before="terrain_"), grade=(grade[0], grade[1]))
-    skier = None
+        terrain = build(ReplayTerrain, "terrain_", grade=(grade[0], grade[1]))
     if "skier_joints" in arrays:
         body = header["skier"]
-        skier = ReplaySkier(height=body["height"], weight=body["weight"], joints=arrays["skier_joints"])
-    track = None
+        skier = build(ReplaySkier, "skier_", height=body["height"], weight=body["weight"])
     if "track_place" in arrays:
-        track = ReplayTrack(name=header["track_name"], place=arrays["track_place"], time=arrays.get("track_time"))
-    return Replay(
+        track = build(ReplayTrack, "track_", name=header["track_name"])
+    boots = build(ReplayBoots, "boot_") if "boot_place" in arrays else None
+    of_pieces = np.rint(arrays["groove_ski"]).astype(np.int64)
+    return build(
+        Replay,
         title=header["title"],
         facts=tuple((name, value) for name, value in header["facts"]),
         tilt=header["tilt"],
-        profile=arrays.get("profile"),
         centre_of_mass_height=header["centre_of_mass_height"],
-        **some("time", "place", "attitude", "speed", "curvature", "heading", "depth"),
-        skis=ReplaySkis(edge_angle=header["edge_angle"], boots=boots, **along),
-        groove=ReplayGroove(
-            ski=np.rint(arrays["groove_ski"]).astype(np.int64), spacing=header["groove_spacing"], **pieces
-        ),
+        skis=build(ReplaySkis, edge_angle=header["edge_angle"], boots=boots),
+        groove=build(ReplayGroove, "groove_", ski=of_pieces, spacing=header["groove_spacing"]),
         track=track,
         gates=arrays.get("gate_place"),
         gate_times=arrays.get("gate_time"),

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
 from .._support.arrays import FloatArray
 from .._support.errors import ParameterError
@@ -31,6 +30,7 @@ from .replay import (
     ReplayTrack,
     groove_times,
     quaternions,
+    rotation_of,
 )
 from .skier import drawn_joints
 
@@ -51,6 +51,7 @@ class Setting:
     edge_angle, stance_width, centre_of_mass_height: sizes of the sledge (rad, m, m).
     course: course in the scenario's axes, for its gates.
     body: height (m) and weight (N) of the skier's body (default: a sledge).
+    boots: moving boots (default: fixed on the sledge).
     facts: lines of name and value for the reader.
     """
 
@@ -63,6 +64,7 @@ class Setting:
     facts: tuple[tuple[str, str], ...]
     course: Course | None = None
     body: tuple[float, float] | None = None
+    boots: ReplayBoots | None = None
 
 
 def replay_of_run(
@@ -92,8 +94,7 @@ def replay_of_run(
         The run has no moment, or the gates are not pairs of finite numbers.
     """
     setting = _setting_of_run(run)
-    boots = None if run.boots_by is None or run.boots is None else moving_boots(run.boots.place, run.boots.axes)
-    replay = assemble_replay(_arrays(run), setting, title=title, track=track, boots=boots)
+    replay = assemble_replay(_arrays(run), setting, title=title, track=track)
     return replay if gates is None else replace(replay, gates=_gates(gates, setting.slope), gate_times=None)
 
 
@@ -121,7 +122,8 @@ def _setting_of_run(run: Run) -> Setting:
         hardness=contact.snow.snow_hardness / N_PER_MM3,
         stress=None if stress is None else stress / N_PER_MM2,
         ratio=contact.unloading_ratio,
-        skis=skis_words(scenario.ski.name, None if scenario.skier else sledge.edge_angle / DEGREE),
+        ski=scenario.ski.name,
+        edge_angle=None if scenario.skier else sledge.edge_angle / DEGREE,
     )
     return Setting(
         slope=scenario.slope,
@@ -133,13 +135,17 @@ def _setting_of_run(run: Run) -> Setting:
         facts=facts,
         course=scenario.course,
         body=(height_of(sledge.mass, sledge.inertia[0]), sledge.mass * scenario.gravity) if scenario.skier else None,
+        boots=None if run.boots is None or run.boots_by is None else moving_boots(run.boots.place, run.boots.axes),
     )
 
 
 def facts_of(
-    *, outcome: str, hardness: float, stress: float | None, ratio: float, skis: str
+    *, outcome: str, hardness: float, stress: float | None, ratio: float, ski: str, edge_angle: float | None
 ) -> tuple[tuple[str, str], ...]:
-    """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm²."""
+    """Lines for the reader; hardness H_V in N/mm³, stress S_f in N/mm², edge angle in degrees (None: by a skier)."""
+    skis = Message("{ski}, edged by the skier", ski=ski)
+    if edge_angle is not None:
+        skis = Message("{ski}, edge angle {edge_angle:.3g}°", ski=ski, edge_angle=edge_angle)
     return (
         (Message("Outcome"), outcome_words(outcome)),
         ("H_V", Message("{hardness:.3g} N/mm³", hardness=hardness)),
@@ -149,20 +155,8 @@ def facts_of(
     )
 
 
-def skis_words(ski: str, edge_angle: float | None) -> str:
-    """The skis and their edge angle (degrees); None: a skier sets it."""
-    if edge_angle is None:
-        return Message("{ski}, edged by the skier", ski=ski)
-    return Message("{ski}, edge angle {edge_angle:.3g}°", ski=ski, edge_angle=edge_angle)
-
-
 def assemble_replay(
-    arrays: Mapping[str, FloatArray],
-    setting: Setting,
-    *,
-    title: str,
-    track: ReplayTrack | None = None,
-    boots: ReplayBoots | None = None,
+    arrays: Mapping[str, FloatArray], setting: Setting, *, title: str, track: ReplayTrack | None = None
 ) -> Replay:
     """A replay from a run's arrays, named as in run.nc with vectors in one, and its setting."""
     if not len(arrays["time"]):
@@ -184,22 +178,20 @@ def assemble_replay(
         curvature=np.nan_to_num(curvature),
         heading=arrays["heading"],
         depth=arrays["depth"],
-        skis=_skis_of_arrays(arrays, setting, boots),
+        skis=_skis_of_arrays(arrays, setting),
         groove=_groove(arrays, setting.line_spacing),
-        track=None if track is None else _on_the_snow(track, slope),
+        track=track and _on_the_snow(track, slope),
         gates=None if course is None else _gates([gate.turning for gate in course.gates], slope),
-        gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting, boots),
-        skier=None if setting.body is None else _skier(arrays, *setting.body, boots),
+        gate_times=None if course is None or len(arrays["time"]) < 2 else _gate_times(course, arrays, setting),
+        skier=None if setting.body is None or setting.boots is None else _skier(arrays, *setting.body, setting.boots),
     )
 
 
-def _gate_times(
-    course: Course, arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None
-) -> FloatArray:
+def _gate_times(course: Course, arrays: Mapping[str, FloatArray], setting: Setting) -> FloatArray:
     """Time from the first moment to each gate as in gates.csv (s); NaN for a gate that was not crossed."""
     time, place = arrays["time"], arrays["place"]
-    if boots is not None:
-        feet, ahead = boots.place, _boot_axes(boots)[..., 0]
+    if setting.boots is not None:
+        feet, ahead = setting.boots.place, _boot_axes(setting.boots)[..., 0]
     else:
         side = 0.5 * setting.stance_width * arrays["attitude"][:, :, 1]
         feet, ahead = np.stack([place + side, place - side], axis=1), arrays["attitude"][:, None, :, 0]
@@ -211,16 +203,11 @@ def _gate_times(
 
 def _boot_axes(boots: ReplayBoots) -> FloatArray:
     """Axes (n, 2, 3, 3) of boots as columns."""
-    turns = Rotation.from_quat(np.roll(boots.attitude, -1, axis=-1).reshape(-1, 4))
+    turns = rotation_of(boots.attitude.reshape(-1, 4))
     return np.asarray(turns.as_matrix().reshape(*boots.attitude.shape[:2], 3, 3))
 
 
-def _skier(
-    arrays: Mapping[str, FloatArray], height: float, weight: float, boots: ReplayBoots | None
-) -> ReplaySkier | None:
-    """Skier of a run; None without moving boots."""
-    if boots is None:
-        return None
+def _skier(arrays: Mapping[str, FloatArray], height: float, weight: float, boots: ReplayBoots) -> ReplaySkier:
     axes = boots.place, _boot_axes(boots).swapaxes(-1, -2)
     joints = drawn_joints(height, arrays["place"], arrays["attitude"], axes, arrays["centre"])
     return ReplaySkier(height=height, weight=weight, joints=joints)
@@ -272,26 +259,22 @@ def _on_the_snow(track: ReplayTrack, slope: Slope) -> ReplayTrack:
     """Track with the height of the snow instead of missing heights."""
     place = np.array(track.place, dtype=float)
     place[:, 2] = np.where(np.isfinite(place[:, 2]), place[:, 2], _heights(slope, place))
-    return ReplayTrack(name=track.name, place=place, time=track.time)
+    return replace(track, place=place)
 
 
-def _skis_of_arrays(arrays: Mapping[str, FloatArray], setting: Setting, boots: ReplayBoots | None) -> ReplaySkis:
-    ski, station = setting.ski, arrays["station"]
+def _skis_of_arrays(arrays: Mapping[str, FloatArray], setting: Setting) -> ReplaySkis:
+    ski, station, side = setting.ski, arrays["station"], setting.stance_width / 2.0
     at = ski.at(np.clip(station, float(ski.station[-1]), float(ski.station[0])))
-    side = setting.stance_width / 2.0
+    histories = ("bending", "twist", "edge_depth", "force_per_length", "normal_force")
     return ReplaySkis(
         station=station,
         half_width=at.width / 2.0,
         base_height=at.base_height,
         middle=np.array([[0.0, side, 0.0], [0.0, -side, 0.0]]),
         edge_angle=setting.edge_angle,
-        bending=arrays["bending"],
-        twist=arrays["twist"],
-        edge_depth=arrays["edge_depth"],
-        force_per_length=arrays["force_per_length"],
         force=arrays["snow_force"],
-        normal_force=arrays["normal_force"],
-        boots=boots,
+        boots=setting.boots,
+        **{name: arrays[name] for name in histories},
     )
 
 
@@ -299,13 +282,5 @@ def _groove(arrays: Mapping[str, FloatArray], spacing: float) -> ReplayGroove:
     """Pieces of groove in the order of time."""
     when, ski = groove_times(arrays["groove"], arrays["time"], arrays["ski"])
     order = np.argsort(when, kind="stable")
-    return ReplayGroove(
-        middle=arrays["groove"][order],
-        left=arrays["groove_left"][order],
-        width=arrays["groove_width"][order],
-        depth=arrays["groove_depth"][order],
-        residual_depth=arrays["groove_residual_depth"][order],
-        time=when[order],
-        ski=ski[order],
-        spacing=spacing,
-    )
+    columns = {name: arrays[f"groove_{name}"][order] for name in ("left", "width", "depth", "residual_depth")}
+    return ReplayGroove(middle=arrays["groove"][order], time=when[order], ski=ski[order], spacing=spacing, **columns)

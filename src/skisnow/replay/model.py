@@ -26,7 +26,7 @@ from .meshes import (
     surface_heights,
     unloaded_ski_mesh,
 )
-from .replay import SKI_NAMES, Replay, ReplayBoots, nearest_frame, without_sign_jumps
+from .replay import SKI_NAMES, Replay, ReplayBoots, nearest_frame, rotation_of, without_sign_jumps
 from .skier import JOINTS, part_poses, skier_mesh, skier_parts
 
 
@@ -76,10 +76,7 @@ def write_replay_model(replay: Replay, path: str | Path, time: float, *, exagger
 
 GROOVE_STEP: Final = 0.05
 """Time (s) of the parts of the groove, each of which appears when it is complete."""
-_EYE, _LOOKED_AT = (
-    (-4.0, 0.0, 2.0),
-    (0.4, 0.0, 0.1),
-)  # camera and its target from the sledge (m)
+_EYE, _LOOKED_AT = (-4.0, 0.0, 2.0), (0.4, 0.0, 0.1)  # camera and its target from the sledge (m)
 _HIDDEN_AND_SHOWN: Final = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 
 
@@ -101,11 +98,10 @@ def moving_replay_model(replay: Replay, *, exaggeration: float = 1.0) -> bytes:
     places = model.array(shown.place)
     boots, body = _skier(model, shown, times)
     skis = [node for ski in range(2) for node in _ski(model, shown, ski, exaggeration, times, boots[ski : ski + 1])]
-    sledge = model.node(
-        "sledge", translation=shown.place[0], rotation=_sledge_quaternions(shown)[0], children=[*skis, *body]
-    )
+    turns = np.roll(shown.attitude, -1, axis=1)
+    sledge = model.node("sledge", translation=shown.place[0], rotation=turns[0], children=[*skis, *body])
     model.move(sledge, "translation", times, places)
-    model.move(sledge, "rotation", times, model.array(_sledge_quaternions(shown)))
+    model.move(sledge, "rotation", times, model.array(turns))
     ground = {"snow": snow_mesh(shown), "grid": grid_mesh(shown)}
     parts = [model.node(name, mesh=model.mesh(name, mesh)) for name, mesh in ground.items()]
     parts += [*_groove(model, shown), sledge, _camera(model, shown, times, places)]
@@ -127,10 +123,6 @@ def _with_rising_times(replay: Replay) -> Replay:
     groove = replace(replay.groove, time=replay.groove.time - replay.time[0])
     moments = np.flatnonzero(np.append(np.diff(time) > 0.0, True))  # the last one of equal times
     return select_moments(replace(replay, time=time, groove=groove), moments)
-
-
-def _sledge_quaternions(replay: Replay) -> FloatArray:
-    return replay.attitude[:, [1, 2, 3, 0]]
 
 
 def _about(axis: int, angle: FloatArray | float) -> FloatArray:
@@ -191,8 +183,8 @@ def _ski(model: Glb, replay: Replay, ski: int, exaggeration: float, times: int, 
 
 def _on_the_sledge(replay: Replay, boots: ReplayBoots, ski: int) -> tuple[FloatArray, FloatArray]:
     """Places (n, 3) of a moving boot in the sledge's frame (m), and its quaternions x, y, z, w."""
-    back = Rotation.from_quat(_sledge_quaternions(replay)).inv()
-    turn = (back * Rotation.from_quat(np.roll(boots.attitude[:, ski], -1, axis=1))).as_quat()
+    back = rotation_of(replay.attitude).inv()
+    turn = (back * rotation_of(boots.attitude[:, ski])).as_quat()
     return back.apply(boots.place[:, ski] - replay.place), without_sign_jumps(turn)
 
 

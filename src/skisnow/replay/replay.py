@@ -202,7 +202,6 @@ class Replay:
     title: str
     facts: tuple[tuple[str, str], ...]
     tilt: float
-    profile: FloatArray | None
     centre_of_mass_height: float
     time: FloatArray
     place: FloatArray
@@ -213,6 +212,7 @@ class Replay:
     depth: FloatArray
     skis: ReplaySkis
     groove: ReplayGroove
+    profile: FloatArray | None = None
     track: ReplayTrack | None = None
     gates: FloatArray | None = None
     gate_times: FloatArray | None = None
@@ -314,6 +314,11 @@ def quaternions(matrices: FloatArray) -> FloatArray:
     if not len(matrices):
         return np.zeros((0, 4))
     return without_sign_jumps(np.roll(Rotation.from_matrix(np.array(matrices)).as_quat(canonical=True), 1, axis=1))
+
+
+def rotation_of(quaternion: FloatArray) -> Rotation:
+    """Rotations by unit quaternions w, x, y, z, shape (4,) or (n, 4)."""
+    return Rotation.from_quat(np.roll(quaternion, -1, axis=-1))
 
 
 def without_sign_jumps(turns: FloatArray) -> FloatArray:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,7 +23,7 @@ from ..scenario.terrain import Slope
 from ..ski import Ski, read_ski, ski_named
 from ..skier.anthropometry import height_of
 from ..track.course import Course, read_course
-from .from_run import Setting, assemble_replay, facts_of, moving_boots, skis_words
+from .from_run import Setting, assemble_replay, facts_of, moving_boots
 from .replay import Replay, ReplayBoots, ReplayTrack
 
 _DAMAGE: Final = (
@@ -77,8 +78,8 @@ def replay_of_file(
             outcome, spacing = content.outcome.decode("utf-8"), float(content.solver_line_spacing_m)
         require_drawable(arrays)
         require_range("solver_line_spacing_m", spacing, 0.0, 1.0, above=True)
-        setting = _make_setting(path, values, outcome, spacing, ski)
-        return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track, boots=boots)
+        setting = replace(_make_setting(path, values, outcome, spacing, ski), boots=boots)
+        return assemble_replay(arrays, setting, title=title or path.resolve().parent.name, track=track)
     except SkisnowError as error:
         if str(path.parent) in str(error) and not isinstance(error, ContentError):
             raise
@@ -92,22 +93,16 @@ def replay_of_file(
 
 
 def _read_arrays(file: Any) -> dict[str, FloatArray]:
-    plain = {name: _values(file, name) for name in _PLAIN}
-    vectors = {
-        name: np.stack([_values(file, pattern.format(axis)) for axis in "xyz"], axis=-1)
-        for name, pattern in _VECTORS.items()
-    }
-    if "centre_x" in file.variables:
-        vectors["centre"] = np.stack([_values(file, f"centre_{axis}") for axis in "xyz"], axis=-1)
-    return plain | vectors
+    patterns = _VECTORS | ({"centre": "centre_{}"} if "centre_x" in file.variables else {})
+    vectors = {name: _vectors(file, pattern) for name, pattern in patterns.items()}
+    return {name: _values(file, name) for name in _PLAIN} | vectors
 
 
 def _boots(file: Any) -> ReplayBoots | None:
     """Moving boots of a run; None if they are fixed."""
     if not getattr(file, "boots", b"").decode("utf-8").startswith("moved"):
         return None
-    place = np.stack([_values(file, f"boot_{axis}") for axis in "xyz"], axis=-1)
-    angles = np.stack([_values(file, f"boot_{name}") for name in ("edge_angle", "pitch", "heading")], axis=-1)
+    place, angles = _vectors(file, "boot_{}"), _vectors(file, "boot_{}", ("edge_angle", "pitch", "heading"))
     require_finite({"boots": place, "angles of boots": angles})
     axes = np.array([axes_of(*map(float, row)) for row in angles.reshape(-1, 3)])
     return moving_boots(place, axes.reshape(*angles.shape, 3))
@@ -117,6 +112,11 @@ def _scenario(file: Any) -> dict[str, Any]:
     """Values of the scenario by full name."""
     sections = json_value(file.scenario.decode("utf-8"))
     return {f"{section}.{key}": value for section, table in sections.items() for key, value in table.items()}
+
+
+def _vectors(file: Any, pattern: str, names: Sequence[str] = "xyz") -> FloatArray:
+    """Vectors (…, 3) from the variables of their components."""
+    return np.stack([_values(file, pattern.format(name)) for name in names], axis=-1)
 
 
 def _values(file: Any, name: str) -> FloatArray:
@@ -145,7 +145,8 @@ def _make_setting(path: Path, values: dict[str, Any], outcome: str, spacing: flo
             hardness=needed_value(values, "snow.H_V_N_per_mm3"),
             stress=scenario_value(values, "snow.S_f_N_per_mm2"),
             ratio=needed_value(values, "snow.unloading_ratio"),
-            skis=skis_words(ski.name, None if has_skier else edge_angle),
+            ski=ski.name,
+            edge_angle=None if has_skier else edge_angle,
         ),
         body=body if has_skier else None,
     )
@@ -185,12 +186,9 @@ def _course(path: Path, values: dict[str, Any], slope: Slope) -> Course | None:
 
 
 def _not_a_run(path: Path, error: Exception) -> ParameterError:
-    message = Message(
-        "{path} is damaged, or it is not a run.nc of skisnow ({error}). Simulate it again with --out",
-        path=path,
-        error=error,
-    )
-    return ParameterError(message).tag("not_a_run")
+    return ParameterError(
+        "{path} is damaged, or it is not a run.nc of skisnow ({error}). Simulate it again with --out"
+    ).tag("not_a_run", path=path, error=error)
 
 
 _MISSING: Final = {

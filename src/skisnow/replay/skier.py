@@ -19,7 +19,7 @@ from .._support.arrays import FloatArray
 from .._support.units import DEGREE
 from ..skier.anthropometry import FOOT, FOREARM, HIP_WIDTH, SHANK, SHOULDER_WIDTH, THIGH, TRUNK, UPPER_ARM, Segment
 from .meshes import Mesh, linear_light
-from .replay import Replay, ReplaySkier, quaternions
+from .replay import Replay, ReplaySkier, quaternions, rotation_of
 
 SIDED: Final = ("ankle", "knee", "hip", "shoulder", "elbow", "hand", "pole tip")
 JOINTS: Final = ("pelvis", "neck", "head", *(f"{side} {name}" for side in ("left", "right") for name in SIDED))
@@ -300,7 +300,7 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
     skier, boots = replay.skier, replay.skis.boots
     assert skier is not None
     assert boots is not None
-    body = _rotation_of(replay.attitude).as_matrix()
+    body = rotation_of(replay.attitude).as_matrix()
     joints = dict(zip(JOINTS, np.moveaxis(skier.joints @ _TO_OPENSIM.T, 1, 0), strict=True))
     place = (replay.place + np.einsum("nab,nb->na", body, skier.joints[:, JOINTS.index("pelvis")])) @ _TO_OPENSIM.T
     turns = _TO_OPENSIM @ body @ _TO_OPENSIM.T
@@ -312,7 +312,7 @@ def joint_columns(replay: Replay) -> dict[str, FloatArray]:
         thigh, shank = _unit_vectors(hip - knee), _unit_vectors(knee - ankle)
         axis = _unit_vectors(np.cross(shank, thigh))
         upper, lower = (np.stack([np.cross(up, axis), up, axis], axis=-1) for up in (thigh, shank))
-        foot = _TO_OPENSIM @ _rotation_of(boots.attitude[:, k]).as_matrix() @ _TO_OPENSIM.T
+        foot = _TO_OPENSIM @ rotation_of(boots.attitude[:, k]).as_matrix() @ _TO_OPENSIM.T
         flexion, adduction, rotation = _cardan(upper)
         dorsal, inversion, _ = _cardan(np.swapaxes(turns @ lower, 1, 2) @ foot)
         bend = np.arctan2(np.linalg.norm(np.cross(shank, thigh), axis=1), _row_products(shank, thigh)[:, 0]) / DEGREE
@@ -334,18 +334,14 @@ def skier_mesh(replay: Replay, frame: int) -> Mesh:
     skier, boots = replay.skier, replay.skis.boots
     assert skier is not None
     assert boots is not None
-    body = _rotation_of(replay.attitude[frame])
+    body = rotation_of(replay.attitude[frame])
     placed = []
     for part in skier_parts(skier.height):
         if part.start in JOINTS:
             start, turn = (pose[frame] for pose in part_poses(skier, part))
-            vertices = replay.place[frame] + body.apply(start + _rotation_of(turn).apply(part.mesh.vertices))
+            vertices = replay.place[frame] + body.apply(start + rotation_of(turn).apply(part.mesh.vertices))
         else:
             side = ("left boot", "right boot").index(part.start)
-            vertices = boots.place[frame, side] + _rotation_of(boots.attitude[frame, side]).apply(part.mesh.vertices)
+            vertices = boots.place[frame, side] + rotation_of(boots.attitude[frame, side]).apply(part.mesh.vertices)
         placed.append(Mesh(vertices, part.mesh.colours, part.mesh.pieces))
     return _join_meshes(placed)
-
-
-def _rotation_of(quaternion: FloatArray) -> Rotation:
-    return Rotation.from_quat(np.roll(quaternion, -1, axis=-1))
