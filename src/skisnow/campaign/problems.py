@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import KW_ONLY, asdict, dataclass, replace
+from functools import partial
 from types import MappingProxyType
 from typing import Final, Literal, TypeAlias
 
@@ -53,10 +54,11 @@ class Problem:
     severity: Severity
     code: str
     file: str
-    row: int | None
-    column: str | None
-    experiment: str | None
-    value: str | None
+    _: KW_ONLY
+    row: int | None = None
+    column: str | None = None
+    experiment: str | None = None
+    value: str | None = None
     allowed: str
     action: str
     needs_action: bool = True
@@ -101,35 +103,10 @@ def _shorten(value: str) -> str:
     return value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
 
 
-def error(
-    code: str,
-    file: str,
-    *,
-    allowed: str,
-    action: str,
-    row: int | None = None,
-    column: str | None = None,
-    experiment: str | None = None,
-    value: str | None = None,
-) -> Problem:
-    """Problem with which the campaign cannot be used."""
-    return Problem("error", code, file, row, column, experiment, value, allowed, action)
-
-
-def warning(
-    code: str,
-    file: str,
-    *,
-    allowed: str,
-    action: str,
-    row: int | None = None,
-    column: str | None = None,
-    experiment: str | None = None,
-    value: str | None = None,
-    needs_action: bool = True,
-) -> Problem:
-    """Problem with which the campaign can still be used."""
-    return Problem("warning", code, file, row, column, experiment, value, allowed, action, needs_action)
+error: Final = partial(Problem, "error")
+"""Problem with which the campaign cannot be used."""
+warning: Final = partial(Problem, "warning")
+"""Problem with which the campaign can still be used."""
 
 
 def with_sheet_name(problem: Problem, places: Mapping[str, str]) -> Problem:
@@ -241,7 +218,7 @@ class QualityFlag:
     code: str
     name: str
     sentence: str
-    excludes_by_default: bool
+    excludes_by_default: bool = False
 
 
 _ALL: Final = (
@@ -279,7 +256,6 @@ _ALL: Final = (
         "beyond_tool",
         Message("beyond tool"),
         Message("The tool went deeper than the geometry that its area and volume are computed with."),
-        False,
     ),
     QualityFlag(
         "below_resolution",
@@ -288,7 +264,6 @@ _ALL: Final = (
             "The depth (of a series: at its largest load) is below {resolutions:g} steps of the gauge.",
             resolutions=RESOLUTIONS,
         ),
-        False,
     ),
     QualityFlag(
         "layered",
@@ -296,7 +271,6 @@ _ALL: Final = (
         Message(
             "The hardness of the snow changes with depth, or the depth zero is off by several tenths of a millimetre."
         ),
-        False,
     ),
     QualityFlag(
         "creeps",
@@ -307,19 +281,16 @@ _ALL: Final = (
             creep_steps=CREEP_STEPS,
             creep_share=CREEP_SHARE,
         ),
-        False,
     ),
     QualityFlag(
         "unloading_not_falling",
         Message("unloading not falling"),
         Message("A load of the unloading is not below the one before it, so that no unloading ratio follows."),
-        False,
     ),
     QualityFlag(
         "unloading_sinks",
         Message("unloading sinks"),
         Message("The tool went deeper while the discs were taken off: the snow was still giving way."),
-        False,
     ),
     QualityFlag(
         "rebound_unresolved",
@@ -328,7 +299,6 @@ _ALL: Final = (
             "The tool came back by too little to measure how steep the unloading is: the ratio is only known from "
             "below."
         ),
-        False,
     ),
     QualityFlag(
         "hardness_outlier",
@@ -337,7 +307,6 @@ _ALL: Final = (
             "The logarithm of the hardness is further than 3.5 scaled median absolute deviations from its site's "
             "median."
         ),
-        False,
     ),
 )
 QUALITY_FLAGS: Final[Mapping[str, QualityFlag]] = MappingProxyType({flag.code: flag for flag in _ALL})

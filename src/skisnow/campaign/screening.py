@@ -173,7 +173,6 @@ def find_implausible_unloading(campaign: Campaign, tests: PenetrationTests) -> d
 
 _UNFLAGGED_STATUS = Message("a blank status")
 _UNFLAGGED_ZERO = Message("a depth above 0 mm")
-_UNFLAGGED_LAYERED = Message("depths that grow with the load as F = H_V V has it")
 _UNFLAGGED_REBOUND = Message(
     "a rebound that is large compared with the step of the gauge and the scatter of the readings"
 )
@@ -241,13 +240,21 @@ def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
     tests = campaign.shear
     assert tests is not None
     depth = _number(tests.penetration_depth[index] / MM)
-    column, value, allowed = {
+    cause = {
         "cancelled": ("status", tests.cancelled[index], _UNFLAGGED_STATUS),
         "zero_depth": ("depth_mm", depth, _UNFLAGGED_ZERO),
         "below_resolution": ("depth_mm", depth, _resolution_limit(campaign)),
     }[code]
-    row, experiment = int(tests.row[index]), tests.experiment[index]
-    return Problem("flag", code, SHEAR.file, row, column, experiment, value, allowed, _effect_of_flag(campaign, code))
+    return _flag(campaign, code, SHEAR.file, int(tests.row[index]), tests.experiment[index], *cause)
+
+
+def _flag(
+    campaign: Campaign, code: str, file: str, row: int, name: str, column: str | None, value: str | None, allowed: str
+) -> Problem:
+    action = _effect_of_flag(campaign, code)
+    return Problem(
+        "flag", code, file, row=row, column=column, experiment=name, value=value, allowed=allowed, action=action
+    )
 
 
 _Cause: TypeAlias = tuple[int, str | None, str | None, str]
@@ -255,7 +262,7 @@ _Cause: TypeAlias = tuple[int, str | None, str | None, str]
 
 
 class _FlaggedReadings:
-    """Problems of penetration experiments; the method ``_cause_of_CODE`` finds it for a flag and an experiment."""
+    """Problems of penetration experiments; the method ``_cause_of_CODE`` finds the reading that causes a flag."""
 
     def __init__(self, campaign: Campaign, tests: PenetrationTests, geometry: GeometryForm) -> None:
         self._campaign = campaign
@@ -265,45 +272,42 @@ class _FlaggedReadings:
 
     def problem(self, index: int, code: str) -> Problem:
         """One flag as a problem."""
-        reading, column, value, allowed = getattr(self, f"_cause_of_{code}")(index)
-        unloading = self._tests.unloading
-        rows = self._tests.row if unloading is None or code not in _OF_UNLOADING else unloading.row
-        row = int(rows[reading])
-        experiment = self._tests.experiment[index]
-        follows = _effect_of_flag(self._campaign, code)
-        return Problem("flag", code, PENETRATION.file, row, column, experiment, value, allowed, follows)
+        cause = self._causes_without_search(index).get(code) or getattr(self, f"_cause_of_{code}")(index)
+        reading, *about = cause
+        row = int((self._unloading if code in _OF_UNLOADING else self._tests).row[reading])
+        return _flag(self._campaign, code, PENETRATION.file, row, self._tests.experiment[index], *about)
+
+    def _causes_without_search(self, index: int) -> dict[str, _Cause]:
+        """Causes at the first reading, or at the one under the largest load."""
+        first, end = self._tests.first[index : index + 2].tolist()
+        largest = int(self._largest[index])
+        depth = self._depth(largest)
+        enough = Message("at least {count} load steps", count=FEWEST_LOADS)
+        return {
+            "cancelled": (first, "status", self._tests.cancelled[index], _UNFLAGGED_STATUS),
+            "too_few_loads": (first, "load_N", str(end - first), enough),
+            "zero_depth": (largest, "depth_mm", depth, _UNFLAGGED_ZERO),
+            "below_resolution": (largest, "depth_mm", depth, _resolution_limit(self._campaign)),
+            "layered": (largest, "depth_mm", None, Message("depths that grow with the load as F = H_V V has it")),
+            "hardness_outlier": (largest, None, None, _UNFLAGGED_OUTLIER),
+        }
 
     def _depth(self, reading: int) -> str:
         """Depth in mm, without the unit."""
         return _number(self._tests.penetration_depth[reading] / MM)
 
-    def _cause_of_cancelled(self, index: int) -> _Cause:
-        return int(self._tests.first[index]), "status", self._tests.cancelled[index], _UNFLAGGED_STATUS
-
-    def _cause_of_too_few_loads(self, index: int) -> _Cause:
-        first, end = self._tests.first[index : index + 2].tolist()
-        return first, "load_N", str(end - first), Message("at least {count} load steps", count=FEWEST_LOADS)
-
     def _cause_of_loads_not_rising(self, index: int) -> _Cause:
         load = self._tests.series(index).load
         step = int(np.flatnonzero(np.diff(load) <= 0)[0])
         reading = int(self._tests.first[index]) + step + 1
-        return (
-            reading,
-            "load_N",
-            _number(load[step + 1]),
-            Message("more than the {load:.10g} N of the reading before", load=load[step]),
-        )
+        allowed = Message("more than the {load:.10g} N of the reading before", load=load[step])
+        return reading, "load_N", _number(load[step + 1]), allowed
 
     def _cause_of_depth_shrinks(self, index: int) -> _Cause:
         step = int(np.flatnonzero(np.diff(self._tests.series(index).penetration_depth) < 0)[0])
         before = int(self._tests.first[index]) + step
         allowed = Message("at least the {depth} mm of the reading before", depth=self._depth(before))
         return before + 1, "depth_mm", self._depth(before + 1), allowed
-
-    def _cause_of_zero_depth(self, index: int) -> _Cause:
-        reading = int(self._largest[index])
-        return reading, "depth_mm", self._depth(reading), _UNFLAGGED_ZERO
 
     def _cause_of_beyond_tool(self, index: int) -> _Cause:
         series = self._tests.series(index)
@@ -314,14 +318,6 @@ class _FlaggedReadings:
             tool=series.tool,
         )
         return reading, "depth_mm", self._depth(reading), allowed
-
-    def _cause_of_below_resolution(self, index: int) -> _Cause:
-        reading = int(self._largest[index])
-        return reading, "depth_mm", self._depth(reading), _resolution_limit(self._campaign)
-
-    def _cause_of_layered(self, index: int) -> _Cause:
-        """Cause of the flag `layered`: the reading under the largest load, without a value."""
-        return int(self._largest[index]), "depth_mm", None, _UNFLAGGED_LAYERED
 
     def _cause_of_creeps(self, index: int) -> _Cause:
         first, end = self._tests.first[index : index + 2].tolist()
@@ -338,12 +334,8 @@ class _FlaggedReadings:
 
     def _cause_of_unloading_not_falling(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_not_falling")
-        return (
-            reading,
-            "load_N",
-            _number(self._unloading.load[reading]),
-            Message("less than the load of the reading before"),
-        )
+        allowed = Message("less than the load of the reading before")
+        return reading, "load_N", _number(self._unloading.load[reading]), allowed
 
     def _cause_of_unloading_sinks(self, index: int) -> _Cause:
         reading = self._first_wrong(index, "unloading_sinks")
@@ -362,6 +354,3 @@ class _FlaggedReadings:
     def _first_wrong(self, index: int, code: str) -> int:
         own = self._unloading.series_of_reading == index
         return int(np.flatnonzero(find_implausible_unloading(self._campaign, self._tests)[code] & own)[0])
-
-    def _cause_of_hardness_outlier(self, index: int) -> _Cause:
-        return int(self._largest[index]), None, None, _UNFLAGGED_OUTLIER

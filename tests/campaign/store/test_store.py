@@ -120,7 +120,7 @@ def test_shown_fields_of_a_stored_campaign(folder: Path, place: Path) -> None:
 
 
 def problem(severity: str) -> Problem:
-    return Problem(severity, "x", "f", None, None, None, None, "a", "b")  # type: ignore[arg-type]
+    return Problem(severity, "x", "f", allowed="a", action="b")  # type: ignore[arg-type]
 
 
 def test_counts_of_the_check_are_kept(folder: Path, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
