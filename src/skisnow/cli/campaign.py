@@ -14,7 +14,8 @@ from .output import Progress, prepare_output
 
 if TYPE_CHECKING:
     from ..campaign import Problem
-    from ..campaign.importing import Answers, Proposal, Question
+    from ..campaign.importing.answers import Answers, Question
+    from ..campaign.importing.proposal import Proposal
 
 
 def add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -176,7 +177,8 @@ def add_import(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def import_file(options: argparse.Namespace) -> int:
     """Import the file or undo an import, and print what was written."""
-    from ..campaign.importing import save_template, undo_import, write_import
+    from ..campaign.importing.answers import save_template
+    from ..campaign.importing.folder import undo_import, write_import
     from ..campaign.reading.campaign_file import CAMPAIGN_FILE
 
     if options.undo is not None:
@@ -202,7 +204,7 @@ def import_file(options: argparse.Namespace) -> int:
 
 
 def _read_answers(options: argparse.Namespace) -> Answers:
-    from ..campaign.importing import Answers, read_template
+    from ..campaign.importing.answers import Answers, read_template
 
     from_options = Answers.of_options({option: getattr(options, option) for option in OPTIONS})
     return from_options if options.template is None else read_template(options.template).updated(from_options)
@@ -210,7 +212,7 @@ def _read_answers(options: argparse.Namespace) -> Answers:
 
 def _ask_questions(options: argparse.Namespace, answers: Answers, *, asks: bool) -> Proposal:
     """Proposal after questions on the terminal."""
-    from ..campaign.importing import propose
+    from ..campaign.importing.proposal import propose
 
     data = options.file.read_bytes()
     proposal = propose(options.file.name, data, answers)

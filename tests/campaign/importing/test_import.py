@@ -12,7 +12,8 @@ from openpyxl.styles import Font
 from tests.present import present
 
 from skisnow._support.errors import ParameterError
-from skisnow.campaign.importing import Answers, Proposal, propose
+from skisnow.campaign.importing.answers import Answers
+from skisnow.campaign.importing.proposal import Proposal, propose
 from skisnow.campaign.importing.sheets import read_sheets
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness

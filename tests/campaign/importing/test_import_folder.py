@@ -6,15 +6,9 @@ from tests.coded import raises
 
 from skisnow._support.errors import OutputError, ParameterError
 from skisnow.campaign import read_campaign
-from skisnow.campaign.importing import (
-    Answers,
-    propose,
-    read_template,
-    save_template,
-    saved_templates,
-    undo_import,
-    write_import,
-)
+from skisnow.campaign.importing.answers import Answers, read_template, save_template, saved_templates
+from skisnow.campaign.importing.folder import undo_import, write_import
+from skisnow.campaign.importing.proposal import propose
 
 from .test_import import FILE, bytes_of, everyday, require_right
 

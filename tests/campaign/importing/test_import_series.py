@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 from openpyxl import Workbook
 
-from skisnow.campaign.importing import Answers, propose
+from skisnow.campaign.importing.answers import Answers
+from skisnow.campaign.importing.proposal import propose
 from skisnow.campaign.reading.campaign import campaign_of_files
 from skisnow.estimation.result_rows import experiment_hardness
 

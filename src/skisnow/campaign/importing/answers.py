@@ -230,6 +230,10 @@ class Dialogue:
         """Add a question; parameters as of the function `ask`."""
         self.open.append(ask(option, key, place, **further))
 
+    def refuse(self, code: str, place: str, **further: Any) -> None:
+        """Add an error; parameters as of the function `error`."""
+        self.open.append(error(code, place, **further))
+
     def has_asked(self, option: str, key: str) -> bool:
         """True if one of the questions has this option and key."""
         return any(isinstance(item, Question) and (item.option, item.key) == (option, key) for item in self.open)

@@ -57,10 +57,14 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
     if section.sheet.hidden_columns & set(section.columns) and HIDDEN not in dialogue.answers.cells:
         dialogue.ask("cells", HIDDEN, section.key, value=EXCLUDED[HIDDEN], choices=("yes", "no"))
         return []
-    stated = [
-        _column_of(form, dialogue.answers.of_heading("column", table, heading), heading) for heading in section.headings
-    ]
-    dialogue.open.extend(_invalid_column_answers(section, form, dialogue))
+    stated = []
+    for heading in section.headings:
+        answer = dialogue.answers.of_heading("column", table, heading)
+        stated.append(answer if answer in form.known or answer == NONE else stated_column(form, heading))
+        if answer and answer != NONE and answer not in form.known:
+            allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
+            action = Message("Correct --{option}.", option="column")
+            dialogue.refuse("bad_answer", section.key, column=heading, value=answer, allowed=allowed, action=action)
     dialogue.open.extend(_column_questions(section, form, stated))
     choices = []
     for place, heading, column in zip(section.columns, section.headings, stated, strict=True):
@@ -72,20 +76,6 @@ def choose_columns(section: Section, form: TableForm, dialogue: Dialogue, notes:
             column = column if units == {folded_unit(column)} else heading  # noqa: PLW2901
         choices.append(ColumnChoice(place, heading, "" if column == NONE else column or heading, unit))
     return choices
-
-
-def _column_of(form: TableForm, answer: str, heading: str) -> str:
-    return answer if answer in form.known or answer == NONE else stated_column(form, heading)
-
-
-def _invalid_column_answers(section: Section, form: TableForm, dialogue: Dialogue) -> Iterator[Problem]:
-    table = form.file.removesuffix(".csv")
-    for heading in section.headings:
-        answer = dialogue.answers.of_heading("column", table, heading)
-        if answer and answer != NONE and answer not in form.known:
-            allowed = Message("the columns {columns}, or - for none", columns=list(form.known))
-            action = Message("Correct --{option}.", option="column")
-            yield error("bad_answer", section.key, column=heading, value=answer, allowed=allowed, action=action)
 
 
 def _column_questions(section: Section, form: TableForm, stated: Sequence[str]) -> Iterator[Question | Problem]:
@@ -143,18 +133,10 @@ def _choose_unit(
     ):
         return sizes.pop()
     if sizes:
-        dialogue.open.append(
-            error(
-                "other_unit",
-                section.key,
-                column=heading,
-                value=", ".join(sorted(units | ({below} if is_unknown else set()))),
-                allowed=Message("one unit among {units}", units=units_for(column)),
-                action=Message(
-                    "Correct the heading, the row of units, the note or --unit: they state different units."
-                ),
-            )
-        )
+        value = ", ".join(sorted(units | ({below} if is_unknown else set())))
+        allowed = Message("one unit among {units}", units=units_for(column))
+        action = Message("Correct the heading, the row of units, the note or --unit: they state different units.")
+        dialogue.refuse("other_unit", section.key, column=heading, value=value, allowed=allowed, action=action)
     else:
         choices = tuple(units_for(column).split(", "))
         dialogue.ask("unit", f"{table}.{heading}", section.key, value=below or heading, choices=choices)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Final, Literal
@@ -15,11 +15,10 @@ from ..._support.messages import Message
 from ..._support.spreadsheet_text import csv_text
 from ..._support.staging import prepare_folder, staged, write_file
 from ..._support.user_files import own_json, toml_text
-from ..problems import Problem, error
 from ..reading.campaign_file import CAMPAIGN_FILE
 from ..reading.table_forms import TableForm
 from .answers import SECTION, Answers, Dialogue
-from .columns import PLATE, TOOL, Note, length_mm, stated_plates, stated_tools
+from .columns import PLATE, TOOL, Note, gauge_steps_mm, length_mm, stated_observers, stated_plates, stated_tools
 from .rows import ImportedTable
 
 ORIGINAL: Final = "original"
@@ -34,32 +33,26 @@ def table_text(form: TableForm, rows: Sequence[Mapping[str, str]]) -> str:
 
 
 def description(
-    title: str,
-    *,
-    file: str,
-    sha256: str,
+    name: str,
+    data: bytes,
     template: Answers,
-    tools: Sequence[ToolText],
-    plates: Sequence[ToolText],
-    gauges: set[float],
-    observers: Sequence[str],
-    notes: Sequence[str],
+    tools: Iterable[ToolText],
+    plates: Iterable[ToolText],
+    notes: Sequence[Note],
 ) -> str:
     """Text of campaign.toml; the step of the gauge only if the notes agree."""
-    lines = [f"name = {toml_text(title)}", f"observers = {toml_text(observers)}"]
+    title, gauges = PurePath(name).stem, gauge_steps_mm(notes)
+    lines = [f"name = {toml_text(title)}", f"observers = {toml_text(stated_observers(notes))}"]
     lines += [f"gauge_resolution_mm = {step:g}" for step in gauges if len(gauges) == 1]
     for kind, described in (("tool", tools), ("plate", plates)):
-        for entry in described:
+        for entry in dict.fromkeys(described):
             keys = (f"{key} = {value}" for key, value in entry.keys)
             lines += ["", f"[[{kind}]]", f"name = {toml_text(entry.name)}", *keys]
-    lines += [
-        "",
-        f"[{SECTION}]",
-        f"template = {toml_text(title)}",
-        f"file = {toml_text(f'{ORIGINAL}/{PurePath(file).name}')}",
-    ]
-    lines += [f'sha256 = "{sha256}"', f"notes = {toml_text(notes)}", *template.toml_lines()]
-    return "\n".join((*lines, ""))
+    lines += ["", f"[{SECTION}]", f"template = {toml_text(title)}"]
+    lines += [f"file = {toml_text(f'{ORIGINAL}/{PurePath(name).name}')}"]
+    lines += [f'sha256 = "{hashlib.sha256(data).hexdigest()}"']
+    texts = [f"{note.sheet}, {note.row}: {note.text}" for note in notes]
+    return "\n".join((*lines, f"notes = {toml_text(texts)}", *template.toml_lines(), ""))
 
 
 def campaign_files(tables: Mapping[str, str], described: str, name: str, data: bytes) -> dict[str, bytes]:
@@ -95,7 +88,8 @@ def undo_import(folder: str | Path) -> list[str]:
     folder = Path(folder)
     try:
         hashes = own_json((folder / RECORD).read_bytes())
-        if not isinstance(hashes, dict) or not all(_is_inside(folder, path) for path in hashes):
+        inside = folder.resolve()
+        if not isinstance(hashes, dict) or not all((folder / path).resolve().is_relative_to(inside) for path in hashes):
             raise ValueError(RECORD)
         changed = [path for path, digest in hashes.items() if _sha256(folder / path) != digest]
     except (OSError, ValueError) as failure:
@@ -113,10 +107,6 @@ def undo_import(folder: str | Path) -> list[str]:
         if not any(place.iterdir()):
             place.rmdir()
     return removed
-
-
-def _is_inside(folder: Path, path: str) -> bool:
-    return (folder / path).resolve().is_relative_to(folder.resolve())
 
 
 def _sha256(path: Path) -> str:
@@ -144,21 +134,22 @@ def parse_tool(name: str, text: str) -> ToolText | None:
     >>> parse_tool("", "ski 20 x 6,2 cm").keys
     (('shape', '"ski"'), ('length_mm', '200'), ('width_mm', '62'))
     """
-    if match := TOOL.fullmatch(text.strip()):
-        lengths = length_mm(match[2], match[3] or match[5]), length_mm(match[4], match[5])
-        keys: tuple[tuple[str, str], ...] = (
-            ("shape", '"ski"'),
-            ("length_mm", f"{lengths[0]:g}"),
-            ("width_mm", f"{lengths[1]:g}"),
+    plain = text.strip()
+    if match := TOOL.fullmatch(plain):
+        return _tool_text(
+            name or plain, "ski", length_mm=(match[2], match[3] or match[5]), width_mm=(match[4], match[5])
         )
-    elif match := re.fullmatch(r"disc\s+(\d+(?:[.,]\d+)?)\s*(mm|cm|m)", text.strip()):
-        keys = (("shape", '"disc"'), ("diameter_mm", f"{length_mm(match[1], match[2]):g}"))
-    elif match := _CYLINDER.fullmatch(text.strip()):
-        radius, width = (length_mm(match[group], match[3]) for group in (1, 2))
-        keys = (("shape", '"cylinder"'), ("radius_mm", f"{radius:g}"), ("width_mm", f"{width:g}"))
-    else:
-        return None
-    return ToolText(name or text.strip(), keys)
+    if match := re.fullmatch(r"disc\s+(\d+(?:[.,]\d+)?)\s*(mm|cm|m)", plain):
+        return _tool_text(name or plain, "disc", diameter_mm=(match[1], match[2]))
+    if match := _CYLINDER.fullmatch(plain):
+        return _tool_text(name or plain, "cylinder", radius_mm=(match[1], match[3]), width_mm=(match[2], match[3]))
+    return None
+
+
+def _tool_text(name: str, shape: str, **lengths: tuple[str, str]) -> ToolText:
+    """Tool of a shape from its lengths, each as a number and its unit."""
+    texts = ((key, f"{length_mm(*length):g}") for key, length in lengths.items())
+    return ToolText(name, (("shape", f'"{shape}"'), *texts))
 
 
 def parse_plate(name: str, text: str) -> ToolText | None:
@@ -192,14 +183,13 @@ def described_tools(
             if len(tools) == 1 and (tool := tools.pop()) is not None:
                 described[sheet, name] = tool
             elif name in answers and parse(name, answers[name]) is None:
-                dialogue.open.append(_invalid_tool_answer(kind, table.section.key, answers[name], form))
+                allowed = Message("lengths with a unit, such as {form}", form=form)
+                action = Message("Correct --{option}.", option=kind)
+                answer = answers[name]
+                dialogue.refuse(
+                    "bad_answer", table.section.key, column=kind, value=answer, allowed=allowed, action=action
+                )
             elif not dialogue.has_asked(kind, name):
                 value = ", ".join(sorted(filter(None, texts))) or name or None
                 dialogue.ask(kind, name, table.section.key, value=value, proposed=form)
     return described
-
-
-def _invalid_tool_answer(option: str, section: str, value: str, example: str) -> Problem:
-    allowed = Message("lengths with a unit, such as {form}", form=example)
-    action = Message("Correct --{option}.", option=option)
-    return error("bad_answer", section, column=option, value=value, allowed=allowed, action=action)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import PurePath
 from typing import Final
 
 import numpy as np
@@ -19,7 +17,7 @@ from ..reading.campaign import campaign_of_files
 from ..reading.table_forms import TableForm
 from ..records import Campaign
 from .answers import NONE, Answers, Dialogue, Question, ask
-from .columns import Note, choose_columns, gauge_steps_mm, is_about_numbers, stated_days, stated_observers, stated_sites
+from .columns import Note, choose_columns, is_about_numbers, stated_days, stated_sites
 from .folder import ToolText, campaign_files, described_tools, description, table_text
 from .rows import ImportedTable, StoredRow, stored_rows
 from .sections import Section, find_sections, likely_table, table_of
@@ -66,7 +64,9 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     forms = [(section, form) for section, form in kinds if form is not None]
     notes = _notes(sheets, [section for section, _ in kinds], ignored)
     if not kinds:
-        dialogue.open.append(_no_table(name))
+        allowed = Message("a row of headings such as Versuch, Kantwinkel, Last, Eindringtiefe")
+        action = Message('State the row of headings by --table "SHEET:ROW=penetration".')
+        dialogue.refuse("no_table", name, allowed=allowed, action=action)
     tables = [_import_table(section, form, dialogue, ignored, notes) for section, form in forms]
     qualifying = {(section.sheet.name, section.header) for section, _ in forms if section.qualified()}
     dialogue.open.extend(
@@ -82,7 +82,7 @@ def propose(name: str, data: bytes, answers: Answers = Answers()) -> Proposal:  
     problems = tuple(dict.fromkeys(item.problem if isinstance(item, Question) else item for item in dialogue.open))
     files: Mapping[str, bytes] = {}
     if not problems:
-        described = _description(name, data, answers, tables, tools, plates, notes)
+        described = description(name, data, _template(answers, tables), tools.values(), plates.values(), notes)
         files = campaign_files(_merged_texts(tables), described, name, data)
         problems = _problems(name, files, tables, is_stated=bool(answers.unit))
     return Proposal(name, tuple(tables), questions, problems, notes, {} if problems else files)
@@ -95,15 +95,6 @@ def _choose_table_form(section: Section, dialogue: Dialogue) -> TableForm | None
         proposed = likely_table(section)
         dialogue.ask("table", section.key, section.key, value=value, choices=(*KINDS, NONE), proposed=proposed)
     return form
-
-
-def _no_table(name: str) -> Problem:
-    return error(
-        "no_table",
-        name,
-        allowed=Message("a row of headings such as Versuch, Kantwinkel, Last, Eindringtiefe"),
-        action=Message('State the row of headings by --table "SHEET:ROW=penetration".'),
-    )
 
 
 def _notes(sheets: Sequence[Sheet], sections: Sequence[Section], ignored: Ignored) -> tuple[Note, ...]:
@@ -278,35 +269,16 @@ def _merged_texts(tables: Sequence[ImportedTable]) -> dict[str, str]:
     return {file: table_text(KINDS[file.removesuffix(".csv")], rows) for file, rows in by_form.items()}
 
 
-def _description(
-    name: str,
-    data: bytes,
-    answers: Answers,
-    tables: Sequence[ImportedTable],
-    tools: Mapping[tuple[str, str], ToolText],
-    plates: Mapping[tuple[str, str], ToolText],
-    notes: Sequence[Note],
-) -> str:
-    """Text of campaign.toml."""
-    template = answers
+def _template(answers: Answers, tables: Sequence[ImportedTable]) -> Answers:
+    """Answers with the columns and units of the tables, for an import of a like file."""
     for table in tables:
         kind = table.form.file.removesuffix(".csv")
         for choice in table.columns:
             if choice.column != choice.heading and choice.column:
-                template = template.with_("column", f"{kind}.{choice.heading}", choice.column)
+                answers = answers.with_("column", f"{kind}.{choice.heading}", choice.column)
             if choice.unit is not None:
-                template = template.with_("unit", f"{kind}.{choice.heading}", choice.unit.name)
-    return description(
-        PurePath(name).stem,
-        sha256=hashlib.sha256(data).hexdigest(),
-        file=name,
-        template=template,
-        tools=tuple(dict.fromkeys(tools.values())),
-        plates=tuple(dict.fromkeys(plates.values())),
-        gauges=gauge_steps_mm(notes),
-        observers=stated_observers(notes),
-        notes=[f"{note.sheet}, {note.row}: {note.text}" for note in notes],
-    )
+                answers = answers.with_("unit", f"{kind}.{choice.heading}", choice.unit.name)
+    return answers
 
 
 def _problems(

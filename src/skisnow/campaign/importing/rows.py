@@ -148,19 +148,17 @@ def _number(section: Section, row: int, choice: ColumnChoice, text: str, mark: s
                 dialogue.ask("cells", THOUSANDS, section.key, row=row + 1, value=text, choices=(separator,))
             return ""
     if not is_number(plain, written):
-        dialogue.open.append(
-            error(
-                "not_a_number",
-                sheet.name,
-                row=row + 1,
-                column=choice.heading,
-                value=text,
-                allowed=Message("a number with the decimal mark {mark}", mark=written),
-                action=Message(
-                    "Correct the cell, or exclude it with --ignore {place}.",
-                    place=f"{sheet.name}!{column_letters(choice.place)}{row + 1}",
-                ),
-            )
+        place = f"{sheet.name}!{column_letters(choice.place)}{row + 1}"
+        allowed = Message("a number with the decimal mark {mark}", mark=written)
+        action = Message("Correct the cell, or exclude it with --ignore {place}.", place=place)
+        dialogue.refuse(
+            "not_a_number",
+            sheet.name,
+            row=row + 1,
+            column=choice.heading,
+            value=text,
+            allowed=allowed,
+            action=action,
         )
         return ""
     value = float(plain.replace(",", "."))

@@ -95,8 +95,7 @@ def find_sections(sheet: Sheet, tables: Mapping[str, str], ignored: Ignored) -> 
     sections: list[Section] = []
     for row in dict.fromkeys(row for row, _, _ in heads):
         on_row = [_make_section(sheet, row, group, count, heads, ignored) for at, group, count in heads if at == row]
-        filled = [section for section in on_row if any(_is_filled(section, at) for at in _data_range(section))]
-        sections += _split_series(filled, ignored)
+        sections += _split_series([section for section in on_row if _has_data(section)], ignored)
     return sections
 
 
@@ -148,12 +147,10 @@ def _stated_columns(heading: str) -> set[str]:
     return {column for form in KINDS.values() if (column := stated_column(form, heading))}
 
 
-def _data_range(section: Section) -> range:
-    return range(section.start, section.end)
-
-
-def _is_filled(section: Section, row: int) -> bool:
-    return sum(bool(section.sheet.cell(row, column)) for column in section.columns) > 1
+def _has_data(section: Section) -> bool:
+    """True for a table with a row of several cells."""
+    rows = range(section.start, section.end)
+    return any(sum(bool(section.sheet.cell(row, column)) for column in section.columns) > 1 for row in rows)
 
 
 def _groups(sheet: Sheet, rows: Sequence[int], ignored: Ignored) -> Iterator[range]:

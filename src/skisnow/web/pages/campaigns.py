@@ -14,7 +14,7 @@ from nicegui import run, ui
 from ..._support.errors import StoreError
 from ..._support.messages import Message
 from ...campaign import write_reference
-from ...campaign.importing import RECORD
+from ...campaign.importing.folder import RECORD
 from ...campaign.store import Journals, StoredCampaign
 from ...replay.page import STYLE, page_words
 from ...report.formatting import counted

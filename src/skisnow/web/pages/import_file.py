@@ -11,8 +11,10 @@ from nicegui import run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message, template
-from ...campaign.importing import Answers, ColumnChoice, ImportedTable, Proposal, Question
-from ...campaign.importing.columns import number_columns
+from ...campaign.importing.answers import Answers, Question
+from ...campaign.importing.columns import ColumnChoice, number_columns
+from ...campaign.importing.proposal import Proposal
+from ...campaign.importing.rows import ImportedTable
 from ...campaign.importing.sections import Section
 from ...campaign.importing.sheets import FROM_NOTES, KINDS
 from ...campaign.problems import Problem

@@ -9,7 +9,8 @@ from nicegui import ui
 
 from skisnow import samples
 from skisnow.campaign import write_reference
-from skisnow.campaign.importing import RECORD, TEMPLATES
+from skisnow.campaign.importing.answers import TEMPLATES
+from skisnow.campaign.importing.folder import RECORD
 from skisnow.campaign.store import Journals, NewEntry
 from skisnow.web.edit_session import EditSession
 
