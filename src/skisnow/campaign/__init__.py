@@ -1,7 +1,7 @@
 """Field campaigns: records, files, screening, store, reference campaign."""
 
 from .problems import QUALITY_FLAGS, AppliedCorrection, Problem, QualityFlag
-from .reading import campaign_of_files, check_campaign, read_campaign
+from .reading.campaign import campaign_of_files, check_campaign, read_campaign
 from .records import (
     Campaign,
     DensitySamples,

@@ -15,7 +15,7 @@ from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
 from ..parameters import Quantity
 from .problems import Problem, error
 from .reading.campaign import csv_text_of
-from .reading.campaign_files import FilesOfFolder, RawFiles
+from .reading.campaign_files import CampaignFiles, RawFiles
 from .reading.columns import Table
 from .reading.table_forms import TableForm
 from .reading.tables import read_table
@@ -166,7 +166,7 @@ def read_density_layers(path: Path) -> DensityLayers:
     Raises FieldDataError: the file has errors; the exception has all problems with their rows and columns.
     """
     path = Path(path)
-    files = RawFiles(FilesOfFolder(path.parent))
+    files = RawFiles(CampaignFiles(path.parent))
     table = _read_layers(path.name, files)
     if table is not None and not table.absent:
         files.problems.extend(_layers_upside_down(path.name, table))

@@ -8,7 +8,7 @@ import sys
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from .._support.errors import StoreError
 from .output import Progress
@@ -101,7 +101,8 @@ def _add(store: Store, args: argparse.Namespace) -> Answer:
     if added.n_errors is not None:
         text += f"\nchecked: errors {added.n_errors}, warnings {added.n_warnings}"
         text += " (`skisnow check` lists them)" if added.n_errors or added.n_warnings else ""
-    return asdict(added), text, 0
+    about = (*_JSON_NAMES, "already_stored", "n_repaired", "check_failure")
+    return {name: getattr(added, name) for name in about}, text, 0
 
 
 def _list(store: Store, _: argparse.Namespace) -> Answer:
@@ -202,9 +203,11 @@ def _counts_text(n_campaigns: int, n_entries: int) -> str:
     return f"{campaigns}, {n_entries} entr{'y' if n_entries == 1 else 'ies'}"
 
 
+_JSON_NAMES: Final = ("id", "name", "n_files", "n_bytes", "sha256", "n_errors", "n_warnings")
+
+
 def _as_json(stored: StoredCampaign) -> Json:
-    names = ("id", "name", "n_files", "n_bytes", "sha256", "n_errors", "n_warnings")
-    return {"added_at": stored.added_at.isoformat(), **{name: getattr(stored, name) for name in names}}
+    return {"added_at": stored.added_at.isoformat(), **{name: getattr(stored, name) for name in _JSON_NAMES}}
 
 
 def _entered_line(head: JournalHead) -> str:

@@ -21,7 +21,7 @@ from .._support.errors import FieldDataError, SkisnowError, StoreError
 from .._support.messages import Message, in_language, joined, languages
 from ..campaign import QUALITY_FLAGS, campaign_of_files
 from ..campaign.problems import ALWAYS_EXCLUDE, Problem
-from ..campaign.reading import FilesInMemory
+from ..campaign.reading.campaign_files import FilesInMemory
 from ..campaign.records import Campaign, PenetrationTests, ShearTests
 from ..campaign.store import Journals
 from ..estimation import Analysis, analyse

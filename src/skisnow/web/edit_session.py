@@ -10,10 +10,11 @@ from .._support.errors import FieldDataError, StoreError
 from .._support.messages import Message, joined
 from ..campaign import QUALITY_FLAGS, Campaign, campaign_of_files
 from ..campaign.problems import Problem
-from ..campaign.reading import READ_FILES, FilesInMemory, unfold_workbooks
-from ..campaign.reading.campaign import ATTACHMENTS
+from ..campaign.reading.campaign import ATTACHMENTS, READ_FILES
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE, CampaignFile, read_campaign_file
+from ..campaign.reading.campaign_files import FilesInMemory
 from ..campaign.reading.table_forms import CORRECTIONS, PENETRATION, SHEAR
+from ..campaign.reading.workbook_files import unfold_workbooks
 from ..campaign.store import (
     JournalEntry,
     Journals,

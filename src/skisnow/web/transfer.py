@@ -16,21 +16,19 @@ from starlette.responses import Response
 
 from .._support.errors import ParameterError, StoreError
 from .._support.messages import Message
-from ..campaign.importing import (
-    RECORD,
+from ..campaign.importing.answers import (
     TEMPLATES,
     Answers,
-    Proposal,
     parse_template,
-    propose,
     read_template,
     save_template,
     saved_templates,
-    write_import,
 )
-from ..campaign.reading import READ_FILES, FilesInMemory
-from ..campaign.reading.campaign import campaign_of_files
+from ..campaign.importing.folder import RECORD, write_import
+from ..campaign.importing.proposal import Proposal, propose
+from ..campaign.reading.campaign import READ_FILES, campaign_of_files
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
+from ..campaign.reading.campaign_files import FilesInMemory
 from ..campaign.store import Journals, campaign_files, corrected_files, export_corrected, export_entered, replay_journal
 from ..estimation.result_rows import first_hardness
 from .layout import error_sentence, plain_page

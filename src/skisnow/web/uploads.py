@@ -18,9 +18,9 @@ from starlette.responses import Response
 
 from .._support.errors import ParameterError
 from .._support.messages import Message, joined
-from ..campaign.reading import unfold_workbooks
 from ..campaign.reading.campaign_file import CAMPAIGN_FILE
-from ..campaign.reading.campaign_files import FilesOfFolder
+from ..campaign.reading.campaign_files import CampaignFiles
+from ..campaign.reading.workbook_files import unfold_workbooks
 from ..campaign.store import Store
 from ..campaign.store.folder import unsafe_because
 from ..campaign.store.server import StorePlace
@@ -225,7 +225,7 @@ def add_uploaded(store: StorePlace, place: str, names: Sequence[str], limits: Li
         with (Path(place) / str(number)).open("rb") as file:
             (unpacking.take_zip if name.lower().endswith(".zip") else partial(unpacking.take, name))(file)
     folder = campaign_folder(unpacking.folder)
-    files = unfold_workbooks(FilesOfFolder(folder))
+    files = unfold_workbooks(CampaignFiles(folder))
     if CAMPAIGN_FILE not in files.names():
         problems = files.problems
         raise ParameterError(joined([problems[0].value, problems[0].action], ". ") if problems else UNDESCRIBED).tag(

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from tests.key_names import DROP_CONE_DEPTH, SNOW_DENSITY
 
 from skisnow import analyse, results_dict, write_reference
+from skisnow._support.spreadsheet_text import is_number, number
 from skisnow.campaign import Problem, check_campaign, read_campaign
 from skisnow.campaign.problems import error
-from skisnow.campaign.reading.columns import is_number, iso_moment, number, numbers
+from skisnow.campaign.reading.columns import iso_moment, numbers
 
 from ..conftest import SmallCampaign
 

@@ -15,7 +15,7 @@ from tests.present import present
 
 import skisnow
 from skisnow._support.errors import OutputError, ParameterError
-from skisnow.campaign.reading import read_campaign
+from skisnow.campaign.reading.campaign import read_campaign
 from skisnow.campaign.reference import ReferenceNoise, reference_campaign, write_reference
 from skisnow.campaign.reference.design import FURTHER_SHEAR_SITES, PENETRATION_SITES
 from skisnow.campaign.screening import screen_penetration

@@ -13,6 +13,7 @@ from tests.present import present
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
+from skisnow.campaign.reading.campaign_files import CampaignFiles
 from skisnow.campaign.store import (
     Journals,
     NewEntry,
@@ -229,7 +230,7 @@ def kept(store: Store, place: Path, penetration: bytes, corrections: str = "") -
 
 
 def standing(place: Path, name: str) -> dict[str, str]:
-    rows = stored_tables(place)["penetration.csv"].tests[name]
+    rows = stored_tables(CampaignFiles(place))["penetration.csv"].tests[name]
     return {f"{line}/{column}": text for line, cells in rows.items() for column, text in cells.items()}
 
 

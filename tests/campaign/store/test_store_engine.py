@@ -76,7 +76,7 @@ def test_rows_must_point_somewhere(place: Path) -> None:
     with (
         Store.open(place) as store,
         raises(StoreError, "not_written"),
-        store_engine.database_errors(place, "could not be written"),
+        store_engine.database_errors(place, "not_written"),
         writing(store.engine) as connection,
     ):
         connection.execute(text("INSERT INTO chunk VALUES ('a', 0, x'00')"))
@@ -236,7 +236,7 @@ def test_a_folder_that_cannot_be_made(place: Path, monkeypatch: pytest.MonkeyPat
 WORK = """
 import sys, time
 from pathlib import Path
-from skisnow.campaign.reading import check_campaign
+from skisnow.campaign.reading.campaign import check_campaign
 from skisnow.campaign.store import Store
 place, folder, go = map(Path, sys.argv[1:4])
 print("ready", flush=True)

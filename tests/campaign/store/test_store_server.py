@@ -147,7 +147,7 @@ def test_reading_sees_one_state_and_writes_nothing(address: str) -> None:
 
 
 def store_errors(store: Store) -> AbstractContextManager[None]:
-    return database_errors(store.path, "could not be written")
+    return database_errors(store.path, "not_written")
 
 
 def test_a_connection_that_breaks_is_reported_and_the_next_one_works(server: Server, address: str) -> None:

@@ -14,7 +14,8 @@ import numpy as np
 from skisnow import read_campaign, samples, write_reference
 from skisnow._support.errors import FieldDataError
 from skisnow.campaign.caaml import read_caaml
-from skisnow.campaign.importing import Answers, propose, read_template
+from skisnow.campaign.importing.answers import Answers, read_template
+from skisnow.campaign.importing.proposal import propose
 from skisnow.campaign.smet import read_smet
 from skisnow.campaign.snow_micro_pen import read_snow_micro_pen
 from skisnow.campaign.snow_pit import read_density_layers
@@ -152,7 +153,7 @@ def _of_campaign(file: str, mutations: tuple[Mutation, ...], *covers: str) -> Re
         files=lambda: _below("campaign", _campaign()),
         read=_read_campaign,
         mutations=mutations,
-        covers=("campaign.reading.campaign_files:FilesOfFolder.read", *covers),
+        covers=("campaign.reading.campaign_files:CampaignFiles.read", *covers),
     )
 
 

@@ -19,7 +19,6 @@ from .campaign_files import (
     WEATHER_ENDING,
     CampaignFiles,
     FilesInMemory,
-    FilesOfFolder,
     RawFiles,
     campaign_weather,
     recording_contents,
@@ -191,7 +190,7 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
             "unreadable_file", str(folder), value=value, allowed=Message("a folder that exists"), action=action
         )
         return _Contents(folder, None, {}, {}, (nowhere,))
-    return _read_all(FilesOfFolder(folder), progress)
+    return _read_all(CampaignFiles(folder), progress)
 
 
 def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:

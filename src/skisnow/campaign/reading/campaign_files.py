@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import stat
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 
 from ..._support.csv_text import UnreadableTextError
 from ..._support.errors import FieldDataError
@@ -23,13 +23,14 @@ from .row_checks import MOST_LISTED
 from .table_forms import SNOW_MICRO_PEN
 
 
-class CampaignFiles(Protocol):
-    """Files of one campaign by name."""
+@dataclass(frozen=True, slots=True, eq=False)
+class CampaignFiles:
+    """Files of one campaign by name: those of a folder; subclasses have other sources.
 
-    @property
-    def folder(self) -> Path:
-        """The folder; for files in memory its name is the default name of the campaign."""
-        ...
+    folder: the folder; for files in memory its name is the default name of the campaign.
+    """
+
+    folder: Path
 
     def read(self, name: str) -> bytes | None:
         """Bytes of a file; None for a directory, pipe or the like.
@@ -37,42 +38,22 @@ class CampaignFiles(Protocol):
         Raises FileNotFoundError: the file does not exist.
         Raises OSError: it cannot be read.
         """
-        ...
-
-    def names(self) -> dict[str, bool]:
-        """Names in the folder, with True for plain files."""
-        ...
-
-
-@dataclass(frozen=True, slots=True)
-class FilesOfFolder:
-    """The files of a folder."""
-
-    folder: Path
-
-    def read(self, name: str) -> bytes | None:
-        """See `CampaignFiles.read`."""
         path = self.folder / name
         # reading a pipe would block, and a folder cannot be read
         return path.read_bytes() if stat.S_ISREG(path.stat().st_mode) else None
 
     def names(self) -> dict[str, bool]:
-        """See `CampaignFiles.names`."""
+        """Names in the folder, with True for plain files."""
         return {path.name: path.is_file() for path in self.folder.iterdir()}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FilesInMemory:
-    """Files in memory.
+class FilesInMemory(CampaignFiles):
+    """Files in memory: contents by name, and names of other files, which are not read."""
 
-    contents: contents by name.
-    others: names of other files, which are not read.
-    folder: Path whose name is the default name of the campaign; it is not read.
-    """
-
+    folder: Path = field(default=Path("campaign"), kw_only=True)
     contents: Mapping[str, bytes]
     others: tuple[str, ...] = ()
-    folder: Path = Path("campaign")
 
     def read(self, name: str) -> bytes | None:
         """See `CampaignFiles.read`."""
@@ -122,16 +103,7 @@ class RawFiles:
 
     def report_unreadable(self, name: str, failure: UnreadableTextError) -> None:
         """Report a file that is not valid text."""
-        self.problems.append(
-            error(
-                "unreadable_file",
-                name,
-                row=failure.row,
-                value=failure.value,
-                allowed=failure.allowed,
-                action=failure.action,
-            )
-        )
+        self.problems.append(error("unreadable_file", name, **vars(failure)))
 
     def report_encoding(self, name: str, foreign_encoding: str | None) -> None:
         """Report an encoding other than UTF-8."""
@@ -149,6 +121,21 @@ class RawFiles:
 
 
 ENDING: Final = ".pnt"
+WEATHER_ENDING: Final = ".smet"
+
+
+def _read_named_file(
+    files: RawFiles, name: str, ending: str, form: Message, refuse: Callable[[Message], None]
+) -> bytes | None:
+    """Bytes of a file that a table or campaign.toml names; None, with an error, without one of this form."""
+    if "/" in name or "\\" in name or not name.lower().endswith(ending):
+        refuse(form)
+        return None
+    before = len(files.problems)
+    data = files.read(name)
+    if data is None and len(files.problems) == before:
+        refuse(Message("a file of this name in the campaign's folder"))
+    return data
 
 
 def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]:
@@ -168,21 +155,15 @@ def recording_contents(table: Table | None, files: RawFiles) -> dict[str, bytes]
 
 
 def _read_recording(table: Table, row: int, name: str, files: RawFiles) -> bytes | None:
-    if "/" in name or "\\" in name or not name.lower().endswith(ENDING):
-        action = Message("Write only the file's name, and put the file next to the tables.")
-        allowed = Message("the name of a .PNT file in the campaign's folder")
-        files.problems.append(table.error(row, "unreadable_file", "file", table.names["file"][row], allowed, action))
-        return None
-    before = len(files.problems)
-    data = files.read(name)
-    if data is None and len(files.problems) == before:
+    def refuse(allowed: Message) -> None:
         action = Message("Put the file next to the tables, correct its name, or remove the row.")
-        allowed = Message("a file of this name in the campaign's folder")
-        files.problems.append(table.error(row, "unreadable_file", "file", table.names["file"][row], allowed, action))
-    if data is None:
-        return None
+        files.problems.append(table.error(row, "unreadable_file", "file", name, allowed, action))
+
+    form = Message("the name of a .PNT file in the campaign's folder")
+    data = _read_named_file(files, name, ENDING, form, refuse)
     try:
-        parse_snow_micro_pen(name, data)
+        if data is not None:
+            parse_snow_micro_pen(name, data)
     except FieldDataError as failure:
         problems: list[Problem] = failure.problems  # type: ignore[assignment]
         recording = table.names[SNOW_MICRO_PEN.key][row]
@@ -223,32 +204,22 @@ def snow_micro_pen_recordings(
     )
 
 
-WEATHER_ENDING: Final = ".smet"
-
-
 def campaign_weather(settings: WeatherSettings, files: RawFiles) -> CampaignWeather | None:
     """Read the station's file; None if none is named, or if it cannot be read, which is reported."""
     name = settings.file
     if not name:
         return None
-    if "/" in name or "\\" in name or not name.lower().endswith(WEATHER_ENDING):
-        _refuse_weather_file(files, name, Message("the name of a .smet file in the campaign's folder"))
-        return None
-    before = len(files.problems)
-    data = files.read(name)
-    if data is None:
-        if len(files.problems) == before:
-            _refuse_weather_file(files, name, Message("a file of this name in the campaign's folder"))
-        return None
+
+    def refuse(allowed: Message) -> None:
+        action = Message("Put the file next to campaign.toml, or correct its name.")
+        files.problems.append(
+            error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)
+        )
+
+    form = Message("the name of a .smet file in the campaign's folder")
+    data = _read_named_file(files, name, WEATHER_ENDING, form, refuse)
     try:
-        return CampaignWeather(parse_smet(name, data), settings)
+        return None if data is None else CampaignWeather(parse_smet(name, data), settings)
     except FieldDataError as failure:
         files.problems.extend(failure.problems)  # type: ignore[arg-type]
         return None
-
-
-def _refuse_weather_file(files: RawFiles, name: str, allowed: str) -> None:
-    action = Message("Put the file next to campaign.toml, or correct its name.")
-    files.problems.append(
-        error("unreadable_file", CAMPAIGN_FILE, column="weather.file", value=name, allowed=allowed, action=action)
-    )

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..._support.arrays import BoolArray, FloatArray, IntArray
 from ..._support.messages import Message
-from ..._support.spreadsheet_text import decimal_mark, is_number, number
+from ..._support.spreadsheet_text import is_number, number
 from ...parameters import Quantity
 from ...parameters.quantity import LARGEST, SMALLEST, beyond_reason
 from ..problems import Problem, error, warning
@@ -22,31 +22,26 @@ from .table_forms import UNLOADING, TableForm, allowed_words
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """Some rows of a file: their lines, and the cells of the column with the name of the experiment."""
+    """Some rows of a file: their lines, the cells with the name of the experiment, and the list of problems."""
 
     file: str
     line: Sequence[int]
     key: Sequence[str]
+    problems: list[Problem]
 
-    def problem(self, code: str, index: int, *, column: str, value: str, allowed: str, action: str) -> Problem:
-        """Error of one cell, with its file, line and experiment."""
-        return error(
-            code,
-            self.file,
-            row=self.line[index],
-            column=column,
-            experiment=self.key[index].strip() or None,
-            value=value,
-            allowed=allowed,
-            action=action,
+    def refuse(self, code: str, index: int, column: str, value: str, allowed: str, action: str) -> None:
+        """Add the error of one cell, with its file, line and experiment."""
+        row, name = self.line[index], self.key[index].strip() or None
+        self.problems.append(
+            error(code, self.file, row=row, column=column, experiment=name, value=value, allowed=allowed, action=action)
         )
 
 
 class Collector(Protocol):
     """Collects the cells of one column, several rows at a time."""
 
-    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
-        """Convert cells; add their errors to ``problems``."""
+    def take(self, cells: Sequence[str], rows: Rows) -> None:
+        """Convert cells; errors are added to the problems of the rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,23 +88,15 @@ class NameCollector:
         self._codes = _NameCodes()
         self._parts: list[IntArray] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
+    def take(self, cells: Sequence[str], rows: Rows) -> None:
         """See `Collector.take`."""
         code = np.fromiter(map(self._codes.__getitem__, cells), np.int64, len(cells))
         self._parts.append(code)
         blank = self._codes.code_of_name.get("")
         if self._required and blank is not None:
-            problems.extend(self._blank_name_problem(index, rows) for index in np.flatnonzero(code == blank).tolist())
-
-    def _blank_name_problem(self, index: int, rows: Rows) -> Problem:
-        return rows.problem(
-            "out_of_range",
-            index,
-            column=self._column,
-            value="",
-            allowed=Message("a non-empty name"),
-            action=Message("Fill the cell."),
-        )
+            allowed, action = Message("a non-empty name"), Message("Fill the cell.")
+            for index in np.flatnonzero(code == blank).tolist():
+                rows.refuse("out_of_range", index, self._column, "", allowed, action)
 
     def column(self, count: int) -> NameColumn:
         """The column; blank if the file does not have it."""
@@ -127,14 +114,15 @@ class NumberCollector:
         self._unit = unit if unit is not None and unit.changes else None
         self._parts: list[FloatArray] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:
+    def take(self, cells: Sequence[str], rows: Rows) -> None:
         """See `Collector.take`."""
         values = numbers(cells, self._mark)
+        name = self._column.name
         for index in np.flatnonzero(np.isnan(values)).tolist():
             cell = cells[index].strip()
             if cell or self._column.needed:
-                action, allowed = self._how_to_write(cell), allowed_words(self._column)
-                problems.append(self._number_problem("not_a_number", index, cell, rows, action, allowed))
+                allowed, action = allowed_words(self._column), self._how_to_write(cell)
+                rows.refuse("not_a_number", index, name, cell, allowed, action)
         if self._unit is not None:
             with np.errstate(over="ignore"):
                 values = self._unit.convert(values)
@@ -148,12 +136,9 @@ class NumberCollector:
                     "{allowed}; if it is not 0, with a size from {smallest:g} to {largest:g}",
                     allowed=allowed, smallest=SMALLEST, largest=LARGEST,
                 )  # fmt: skip
-            problems.append(self._number_problem("out_of_range", index, cell, rows, action, allowed))
+            rows.refuse("out_of_range", index, name, cell, allowed, action)
         values[outside] = np.nan
         self._parts.append(values)
-
-    def _number_problem(self, code: str, index: int, cell: str, rows: Rows, action: str, allowed: Message) -> Problem:
-        return rows.problem(code, index, column=self._column.name, value=cell, allowed=allowed, action=action)
 
     def _how_to_write(self, cell: str) -> Message:
         if not cell:
@@ -182,7 +167,7 @@ class TextCollector:
     def __init__(self) -> None:
         self._texts: list[str] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:  # noqa: ARG002
+    def take(self, cells: Sequence[str], rows: Rows) -> None:  # noqa: ARG002
         """See `Collector.take`."""
         once: dict[str, str] = {}
         self._texts.extend(once.setdefault(cell, cell) for cell in map(str.strip, cells))
@@ -232,31 +217,31 @@ class Table:
         return {"file": self.form.file, "row": int(self.row[row]), "column": column, "experiment": experiment}
 
 
-class DateCollector:
+class DateCollector(TextCollector):
     """Collects days and times in ISO 8601; unreadable ones are kept as text and reported in one warning."""
 
     def __init__(self, column: str) -> None:
+        super().__init__()
         self._column = column
         self._iso_text: dict[str, str | None] = {"": ""}
-        self._texts: list[str] = []
-        self._unread_files: list[tuple[int, str, str]] = []
+        self._unread: list[tuple[int, str, str]] = []
 
-    def take(self, cells: Sequence[str], rows: Rows, problems: list[Problem]) -> None:  # noqa: ARG002
+    def take(self, cells: Sequence[str], rows: Rows) -> None:
         """See `Collector.take`."""
         for index, cell in enumerate(map(str.strip, cells)):
             if cell not in self._iso_text:
                 self._iso_text[cell] = iso_moment(cell)
             written = self._iso_text[cell]
             if written is None:
-                self._unread_files.append((rows.line[index], cell, rows.key[index]))
+                self._unread.append((rows.line[index], cell, rows.key[index]))
             self._texts.append(cell if written is None else written)
 
     def problems(self, file: str) -> list[Problem]:
         """Warning of unreadable days and times, if any."""
-        if not self._unread_files:
+        if not self._unread:
             return []
-        line, cell, key = self._unread_files[0]
-        more = f", and {len(self._unread_files) - 1} more like it" if len(self._unread_files) > 1 else ""
+        line, cell, key = self._unread[0]
+        more = f", and {len(self._unread) - 1} more like it" if len(self._unread) > 1 else ""
         return [
             warning(
                 "unreadable_date",
@@ -270,10 +255,6 @@ class DateCollector:
             )
         ]
 
-    def column(self) -> tuple[str, ...]:
-        """The column: one ISO 8601 text, or the unreadable text, for each row."""
-        return tuple(self._texts)
-
 
 def is_unloading_cell(cell: str) -> bool:
     """True if the cell marks a reading of the unloading, when discs are taken off."""
@@ -284,8 +265,6 @@ def is_unloading(branch: NameColumn) -> BoolArray:
     """True for each row that is a reading of the unloading."""
     return np.array(list(map(is_unloading_cell, branch.names)), dtype=np.bool_)[branch.code]
 
-
-__all__ = ["decimal_mark", "is_number", "number", "numbers"]
 
 _BETWEEN: Final = "\x1f"  # the unit separator: in no number
 

@@ -12,8 +12,9 @@ from dataclasses import dataclass, fields
 from typing import TypeAlias
 
 from ..._support.messages import Message
+from ..._support.spreadsheet_text import is_number, number
 from ..problems import AppliedCorrection, Problem, error
-from .columns import Table, is_number, number
+from .columns import Table
 from .header import Header
 from .table_forms import CORRECTIONS, TABLES, TableForm
 
@@ -84,18 +85,15 @@ def header_with_status(form: TableForm, header: Header, corrections: RowCorrecti
     """Append the column ``status`` if a correction cancels an experiment and the file has no such column."""
     columns = (correction.column for of_one_row in corrections.values() for correction in of_one_row)
     if STATUS in form.optional and STATUS not in header.columns and STATUS in columns:
-        return header.with_column(STATUS)
+        return Header((*header.columns, STATUS), header.row)
     return header
 
 
 class Corrector:
     """Applies the corrections of one file to its records.
 
-    form: required and allowed columns.
     header: header of the file, from `header_with_status`.
-    corrections: corrections of this file.
     mark: decimal mark of the file.
-    problems: takes the problems.
     """
 
     def __init__(
@@ -135,7 +133,8 @@ class Corrector:
             return
         cells.extend([""] * (len(self._header.columns) - len(cells)))
         if self._matches_record(cells, position, correction):
-            cells[position] = self._in_the_files_form(correction)
+            is_number_here = self._mark == "," and correction.column in self._numbers and is_number(correction.new, ".")
+            cells[position] = correction.new.replace(".", ",") if is_number_here else correction.new
 
     def _matches_record(self, cells: list[str], position: int, correction: Correction) -> bool:
         key_position = self._position.get(self._key)
@@ -145,17 +144,9 @@ class Corrector:
             self._problems.append(correction.mismatch("experiment", correction.experiment, allowed))
             return False
         standing = cells[position].strip()
-        if standing == correction.old or (correction.column in self._numbers and self._equal(standing, correction.old)):
+        stands = number(standing, self._mark)  # NaN, no number, equals nothing
+        same_number = any(stands == number(correction.old, mark) for mark in (self._mark, "."))
+        if standing == correction.old or (correction.column in self._numbers and same_number):
             return True
         self._problems.append(correction.mismatch("old", correction.old, f"what stands there: {standing!r}"))
         return False
-
-    def _equal(self, standing: str, old: str) -> bool:
-        stands = number(standing, self._mark)
-        return any(stands == number(old, mark) for mark in (self._mark, "."))  # NaN, no number, equals nothing
-
-    def _in_the_files_form(self, correction: Correction) -> str:
-        """New text of the cell, with a decimal comma if the file uses decimal commas."""
-        if self._mark == "," and correction.column in self._numbers and is_number(correction.new, "."):
-            return correction.new.replace(".", ",")
-        return correction.new

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import compress
 from typing import Final
@@ -29,11 +29,6 @@ class Blocks:
         """Blocks of rows with the same key."""
         changes = np.flatnonzero(key.code[1:] != key.code[:-1]) + 1
         return cls(np.concatenate(([0], changes, [len(key.code)])).astype(np.int64))
-
-    @classmethod
-    def of_single_rows(cls, count: int) -> Blocks:
-        """Blocks of one row each."""
-        return cls(np.arange(count + 1, dtype=np.int64))
 
     @property
     def start(self) -> IntArray:
@@ -81,7 +76,7 @@ def shear_blocks(table: Table) -> Blocks:
     """Blocks of a shear table: rows of an experiment with turning angles, and single rows without one."""
     turned = ~np.isnan(table.numbers[TURNING])
     if not turned.any():
-        return Blocks.of_single_rows(len(table))
+        return Blocks(np.arange(len(table) + 1, dtype=np.int64))
     code = table.names[table.form.key].code
     goes_on = (code[1:] == code[:-1]) & turned[1:] & turned[:-1]
     return Blocks(np.concatenate(([0], np.flatnonzero(~goes_on) + 1, [len(code)])).astype(np.int64))
@@ -162,6 +157,9 @@ def penetration_tests(table: Table) -> PenetrationTests:
     is_unloaded = bool(taken_off.any())
     laid_on = ~taken_off if is_unloaded else slice(None)
     after = table.numbers["depth_after_mm"][laid_on]
+    further, counted = table.further, (~taken_off).tolist()
+    if is_unloaded:
+        further = {name: tuple(compress(cells, counted)) for name, cells in further.items()}
     return PenetrationTests(
         experiment=_cells_at(table.names["experiment"], blocks.start),
         site=_cells_at(table.names["site"], blocks.start),
@@ -175,14 +173,10 @@ def penetration_tests(table: Table) -> PenetrationTests:
         load=table.numbers["load_N"][laid_on],
         penetration_depth=table.numbers["depth_mm"][laid_on] * MM,
         row=table.row[laid_on],
-        further=_select_rows(table.further, ~taken_off) if is_unloaded else table.further,
+        further=further,
         unloading=_unloading_readings(table, blocks, taken_off) if is_unloaded else None,
         depth_after=None if np.isnan(after).all() else after * MM,
     )
-
-
-def _select_rows(further: Mapping[str, tuple[str, ...]], chosen: BoolArray) -> dict[str, tuple[str, ...]]:
-    return {name: tuple(compress(cells, chosen.tolist())) for name, cells in further.items()}
 
 
 def _unloading_readings(table: Table, blocks: Blocks, taken_off: BoolArray) -> UnloadingReadings:

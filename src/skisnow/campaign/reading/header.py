@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from ..._support.messages import Message, joined
 from ..problems import Problem, error, warning
@@ -43,11 +43,6 @@ class Header:
     row: int
     units: tuple[str, ...] = ()
 
-    @classmethod
-    def from_cells(cls, cells: Sequence[str], row: int) -> Header:
-        """Header from its cells."""
-        return cls(tuple(cell.strip().strip("\ufeff").strip() for cell in cells), row)
-
     def renamed(self, form: TableForm, headings: Headings) -> Header:
         """Header with the names of the columns instead of mapped headings."""
         return Header(tuple(headings.name(form, column) for column in self.columns), self.row)
@@ -64,20 +59,17 @@ class Header:
         """Numbers of the columns without a name."""
         return tuple(index for index, name in enumerate(self.columns) if not name)
 
-    def with_column(self, name: str) -> Header:
-        """Header with a further column."""
-        return Header((*self.columns, name), self.row)
-
 
 def split_header(lines: list[int], rows: list[list[str]]) -> Header:
     """Remove the header from the first records, with title rows above it and a row of units below it."""
     filled = [sum(1 for cell in cells if cell.strip()) for cells in rows[:_MOST_TITLES]]
     place = next((place for place, count in enumerate(filled) if count > 1), 0)
-    header = Header.from_cells(rows[place], lines[place])
+    columns = tuple(cell.strip().strip("\ufeff").strip() for cell in rows[place])
+    row = lines[place]
     units = _units_of(rows[place + 1]) if place + 1 < len(rows) else ()
     taken = place + (2 if units else 1)
     del rows[:taken], lines[:taken]
-    return replace(header, units=(*units, *[""] * len(header.columns))[: len(header.columns)] if units else ())
+    return Header(columns, row, (*units, *[""] * len(columns))[: len(columns)] if units else ())
 
 
 def _units_of(cells: Sequence[str]) -> tuple[str, ...]:
@@ -231,14 +223,19 @@ def column_units(form: TableForm, header: Header, headings: Headings, problems: 
         below = header.units[place] if header.units else ""
         stated = list(filter(None, (headings.unit(form, heading), named, below)))
         if any(conversion(unit_given, column) != conversion(stated[0], column) for unit_given in stated):
-            problems.append(_two_units_error(form, heading, column, header.row))
+            allowed = Message("one unit among {units}", units=units_for(column))
+            action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
+            problems.append(_unit_error(form, heading, column, header.row, allowed, action))
             continue
         unit = stated[0] if stated else ""
         size = conversion(unit, column) if unit else None
         if not unit:
             unstated |= {column: heading} if column in numbers else {}
         elif size is None or (size.changes and column not in numbers):
-            problems.append(_other_unit_error(form, heading, column, header.row, is_number=column in numbers))
+            units = units_for(column)
+            allowed = Message("numbers in {units}", units=units if column in numbers else units.split(", ", 1)[0])
+            action = Message("Correct the unit, or convert the numbers.")
+            problems.append(_unit_error(form, heading, column, header.row, allowed, action))
         else:
             conversions[column] = size
             problems += [_conversion_note(form, heading, column, size.name)] if size.changes else []
@@ -257,14 +254,5 @@ def _conversion_note(form: TableForm, heading: str, column: str, unit: str) -> P
     )
 
 
-def _other_unit_error(form: TableForm, heading: str, column: str, row: int, *, is_number: bool) -> Problem:
-    units = units_for(column)
-    allowed = Message("numbers in {units}", units=units if is_number else units.split(", ", 1)[0])
-    action = Message("Correct the unit, or convert the numbers.")
-    return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)
-
-
-def _two_units_error(form: TableForm, heading: str, column: str, row: int) -> Problem:
-    allowed = Message("one unit among {units}", units=units_for(column))
-    action = Message("Correct the heading, the row of units or campaign.toml: they state different units.")
+def _unit_error(form: TableForm, heading: str, column: str, row: int, allowed: Message, action: Message) -> Problem:
     return error("other_unit", form.file, row=row, column=column, value=heading, allowed=allowed, action=action)

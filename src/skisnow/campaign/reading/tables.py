@@ -12,10 +12,10 @@ import numpy as np
 from ..._support.arrays import IntArray
 from ..._support.csv_text import CsvText, Records, UnreadableTextError
 from ..._support.messages import Message
-from ..._support.spreadsheet_text import SEPARATOR_NAMES
+from ..._support.spreadsheet_text import SEPARATOR_NAMES, decimal_mark
 from ..problems import Problem, error, warning
 from .campaign_files import RawFiles
-from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector, decimal_mark
+from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector
 from .corrections import Corrector, RowCorrections, header_with_status
 from .header import ColumnUnits, Header, check_header, column_units, split_header
 from .headings import Headings
@@ -54,26 +54,12 @@ def read_table(
 ) -> Table | None:
     """Read one table, with its corrections applied, and check each cell.
 
-    Parameters
-    ----------
-    form
-        Required and allowed columns.
-    text
-        The file.
-    corrections
-        Corrections of this file.
-    files
-        Takes every problem.
-    headings
-        Mapping of headings to columns.
-    progress
-        Called with the number of rows read so far.
-
-    Returns
-    -------
-    The table, or None if no row can be read. After an error its columns can have gaps.
+    files: takes every problem.
+    headings: mapping of headings to columns.
+    progress: called with the number of rows read so far.
+    Returns the table, or None if no row can be read. After an error its columns can have gaps.
     """
-    reading: _TableReading | None = None
+    reading: TableReading | None = None
     readable = True
     errors = counted = 0
     try:
@@ -83,12 +69,7 @@ def read_table(
             if errors > MOST_ERRORS and rows:
                 raise _too_many_errors(lines[0], errors)
             if reading is None and rows:
-                header = split_header(lines, rows)
-                units = column_units(form, header, headings, files.problems)
-                renamed = header.renamed(form, headings)
-                mark = decimal_mark_of(form, renamed, text)
-                files.problems.extend(_format_notes(form.file, text.separator, mark))
-                reading = _TableReading(form, renamed, mark, corrections, files.problems, header.columns, units)
+                reading = begin_table(form, text, lines, rows, corrections, headings, files.problems)
             if reading is not None and rows:
                 reading.take(lines, rows)
                 if progress is not None:
@@ -99,27 +80,29 @@ def read_table(
     return _table_or_empty(form, reading, files.problems, readable=readable)
 
 
+def begin_table(
+    form: TableForm,
+    text: CsvText,
+    lines: list[int],
+    rows: list[list[str]],
+    corrections: RowCorrections,
+    headings: Headings,
+    problems: list[Problem],
+) -> TableReading:
+    """Remove the header from the first records of a table, and find its columns, units and decimal mark."""
+    header = split_header(lines, rows)
+    units = column_units(form, header, headings, problems)
+    renamed = header.renamed(form, headings)
+    mark = _decimal_mark_of(form, renamed, text)
+    problems.extend(_format_notes(form.file, text.separator, mark))
+    return TableReading(form, renamed, mark, corrections, problems, header.columns, units)
+
+
 def table_of_cells(form: TableForm, cells: Cells, headings: Headings, problems: list[Problem]) -> Table | None:
-    """Check each cell of a table in memory, whose corrections are applied.
-
-    Parameters
-    ----------
-    form
-        Required and allowed columns.
-    cells
-        The table.
-    headings
-        Mapping of headings to columns.
-    problems
-        Takes every problem.
-
-    Returns
-    -------
-    The table. After an error its columns can have gaps.
-    """
+    """Check each cell of a table in memory, whose corrections are applied; after an error columns can have gaps."""
     header = Header(cells.columns, 1)
     units = column_units(form, header, headings, problems)
-    reading = _TableReading(form, header.renamed(form, headings), ".", {}, problems, header.columns, units)
+    reading = TableReading(form, header.renamed(form, headings), ".", {}, problems, header.columns, units)
     reading.take(list(cells.lines), list(cells.rows))
     return _table_or_empty(form, reading, problems, readable=True)
 
@@ -134,7 +117,7 @@ def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
 
 
 def _table_or_empty(
-    form: TableForm, reading: _TableReading | None, problems: list[Problem], *, readable: bool
+    form: TableForm, reading: TableReading | None, problems: list[Problem], *, readable: bool
 ) -> Table | None:
     if reading is None:
         if readable:
@@ -151,8 +134,11 @@ def _empty_error(form: TableForm, what: str) -> Problem:
     return error("empty_file", form.file, value=what, allowed=Message("a header and at least one row"), action=action)
 
 
-class _TableReading:
-    """Collects the records of a table in chunks."""
+class TableReading:
+    """Collects the records of a table in chunks.
+
+    header, corrector, units: header with the names of the columns, corrections, and units of the columns.
+    """
 
     def __init__(
         self,
@@ -164,16 +150,16 @@ class _TableReading:
         headings: tuple[str, ...],
         units: ColumnUnits,
     ) -> None:
-        self._headings, self._units = headings, units
+        self._headings, self.units = headings, units
         self._form = form
         self._problems = problems
         self._file_header = header
         problems.extend(check_header(form, header))
-        self._header = header_with_status(form, header, corrections)
-        self._corrector = Corrector(form, self._header, corrections, mark=mark, problems=problems)
+        self.header = header_with_status(form, header, corrections)
+        self.corrector = Corrector(form, self.header, corrections, mark=mark, problems=problems)
         self._row: list[IntArray] = []
         self.met_rows = False
-        present = self._header.position
+        present = self.header.position
         self._names = {name: NameCollector(name, required=name in form.names) for name in form.names + form.optional}
         self._numbers = {
             column.name: NumberCollector(column, mark, units.conversions.get(column.name)) for column in form.numbers
@@ -194,16 +180,16 @@ class _TableReading:
         """Add some records."""
         self.met_rows = True
         lines, rows = self._without_surplus(lines, rows)
-        self._corrector.apply(lines, rows)
+        self.corrector.apply(lines, rows)
         if not rows:
             return
-        columns = _transpose(rows, len(self._header.columns))
-        key_position = self._header.position.get(self._form.key)
+        columns = _transpose(rows, len(self.header.columns))
+        key_position = self.header.position.get(self._form.key)
         keys = columns[key_position] if key_position is not None else ("",) * len(rows)
-        about = Rows(self._form.file, lines, keys)
+        about = Rows(self._form.file, lines, keys, self._problems)
         self._row.append(np.array(lines, dtype=np.int64))
         for position, collector in self._collectors:
-            collector.take(columns[position], about, self._problems)
+            collector.take(columns[position], about)
 
     def _without_surplus(self, lines: list[int], rows: list[list[str]]) -> Records:
         """Remove and report rows with a cell below an unnamed column; blank cells there are ignored."""
@@ -229,7 +215,7 @@ class _TableReading:
 
     def finish(self) -> None:
         """Report problems that only the whole file shows."""
-        self._corrector.finish()
+        self.corrector.finish()
         for collector in self._further.values():
             if isinstance(collector, DateCollector):
                 self._problems.extend(collector.problems(self._form.file))
@@ -237,7 +223,7 @@ class _TableReading:
     def table(self) -> Table:
         """The table from all records."""
         count = len(self)
-        present = self._header.position
+        present = self.header.position
         return Table(
             form=self._form,
             row=np.concatenate(self._row) if self._row else np.zeros(0, dtype=np.int64),
@@ -246,7 +232,7 @@ class _TableReading:
             further={name: collector.column() for name, collector in self._further.items()},
             absent=frozenset(name for name in self._form.required if name not in present),
             headings=self._headings,
-            unstated=self._units.unstated,
+            unstated=self.units.unstated,
         )
 
 
@@ -256,7 +242,7 @@ def _transpose(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
     return list(zip(*rows, strict=True))
 
 
-def decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
+def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:
     """Decimal mark of a table: that of its first numbers with a fraction."""
     number_columns = {column.name for column in form.numbers}
     positions = [index for index, name in enumerate(header.columns) if name in number_columns]

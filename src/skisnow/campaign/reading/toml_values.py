@@ -165,11 +165,9 @@ class TomlValues:
                     value=key,
                 )
             else:
-                self._report_ignored(key, keys)
-
-    def _report_ignored(self, key: str, allowed_keys: Sequence[str]) -> None:
-        allowed = Message("the keys {allowed_keys}", allowed_keys=list(allowed_keys))
-        action = Message("The key is not used; no action is needed.")
-        self.problems.append(
-            warning("unknown_column", self.file, column=self.path_of(key), value=key, allowed=allowed, action=action)
-        )
+                allowed = Message("the keys {allowed_keys}", allowed_keys=list(keys))
+                action = Message("The key is not used; no action is needed.")
+                path = self.path_of(key)
+                self.problems.append(
+                    warning("unknown_column", self.file, column=path, value=key, allowed=allowed, action=action)
+                )

@@ -8,7 +8,6 @@ import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final
 
 from ..._support.messages import Message
@@ -28,8 +27,8 @@ _LIKELY: Final = 0.6
 _FILES: Final = {form.file.removesuffix(".csv"): form.file for form in (*TABLES, CORRECTIONS)}
 
 
-@dataclass(frozen=True, slots=True)
-class UnfoldedFiles:
+@dataclass(frozen=True, slots=True, eq=False)
+class UnfoldedFiles(CampaignFiles):
     """The files of a campaign, including sheets of workbooks.
 
     files: the other files.
@@ -47,11 +46,6 @@ class UnfoldedFiles:
     unread: dict[str, Rows] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
 
-    @property
-    def folder(self) -> Path:
-        """See `CampaignFiles.folder`."""
-        return self.files.folder
-
     def read(self, name: str) -> bytes | None:
         """See `CampaignFiles.read`."""
         return self.of_sheets[name] if name in self.of_sheets else self.files.read(name)
@@ -64,7 +58,7 @@ class UnfoldedFiles:
 
 def unfold_workbooks(files: CampaignFiles) -> UnfoldedFiles:
     """Replace the workbooks among the files of a campaign by the text files of their sheets."""
-    workbooks = UnfoldedFiles(files)
+    workbooks = UnfoldedFiles(files.folder, files)
     names = files.names()
     for name in sorted(names):
         if names[name] and "/" not in name and is_workbook(name):

@@ -47,35 +47,30 @@ _SYSTEM_REASONS: Final = {
 
 
 _FAILURES: Final = {
-    "could not be read": (template("{place} could not be read: {reason}."), "not_read"),
-    "could not be written": (template("{place} could not be written: {reason}."), "not_written"),
-    "could not be synchronised": (template("{place} could not be synchronised: {reason}."), "not_synchronised"),
-    "could not take the campaign in": (template("{place} could not store the campaign: {reason}."), "not_stored"),
-    "cannot be used": (template("{place} cannot be used: {reason}."), "not_usable"),
-    "cannot be used as a store": (template("{place} cannot be used as a store: {reason}."), "not_usable"),
+    "not_read": template("{place} could not be read: {reason}."),
+    "not_written": template("{place} could not be written: {reason}."),
+    "not_synchronised": template("{place} could not be synchronised: {reason}."),
+    "not_stored": template("{place} could not store the campaign: {reason}."),
+    "not_usable": template("{place} cannot be used as a store: {reason}."),
 }
-"""Template and code of what a store or a file could not do."""
-
-
-def _store_error(doing: str, place: object, reason: str) -> StoreError:
-    text, code = _FAILURES[doing]
-    return StoreError(Message(text, place=place, reason=reason)).tag(code)
+"""Template of each code of a `StoreError` from a database or file system."""
 
 
 @contextmanager
-def database_errors(store: StorePlace, doing: str) -> Iterator[None]:
-    """Convert database errors to a `StoreError` with a remedy; ``doing`` as in "could not be read"."""
+def database_errors(store: StorePlace, code: str) -> Iterator[None]:
+    """Convert database errors to a `StoreError` with a remedy and a code of `_FAILURES`."""
     try:
         yield
-    except (DBAPIError, sqlite3.Error) as error:
+    except (DBAPIError, sqlite3.Error, UnicodeDecodeError) as error:
         store = _place_of(error) or store
-        if isinstance(store, ServerAddress):
+        if isinstance(error, UnicodeDecodeError):  # SQLite's message contains damaged text from the schema
+            why: str = _DAMAGED
+        elif isinstance(store, ServerAddress):
             why = reason(error, store)
         else:
             why = _file_reason(getattr(error, "orig", error), store)
-        raise _store_error(doing, Message("The store {store}", store=store), why) from error
-    except UnicodeDecodeError as error:  # SQLite's message contains damaged text from the schema
-        raise _store_error(doing, Message("The store {store}", store=store), _DAMAGED) from error
+        place = Message("The store {store}", store=store)
+        raise StoreError(_FAILURES[code]).tag(code, place=place, reason=why) from error
 
 
 def _file_reason(error: BaseException, path: Path) -> str:
@@ -96,13 +91,13 @@ def _find_damage(path: Path) -> str | None:
 
 
 @contextmanager
-def file_errors(place: Path, doing: str) -> Iterator[None]:
-    """Convert file system errors to a `StoreError` with a remedy; ``doing`` as in "could not be read"."""
+def file_errors(place: Path, code: str) -> Iterator[None]:
+    """Convert file system errors to a `StoreError` with a remedy and a code of `_FAILURES`."""
     try:
         yield
     except OSError as error:
         why = _SYSTEM_REASONS.get(error.errno or 0, error.strerror or str(error))
-        raise _store_error(doing, error.filename or place, why) from error
+        raise StoreError(_FAILURES[code]).tag(code, place=error.filename or place, reason=why) from error
 
 
 def _remember_place(engine: Engine, place: StorePlace) -> None:
@@ -158,7 +153,7 @@ def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> En
 
     Raises StoreError: it is not a store, is from a newer program, is damaged, or cannot be written if necessary.
     """
-    with database_errors(place, "cannot be used"):
+    with database_errors(place, "not_usable"):
         if isinstance(place, ServerAddress):
             engine = open_server(place, create=create, busy_timeout_s=busy_timeout_s)
         else:

@@ -146,7 +146,7 @@ def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in 
     """
     beginning = required_digits(id)
     entry_index = {head.id: head for head in Journals(store).list()}
-    with database_errors(store.path, "could not be read"), reading(store.engine) as connection:
+    with database_errors(store.path, "not_read"), reading(store.engine) as connection:
         stored = campaign_ids(connection)
     entered = [NamedId(head.id, head.name) for head in entry_index.values()]
     matching = [candidate for candidate in entered if str(candidate.id).startswith(beginning)]
@@ -170,5 +170,5 @@ def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
     Raises StoreError: the campaign is unknown, an entry is damaged, or the folder exists and is not empty.
     """
     campaign = replay_journal(Journals(store).entries(id))
-    with file_errors(folder, "could not be written"), new_folder(folder) as filling:
+    with file_errors(folder, "not_written"), new_folder(folder) as filling:
         write_campaign(campaign, filling)

@@ -9,18 +9,18 @@ import hashlib
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import Final, Protocol
+from typing import Final, TypeAlias
 
 from ..._support.csv_text import UnreadableTextError, decode
 from ..._support.errors import ParameterError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import MOST_TOML_BYTES, plain_bytes, toml_values
-from ..reading.campaign_files import FilesOfFolder
+from ..reading.campaign_files import CampaignFiles
 from ..reading.workbook_files import DESCRIPTION, unfold_workbooks
 
 _WINDOWS_NAMES: Final = re.compile(
@@ -29,11 +29,8 @@ _WINDOWS_NAMES: Final = re.compile(
 _NOT_ON_WINDOWS: Final = re.compile(r'[<>:"|?*\\\x00-\x1f]|[. ]$')
 
 
-class Progress(Protocol):
-    """Callback with the number of processed bytes and their total."""
-
-    def __call__(self, done_bytes: int, total_bytes: int, /) -> None:
-        """Report the progress."""
+Progress: TypeAlias = Callable[[int, int], object]
+"""Callback with the number of processed bytes and their total."""
 
 
 def no_progress(done_bytes: int, total_bytes: int, /) -> None:
@@ -128,7 +125,7 @@ def _read_description(folder: Path) -> bytes:
     place = folder / DESCRIPTION
     if place.exists():
         return plain_bytes(place, most_bytes=MOST_TOML_BYTES)
-    return unfold_workbooks(FilesOfFolder(folder)).read(DESCRIPTION) or b""
+    return unfold_workbooks(CampaignFiles(folder)).read(DESCRIPTION) or b""
 
 
 def unsafe_because(path: str, *, for_windows: bool) -> Message | None:

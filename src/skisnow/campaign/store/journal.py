@@ -71,7 +71,7 @@ class Journals:
         Another call with the same ``once`` returns the id of the same campaign.
         """
         id_ = secrets.token_hex(6) if once is None else sha256(once.encode()).hexdigest()[:12]
-        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
+        with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             if once is not None and connection.execute(select(journal.c.id).where(journal.c.id == id_)).first():
                 return id_
             connection.execute(insert(journal).values(id=id_, begun_at=now()))
@@ -93,7 +93,7 @@ class Journals:
             .group_by(journal.c.id)
             .order_by(journal.c.begun_at, journal.c.id)
         )
-        with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
+        with database_errors(self._path, "not_read"), reading(self._engine) as connection:
             rows = connection.execute(query).all()
             return tuple(_journal_head(entered_name(connection, row[0]), *row) for row in rows)
 
@@ -115,7 +115,7 @@ class Journals:
         return self._read(id, after, _require_stored_campaign)
 
     def _read(self, id_: str, after: int, require: Callable[[Connection, str], None]) -> tuple[JournalEntry, ...]:
-        with database_errors(self._path, "could not be read"), reading(self._engine) as connection:
+        with database_errors(self._path, "not_read"), reading(self._engine) as connection:
             require(connection, id_)
             query = select(journal_entry).where(journal_entry.c.journal_id == id_, journal_entry.c.sequence > after)
             rows = connection.execute(query).mappings()
@@ -140,7 +140,7 @@ class Journals:
         StoreError
             The journal is unknown, or the entry to correct or undo is.
         """
-        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
+        with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             _require_campaign_in_entry(connection, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier
@@ -169,7 +169,7 @@ class Journals:
         StoreError
             The campaign is unknown, or the entry to undo is.
         """
-        with database_errors(self._path, "could not be written"), writing(self._engine) as connection:
+        with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             _require_stored_campaign(connection, id)
             if (earlier := _earlier_entry(connection, id, entry)) is not None:
                 return earlier

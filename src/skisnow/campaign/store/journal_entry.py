@@ -121,19 +121,8 @@ def _damage_error(row: RowMapping) -> StoreError:
 
 
 _SUMMED_COLUMNS: Final = (
-    "sequence",
-    "journal_id",
-    "at",
-    "who",
-    "action",
-    "file",
-    "test",
-    "position",
-    "about",
-    "why",
-    "once",
-    "uid",
-)
+    "sequence", "journal_id", "at", "who", "action", "file", "test", "position", "about", "why", "once", "uid",
+)  # fmt: skip
 """Columns other than the cells, in the order of the checksum; additions need a migration."""
 
 
@@ -225,11 +214,6 @@ def next_sequence(connection: Connection) -> int:
     return int(connection.execute(query).scalar_one())
 
 
-def new_uid(sequence: int) -> str:
-    """New uid for an entry with this sequence."""
-    return f"{sequence:0{NUMBER_DIGITS}d}-{secrets.token_hex(_RANDOM_BYTES)}"
-
-
 def uid_of_file(journal_id: str, file: str, test: str) -> str:
     """Uid of the entry with the cells of a stored file, the same in all stores and before all others.
 
@@ -251,15 +235,9 @@ def write_entry(
 ) -> JournalEntry:
     """Write a new entry (default: at the current time, with a new uid)."""
     sequence = next_sequence(connection)
-    return insert_entry(connection, journal_id, entry, sequence, at or now(), uid or new_uid(sequence))
-
-
-def insert_entry(
-    connection: Connection, journal_id: str, entry: NewEntry, sequence: int, at: str, uid: str
-) -> JournalEntry:
-    """Write an entry with a given sequence, time and uid."""
+    uid = uid or f"{sequence:0{NUMBER_DIGITS}d}-{secrets.token_hex(_RANDOM_BYTES)}"
     plain = {name: getattr(entry, name) for name in SHARED_FIELDS}
-    written = JournalEntry(**plain, cells=dict(entry.cells), at=at, sequence=sequence, uid=uid)
+    written = JournalEntry(**plain, cells=dict(entry.cells), at=at or now(), sequence=sequence, uid=uid)
     insert_entries(connection, journal_id, [written])
     return written
 

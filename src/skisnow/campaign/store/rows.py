@@ -279,39 +279,19 @@ def refuse_changed(paths: Sequence[str]) -> None:
         ).tag("changed_meanwhile", paths=list(paths))
 
 
-def store_campaign(
-    connection: Connection,
-    files: Iterable[StoredFile],
-    sha256: str,
-    name: str,
-    counts: tuple[int | None, int | None],
-    *,
-    added_at: datetime | None = None,
-) -> bool:
-    """Write the row of a campaign whose contents are stored; False if the campaign exists already.
-
-    `counts` are the numbers of errors and warnings; the default of ``added_at`` is the current time.
-    """
-    id_ = sha256[:ID_DIGITS]
-    present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == id_)).scalar_one_or_none()
-    if present == sha256:
+def store_campaign(connection: Connection, stored: StoredCampaign) -> bool:
+    """Write the row of a campaign whose contents are stored; False if the campaign exists already."""
+    present = connection.execute(select(campaign.c.sha256).where(campaign.c.id == stored.id)).scalar_one_or_none()
+    if present == stored.sha256:
         return False
     if present is not None:
         raise StoreError(
             "Another campaign in the store has the id {id} by chance; keep this one in another store."
-        ).tag("same_id", id=id_)
-    connection.execute(
-        insert(campaign).values(
-            id=id_,
-            sha256=sha256,
-            name=name,
-            added_at=(added_at or datetime.now(UTC)).strftime(TIME),
-            n_errors=counts[0],
-            n_warnings=counts[1],
-        )
-    )
+        ).tag("same_id", id=stored.id)
+    columns = {name: getattr(stored, name) for name in ("id", "sha256", "name", "n_errors", "n_warnings")}
+    connection.execute(insert(campaign).values(**columns, added_at=stored.added_at.strftime(TIME)))
     connection.execute(
         insert(campaign_file),
-        [{"campaign_id": id_, "path": file.path, "sha256": file.sha256} for file in files],
+        [{"campaign_id": stored.id, "path": file.path, "sha256": file.sha256} for file in stored.files],
     )
     return True

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -51,16 +52,12 @@ from .verification import Finding, findings
 __all__ = ["AddedCampaign", "Finding", "Store", "StoredCampaign", "StoredFile", "default_path"]
 
 
-@dataclass(frozen=True, slots=True)
-class AddedCampaign:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AddedCampaign(StoredCampaign):
     """Result of `Store.add`.
 
     Attributes
     ----------
-    id, name, sha256, n_errors, n_warnings
-        As in `StoredCampaign`.
-    n_files, n_bytes
-        Number and total size of the files.
     already_stored
         True if the same files were stored before; nothing was added.
     n_repaired
@@ -69,15 +66,8 @@ class AddedCampaign:
         Reason why the check of the campaign failed, or None.
     """
 
-    id: str
-    name: str
-    n_files: int
-    n_bytes: int
-    sha256: str
     already_stored: bool
     n_repaired: int
-    n_errors: int | None
-    n_warnings: int | None
     check_failure: str | None
 
 
@@ -119,7 +109,7 @@ class Store(Shown):
         place = default_path() if path is None else store_place(path)
         if isinstance(place, ServerAddress):
             return cls(place, open_engine(place, create=create, busy_timeout_s=busy_timeout_s))
-        with file_errors(place, "cannot be used as a store"):
+        with file_errors(place, "not_usable"):
             if place.is_dir():
                 raise StoreError("{place} is a folder, not a store; name a file.").tag("not_a_file", place=place)
             if not place.exists():
@@ -157,32 +147,25 @@ class Store(Shown):
             was read.
         """
         folder = Path(folder)
-        with file_errors(folder, "could not be read"):
+        with file_errors(folder, "not_read"):
             before = self._files_to_add(folder)
             n_bytes = sum(state.size for state in before.values())
             files = _hashed_files(folder, before, lambda done: progress(done, 2 * n_bytes))
-            name, (counts, failure) = campaign_name(folder), _check(folder)
+            (n_errors, n_warnings), failure = _check(folder)
             sha256 = manifest_sha256(files)
-            with database_errors(self.path, "could not take the campaign in"), writing(self.engine) as connection:
+            campaign = StoredCampaign(
+                sha256[:ID_DIGITS], campaign_name(folder), datetime.now(UTC), sha256, n_errors, n_warnings, files
+            )
+            with database_errors(self.path, "not_stored"), writing(self.engine) as connection:
                 n_repaired, done = 0, n_bytes
                 for file in files:
                     n_repaired += store_content(connection, folder, file)
                     done += file.size
                     progress(done, 2 * n_bytes)
-                is_new = store_campaign(connection, files, sha256, name, counts)
+                is_new = store_campaign(connection, campaign)
                 refuse_changed(changed_files(before, list_files(folder)))
-        return AddedCampaign(
-            id=sha256[:ID_DIGITS],
-            name=name,
-            n_files=len(files),
-            n_bytes=n_bytes,
-            sha256=sha256,
-            already_stored=not is_new,
-            n_repaired=n_repaired,
-            n_errors=counts[0],
-            n_warnings=counts[1],
-            check_failure=failure,
-        )
+        fields = {field: getattr(campaign, field) for field in StoredCampaign.__slots__}
+        return AddedCampaign(**fields, already_stored=not is_new, n_repaired=n_repaired, check_failure=failure)
 
     def _files_to_add(self, folder: Path) -> dict[str, FileState]:
         if not folder.is_dir():
@@ -207,14 +190,14 @@ class Store(Shown):
 
         Raises StoreError: as in `show`; or the campaign has corrections.
         """
-        with database_errors(self.path, "could not be changed"), writing(self.engine) as connection:
+        with database_errors(self.path, "not_written"), writing(self.engine) as connection:
             stored = one_campaign(connection, id)
             remove_campaign(connection, stored)
         return stored
 
     def list(self) -> tuple[StoredCampaign, ...]:
         """All campaigns, oldest first."""
-        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             return all_campaigns(connection)
 
     def show(self, id: str) -> StoredCampaign:  # noqa: A002 (users know it by this name)
@@ -222,7 +205,7 @@ class Store(Shown):
 
         Raises StoreError: the id is unknown or ambiguous; the message lists candidates.
         """
-        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             return one_campaign(connection, id)
 
     def export(
@@ -242,10 +225,10 @@ class Store(Shown):
             here.
         """
         out, done = Path(out_folder), 0
-        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)
             require_whole(stored)
-            with file_errors(out, "could not be written"), new_folder(out) as filling:
+            with file_errors(out, "not_written"), new_folder(out) as filling:
                 for file in stored.files:
                     write_file(filling, file, stored_chunks(connection, file.sha256))
                     done += file.size
@@ -263,7 +246,7 @@ class Store(Shown):
 
         Raises StoreError: as in `show`; a file is damaged.
         """
-        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             stored = one_campaign(connection, id)
             require_whole(stored)
             chosen = [file for file in stored.files if file.path in names]
@@ -271,7 +254,7 @@ class Store(Shown):
 
     def verify(self, *, progress: Progress = no_progress) -> tuple[Finding, ...]:
         """Search for damage: checks of the database, hashes of all files, ids of all campaigns; () without damage."""
-        with database_errors(self.path, "could not be read"), reading(self.engine) as connection:
+        with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             return findings(connection, progress)
 
 
@@ -283,7 +266,7 @@ def default_path() -> Path:
 
 
 def _hashed_files(
-    folder: Path, states: Mapping[str, FileState], progress: Callable[[int], None]
+    folder: Path, states: Mapping[str, FileState], progress: Callable[[int], object]
 ) -> tuple[StoredFile, ...]:
     """Hash each file; ``progress`` is called with the number of bytes."""
     files, done = [], 0

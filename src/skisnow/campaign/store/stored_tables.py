@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -13,16 +12,15 @@ import numpy as np
 from ..._support.csv_text import UnreadableTextError
 from ..._support.errors import ParameterError
 from ..._support.messages import Message, joined, template
+from ..._support.spreadsheet_text import number
 from ..._support.user_files import natural_number
 from ...parameters import Quantity
 from ..reading.campaign import csv_text_of, read_description
-from ..reading.campaign_files import CampaignFiles, FilesOfFolder, RawFiles
-from ..reading.columns import number
-from ..reading.corrections import Corrector, RowCorrections, header_with_status
-from ..reading.header import Header, column_units, split_header
+from ..reading.campaign_files import CampaignFiles, RawFiles
+from ..reading.corrections import RowCorrections
 from ..reading.headings import Headings, UnitConversion
 from ..reading.table_forms import BRANCH, BRANCHES, TABLES, TableForm
-from ..reading.tables import decimal_mark_of
+from ..reading.tables import TableReading, begin_table
 from .rows import damage_error
 
 
@@ -30,16 +28,9 @@ from .rows import damage_error
 class StoredTable:
     """A table of a stored campaign.
 
-    Attributes
-    ----------
-    form
-        Required and allowed columns.
-    columns
-        Columns of the file, and ``status``, which a correction can add.
-    tests
-        Cells by test, line of the file and column, with the corrections of the campaign's corrections.csv.
-    conversions
-        Conversion of each column whose unit in the file differs from its name.
+    columns: columns of the file, and ``status``, which a correction can add.
+    tests: cells by test, line of the file and column, with the corrections of the campaign's corrections.csv.
+    conversions: conversion of each column whose unit in the file differs from its name.
     """
 
     form: TableForm
@@ -48,9 +39,9 @@ class StoredTable:
     conversions: Mapping[str, UnitConversion]
 
 
-def stored_tables(campaign: CampaignFiles | Path) -> dict[str, StoredTable]:
-    """Readable tables of a campaign by file; the campaign is a folder, or files in memory."""
-    files = RawFiles(FilesOfFolder(campaign) if isinstance(campaign, Path) else campaign)
+def stored_tables(campaign: CampaignFiles) -> dict[str, StoredTable]:
+    """Readable tables of a campaign by file."""
+    files = RawFiles(campaign)
     _, headings, corrections = read_description(files)
     tables = {form.file: _stored_table(files, form, corrections.get(form.file, {}), headings) for form in TABLES}
     return {file: table for file, table in tables.items() if table is not None}
@@ -86,30 +77,25 @@ def _stored_table(
     text = csv_text_of(files, form)
     if text is None:
         return None
-    header: Header | None = None
-    corrector: Corrector | None = None
+    table: TableReading | None = None
     tests: dict[str, dict[int, dict[str, str]]] = {}
-    conversions: dict[str, UnitConversion] = {}
     try:
         for lines, rows in text.records():
-            if header is None and rows:
-                written = split_header(lines, rows)
-                units = column_units(form, written, headings, []).conversions
-                conversions = {column: conversion for column, conversion in units.items() if conversion.changes}
-                header = header_with_status(form, written.renamed(form, headings), corrections)
-                mark = decimal_mark_of(form, header, text)
-                corrector = Corrector(form, header, corrections, mark=mark, problems=files.problems)
-            if header is None or corrector is None or form.key not in header.position:
+            if table is None and rows:
+                table = begin_table(form, text, lines, rows, corrections, headings, files.problems)
+            if table is None or form.key not in table.header.position:
                 return None
-            corrector.apply(lines, rows)
+            positions = table.header.position.items()
+            table.corrector.apply(lines, rows)
             for line, row in zip(lines, rows, strict=True):
-                cells = {name: row[at].strip() if at < len(row) else "" for name, at in header.position.items()}
+                cells = {name: row[at].strip() if at < len(row) else "" for name, at in positions}
                 tests.setdefault(cells[form.key], {})[line] = cells
     except UnreadableTextError as failure:
         files.report_unreadable(form.file, failure)
-    if header is None:
+    if table is None:
         return None
-    columns = tuple(dict.fromkeys((*header.position, "status")))
+    columns = tuple(dict.fromkeys((*table.header.position, "status")))
+    conversions = {column: size for column, size in table.units.conversions.items() if size.changes}
     return StoredTable(form, columns, tests, conversions)
 
 
@@ -157,17 +143,8 @@ class CellError(ParameterError):
 def checked_cell(form: TableForm, column: str, typed: str, *, conversion: UnitConversion | None = None) -> str:
     """The text of a cell as the table stores it: without surrounding blanks, a number with a decimal point.
 
-    Parameters
-    ----------
-    form, column, typed
-        Table, name of the column, and the text.
-    conversion
-        From the unit of the text to that of the column (default: it has the unit of the column).
-
-    Raises
-    ------
-    CellError
-        An empty name, a text that is too long, a text that is not a number, a number outside its range.
+    conversion: from the unit of the text to that of the column (default: it has the unit of the column).
+    Raises CellError: an empty name, a text that is too long or not a number, a number outside its range.
 
     >>> checked_cell(FORMS["penetration.csv"], "depth_mm", " 2,50 ")
     '2.50'

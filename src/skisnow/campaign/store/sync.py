@@ -21,7 +21,6 @@ from .folder import Progress, no_progress
 from .journal import entered_name
 from .journal_entry import (
     DESCRIPTION,
-    JournalEntry,
     NewEntry,
     insert_entries,
     next_sequence,
@@ -121,8 +120,9 @@ class _Sync:
         self._problems: list[str] = []
 
     def run(self, chosen: Mapping[str, Side], who: str, progress: Progress) -> SyncResult:
-        with database_errors(self._there.path, "could not be synchronised"):
-            before = self._read_names()
+        with database_errors(self._there.path, "not_synchronised"):
+            with reading(self._here.engine) as here, reading(self._there.engine) as there:
+                before = names_of(here), names_of(there)
             n_settled = self._settle_conflicts(chosen, who)
             to_there, to_here = (self._here, self._there), (self._there, self._here)
             return SyncResult(
@@ -135,10 +135,6 @@ class _Sync:
                 same_names=tuple(same_names(*before)),
                 problems=tuple(self._problems),
             )
-
-    def _read_names(self) -> tuple[Names, Names]:
-        with reading(self._here.engine) as here, reading(self._there.engine) as there:
-            return names_of(here), names_of(there)
 
     def _copy_campaigns(self, source: Store, to: Store) -> int:
         with reading(to.engine) as connection:
@@ -272,8 +268,7 @@ def take_campaign(source: Connection, to: Connection, stored: StoredCampaign) ->
     for file in stored.files:
         if not copy_content(to, file, stored_chunks(source, file.sha256)):
             raise damage_error(Message("{path} of the campaign {id}", path=file.path, id=stored.sha256[:ID_DIGITS]))
-    counts = (stored.n_errors, stored.n_warnings)
-    store_campaign(to, stored.files, stored.sha256, stored.name, counts, added_at=stored.added_at)
+    store_campaign(to, stored)
 
 
 def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
@@ -329,26 +324,16 @@ def settle(here: Connection, there: Connection, divergence: Divergence, side: Si
         )
     numbers = take_entries(there, here, divergence.journal_id, [entry.uid for entry in divergence.there])
     if divergence.subject[0] == DESCRIPTION:
-        _write_chosen_description(here, divergence, side, who)
-    elif side == "here":
-        taken = [numbers[entry.uid] for entry in divergence.there]
-        _undo_entries(here, divergence, taken, _choice_reason(divergence.there), who)
-    elif side == "there":
-        own = [entry.sequence for entry in divergence.here]
-        _undo_entries(here, divergence, own, _choice_reason(divergence.here), who)
+        cells = (divergence.here if side == "here" else divergence.there)[-1].cells
+        entry = NewEntry(action="describe", file=DESCRIPTION, cells=cells, who=who, why="stores synchronised")
+        write_entry(here, divergence.journal_id, entry)
+    elif side != "both":
+        others = divergence.there if side == "here" else divergence.here
+        names = ", ".join(dict.fromkeys(entry.who for entry in others if entry.who))
+        why = f"stores synchronised, the other side kept{f'; written by {names}' if names else ''}"
+        _undo_entries(here, divergence, [numbers.get(entry.uid, entry.sequence) for entry in others], why, who)
     elif divergence.kind == "begun twice":
         _rename(here, there, divergence, who)
-
-
-def _choice_reason(others: Iterable[JournalEntry]) -> str:
-    names = ", ".join(dict.fromkeys(entry.who for entry in others if entry.who))
-    return f"stores synchronised, the other side kept{f'; written by {names}' if names else ''}"
-
-
-def _write_chosen_description(here: Connection, divergence: Divergence, side: Side, who: str) -> None:
-    chosen = (divergence.here if side == "here" else divergence.there)[-1]
-    entry = NewEntry(action="describe", file=DESCRIPTION, cells=chosen.cells, who=who, why="stores synchronised")
-    write_entry(here, divergence.journal_id, entry)
 
 
 def _undo_entries(here: Connection, divergence: Divergence, numbers: Iterable[int], why: str, who: str) -> None:
@@ -361,6 +346,7 @@ def _undo_entries(here: Connection, divergence: Divergence, numbers: Iterable[in
 def _rename(here: Connection, there: Connection, divergence: Divergence, who: str) -> None:
     """Rename this store's test: its entries are undone and written again with the new name."""
     file, test = divergence.subject
+    key = FORMS[file].key if file in FORMS else ""
     name = _free_name(here, there, divergence)
     why = f"stores synchronised; goes on as {name}"
     _undo_entries(here, divergence, [entry.sequence for entry in divergence.here], why, who)
@@ -368,15 +354,10 @@ def _rename(here: Connection, there: Connection, divergence: Divergence, who: st
     for entry in divergence.here:
         about = None if entry.about is None else numbers[entry.about]
         plain = {field: getattr(entry, field) for field in ("action", "file", "position", "who", "why")}
-        cells = _renamed_cells(entry.cells, FORMS[file].key if file in FORMS else "", test, name)
-        written = write_entry(
-            here, divergence.journal_id, NewEntry(**plain, test=name, cells=cells, about=about), at=entry.at
-        )
+        cells = {column: name if column == key and text == test else text for column, text in entry.cells.items()}
+        new = NewEntry(**plain, test=name, cells=cells, about=about)
+        written = write_entry(here, divergence.journal_id, new, at=entry.at)
         numbers[entry.sequence] = written.sequence
-
-
-def _renamed_cells(cells: Mapping[str, str], key: str, test: str, name: str) -> dict[str, str]:
-    return {column: name if column == key and text == test else text for column, text in cells.items()}
 
 
 def _free_name(here: Connection, there: Connection, divergence: Divergence) -> str:

@@ -13,7 +13,7 @@ from ..._support.user_files import natural_number
 from .engine import is_file, savepoint
 from .folder import Progress, manifest_sha256, unsafe_because
 from .journal_entry import as_bytes, damaged_parts, entry_sha256, parse_cells, readable_entry
-from .rows import StoredCampaign, is_sound, stored_campaign
+from .rows import is_sound, stored_campaign
 from .schema import campaign, campaign_file, content, journal_entry
 from .server import broken_references
 
@@ -85,17 +85,15 @@ def _text_or_repr(value: object) -> str | None:
 def _find_damaged_campaigns(connection: Connection) -> Iterator[Finding]:
     for row in connection.execute(select(campaign)).all():
         try:
-            yield from _campaign_damage(stored_campaign(connection, row))
+            stored = stored_campaign(connection, row)
         except StoreError as error:
             yield Finding(_text_or_repr(row.id), None, str(error))
-
-
-def _campaign_damage(stored: StoredCampaign) -> Iterator[Finding]:
-    if manifest_sha256(stored.files) != stored.sha256:
-        yield Finding(stored.id, None, "its files are not those it was added with")
-    for file in stored.files:
-        if (why := unsafe_because(file.path, for_windows=False)) is not None:
-            yield Finding(stored.id, file.path, f"the path is not safe to export: {why}")
+            continue
+        if manifest_sha256(stored.files) != stored.sha256:
+            yield Finding(stored.id, None, "its files are not those it was added with")
+        for file in stored.files:
+            if (why := unsafe_because(file.path, for_windows=False)) is not None:
+                yield Finding(stored.id, file.path, f"the path is not safe to export: {why}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from nicegui import ui
 
 from skisnow._support.errors import StoreError
 from skisnow.campaign import read_campaign
-from skisnow.campaign.reading import FilesInMemory
+from skisnow.campaign.reading.campaign_files import FilesInMemory
 from skisnow.campaign.store import Journals, NewEntry
 from skisnow.estimation import analyse
 from skisnow.report.campaign.data import ReportData
