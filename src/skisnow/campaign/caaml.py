@@ -342,12 +342,8 @@ _MEANINGLESS: Final = re.compile(r"[\s^*·]")
 class CaamlUnits:
     """Units of one kind of quantity.
 
-    Attributes
-    ----------
-    standard
-        Unit of a value without ``uom``: that of the CAAML standard.
-    sizes
-        Shift and factor of each unit: the result is (value + shift) × factor.
+    standard: unit of a value without ``uom``: that of the CAAML standard.
+    sizes: shift and factor of each unit: the result is (value + shift) × factor.
     """
 
     standard: str

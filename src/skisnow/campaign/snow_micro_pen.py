@@ -58,6 +58,11 @@ _FIELDS: Final = (
     ("sensor_serial", 392, "20s"),
     ("amplifier_serial", 412, "20s"),
 )
+_UNCHANGED: Final = (
+    "force_per_count", "force_offset", "announced_samples", "dilution_of_precision", "satellites", "fix_mode",
+    "overload_N", "firmware", "instrument_serial",
+)  # fmt: skip
+"""Fields of the header that a profile has under the same name and in the same unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,25 +231,17 @@ def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> Snow
         depth=np.arange(counts.size) * distance,
         force=counts * header["force_per_count"],
         sample_distance=distance,
-        force_per_count=header["force_per_count"],
-        force_offset=header["force_offset"],
-        announced_samples=header["announced_samples"],
         clock=_recording_time(header["clock"]),
         date_in_file_name=_date_in(file),
         latitude_deg=latitude,
         longitude_deg=longitude,
         height=_height_or_none(header["height_cm"]),
-        dilution_of_precision=header["dilution_of_precision"],
-        satellites=header["satellites"],
-        fix_mode=header["fix_mode"],
         speed=header["speed_mm_per_s"] * MM,
         tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
         instrument_length=header["instrument_length_mm"] * MM,
-        overload_N=header["overload_N"],
-        firmware=header["firmware"],
-        instrument_serial=header["instrument_serial"],
         sensor_serial=_text(header["sensor_serial"]),
         amplifier_serial=_text(header["amplifier_serial"]),
+        **{name: header[name] for name in _UNCHANGED},
     )
 
 

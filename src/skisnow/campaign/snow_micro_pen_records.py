@@ -107,24 +107,10 @@ class SnowSurface:
 def snow_surface(force: FloatArray, sample_distance: float, *, rise: float, hold: float) -> SnowSurface | None:
     """Find the surface: the first block from which the force stays ``rise`` above that in air over ``hold``.
 
-    Parameters
-    ----------
-    force
-        N, from the first sample on.
-    sample_distance
-        m.
-    rise
-        N, above 0.
-    hold
-        m.
+    force: N, from the first sample on; rise in N, above 0; sample_distance and hold in m.
+    Returns None if it is not found.
 
-    Returns
-    -------
-    The surface, or None if it is not found.
-
-    Examples
-    --------
-    A spike at 12 mm, snow from 30 mm:
+    Example: a spike at 12 mm, snow from 30 mm.
 
     >>> force = np.full(500, 0.05)
     >>> force[120:125], force[300:] = 0.4, 0.3

@@ -14,7 +14,6 @@ from .._support.messages import Message
 from .._support.units import CM, ICE_DENSITY, Facts, Shown, amount
 from ..parameters import Quantity
 from .problems import Problem, error
-from .reading.campaign import csv_text_of
 from .reading.campaign_files import CampaignFiles, RawFiles
 from .reading.columns import Table
 from .reading.table_forms import TableForm
@@ -167,7 +166,10 @@ def read_density_layers(path: Path) -> DensityLayers:
     """
     path = Path(path)
     files = RawFiles(CampaignFiles(path.parent))
-    table = _read_layers(path.name, files)
+    table = read_table(_layers_form(path.name), files)
+    if path.name in files.absent:
+        allowed, action = Message("a file of this name"), Message("Check the file's name and folder.")
+        files.problems.append(error("unreadable_file", path.name, allowed=allowed, action=action))
     if table is not None and not table.absent:
         files.problems.extend(_layers_upside_down(path.name, table))
     errors = [problem for problem in files.problems if problem.severity == "error"]
@@ -184,15 +186,6 @@ def read_density_layers(path: Path) -> DensityLayers:
         row=table.row,
         problems=tuple(files.problems),
     )
-
-
-def _read_layers(name: str, files: RawFiles) -> Table | None:
-    form = _layers_form(name)
-    text = csv_text_of(files, form)
-    if name in files.absent:
-        action = Message("Check the file's name and folder.")
-        files.problems.append(error("unreadable_file", name, allowed=Message("a file of this name"), action=action))
-    return None if text is None else read_table(form, text, corrections={}, files=files)
 
 
 def _layers_form(file: str) -> TableForm:

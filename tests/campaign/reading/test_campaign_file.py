@@ -221,7 +221,7 @@ def test_rejected_input(text: str, code: str, column: str, value: str | None, in
 def test_each_shape_needs_its_lengths(shape: str, schema: Any) -> None:
     text = f'[[tool]]\nname = "x"\nshape = "{shape}"\n'
     _, found = read(text)
-    assert [problem.column for problem in found] == [f"tool[1].{key}" for key in SHAPES[shape].argument_of_key]
+    assert [problem.column for problem in found] == [f"tool[1].{key}" for key in SHAPES[shape].lengths]
     assert not jsonschema.Draft202012Validator(schema).is_valid(tomllib.loads(text))
 
 
@@ -292,4 +292,4 @@ def test_the_schema_names_every_mark_and_shape(schema: Any) -> None:
     assert schema["$defs"]["mark"]["enum"] == list(QUALITY_FLAGS)
     assert schema["$defs"]["tool"]["properties"]["shape"]["enum"] == list(SHAPES)
     forms = {form["properties"]["shape"]["const"]: form["required"] for form in schema["$defs"]["tool"]["oneOf"]}
-    assert forms == {name: list(shape.argument_of_key) for name, shape in SHAPES.items()}
+    assert forms == {name: list(shape.lengths) for name, shape in SHAPES.items()}

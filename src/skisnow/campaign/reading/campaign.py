@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Final
 
-from ..._support.csv_text import CsvText, UnreadableTextError, decode, inspect_csv
+from ..._support.csv_text import UnreadableTextError, decode
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message, joined
 from ..problems import AppliedCorrection, Problem, error, with_sheet_name
@@ -25,11 +25,11 @@ from .campaign_files import (
     snow_micro_pen_recordings,
 )
 from .columns import Table
-from .corrections import RowCorrections, corrections_by_file, report_missing_files
+from .corrections import corrections_by_file
 from .experiments import density_samples, drop_cone_tests, penetration_tests, shear_tests
 from .headings import Headings
 from .row_checks import check_rows
-from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES, TableForm
+from .table_forms import CORRECTIONS, DENSITY, DROP_CONE, PENETRATION, SHEAR, SNOW_MICRO_PEN, TABLES
 from .tables import Cells, read_table, table_of_cells
 from .workbook_files import is_workbook, unfold_workbooks
 
@@ -115,18 +115,20 @@ def campaign_of_cells(
     corrections: these corrections.
     Raises FieldDataError: as `read_campaign`.
     """
-    problems: list[Problem] = []
-    described = read_campaign_file(description, problems)
-    headings = described.headings if described is not None else Headings()
+    files = RawFiles(FilesInMemory({}))
+    described = read_campaign_file(description, files.problems)
+    if described is not None:
+        files.headings = described.headings
     tables: dict[str, Table] = {}
     for form in TABLES:
-        table = table_of_cells(form, cells[form.file], headings, problems) if form.file in cells else None
+        table = table_of_cells(form, cells[form.file], files) if form.file in cells else None
         if table is not None:
             tables[form.file] = table
-            problems.extend(check_rows(table, described))
+            files.problems.extend(check_rows(table, described))
     if not {form.file for form in MEASUREMENTS} & set(cells):
-        problems.append(_missing_measurements())
-    return _require_valid(_Contents(Path("campaign"), described, tables, {}, _sort_problems(problems), corrections))
+        files.problems.append(_missing_measurements())
+    problems = _sort_problems(files.problems)
+    return _require_valid(_Contents(Path("campaign"), described, tables, {}, problems, corrections))
 
 
 def check_campaign(folder: str | Path) -> tuple[Problem, ...]:
@@ -196,15 +198,15 @@ def _read_folder(folder: Path, progress: Callable[[str], None] | None) -> _Conte
 def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | None) -> _Contents:
     campaign = unfold_workbooks(campaign_files)
     files = RawFiles(campaign, problems=campaign.problems)
-    described, headings, corrections = read_description(files)
+    described = read_description(files)
     tables: dict[str, Table] = {}
     for form in TABLES:
-        table = _read_campaign_table(files, form, corrections.get(form.file, {}), headings, progress)
+        table = read_table(form, files, progress)
         if table is not None:
             tables[form.file] = table
             files.problems.extend(check_rows(table, described))
     if not any(problem.severity == "error" for problem in files.problems):
-        files.problems.extend(_units_without_heading(headings, tables))
+        files.problems.extend(_units_without_heading(files.headings, tables))
     recordings = recording_contents(tables.get(SNOW_MICRO_PEN.file), files)
     weather = None if described is None else campaign_weather(described.weather, files)
     names = campaign.names()
@@ -213,7 +215,7 @@ def _read_all(campaign_files: CampaignFiles, progress: Callable[[str], None] | N
         files.problems.append(_missing_measurements())
     hashes = {name: digest for name, digest in files.hashes.items() if name not in campaign.of_sheets}
     applied = sorted(
-        (correction for rows in corrections.values() for row in rows.values() for correction in row),
+        (correction for rows in files.corrections.values() for row in rows.values() for correction in row),
         key=lambda correction: correction.line,
     )
     return _Contents(
@@ -287,12 +289,15 @@ def _missing_measurements() -> Problem:
     )
 
 
-def read_description(files: RawFiles) -> tuple[CampaignFile | None, Headings, Mapping[str, RowCorrections]]:
-    """Read campaign.toml, its mapping of headings, and corrections.csv by file; problems are added to `files`."""
+def read_description(files: RawFiles) -> CampaignFile | None:
+    """Read campaign.toml and corrections.csv; the files get their headings, corrections and problems."""
     described = _read_campaign_toml(files)
-    headings = described.headings if described is not None else Headings()
-    table = _read_campaign_table(files, CORRECTIONS, {}, headings, None)
-    return described, headings, {} if table is None or table.absent else corrections_by_file(table, files.problems)
+    if described is not None:
+        files.headings = described.headings
+    table = read_table(CORRECTIONS, files)
+    if table is not None and not table.absent:
+        files.corrections = corrections_by_file(table, files.problems)
+    return described
 
 
 def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
@@ -319,35 +324,6 @@ def _read_campaign_toml(files: RawFiles) -> CampaignFile | None:
         return None
     files.report_encoding(CAMPAIGN_FILE, decoded.foreign_encoding)
     return read_campaign_file(decoded.text, files.problems)
-
-
-def _read_campaign_table(
-    files: RawFiles,
-    form: TableForm,
-    corrections: RowCorrections,
-    headings: Headings,
-    progress: Callable[[str], None] | None,
-) -> Table | None:
-    text = csv_text_of(files, form)
-    if form.file in files.absent:
-        report_missing_files(corrections, files.problems)
-    if text is None:
-        return None
-    return read_table(form, text, corrections=corrections, files=files, headings=headings, progress=progress)
-
-
-def csv_text_of(files: RawFiles, form: TableForm) -> CsvText | None:
-    """Text of a table, before it is split into records; None without a readable file."""
-    data = files.read(form.file)
-    if data is None:
-        return None
-    try:
-        text = inspect_csv(data)
-    except UnreadableTextError as failure:
-        files.report_unreadable(form.file, failure)
-        return None
-    files.report_encoding(form.file, text.foreign_encoding)
-    return text
 
 
 _SAME: Final = {field.name for field in fields(CampaignFile)} & {field.name for field in fields(Campaign)} - {

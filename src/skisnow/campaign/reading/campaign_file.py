@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 from ..._support.messages import Message
 from ..._support.units import MM
@@ -22,15 +22,6 @@ from .headings import UNITS_KEY, Headings, parse_headings
 from .toml_values import TomlValues
 
 CAMPAIGN_FILE: Final = "campaign.toml"
-
-
-@dataclass(frozen=True, slots=True)
-class Plate:
-    """A blade for shear tests."""
-
-    length: Annotated[
-        float, Quantity("length_mm", "length of the blade"), Allowed(0.0, above=True, usual=LIKELY_LENGTH_MM)
-    ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +92,7 @@ class CampaignFile:
 
 CAMPAIGN_KEYS: Final = {key.name: key for key in own_quantities(CampaignFile)}
 """Keys with one value or a list of numbers."""
-(PLATE_LENGTH,) = own_quantities(Plate)
+_PLATE_LENGTH: Final = Quantity("length_mm", "length of the blade", lowest=0.0, above=True, usual=LIKELY_LENGTH_MM)
 IMPORT_ANSWERS: Final = ("table", "column", "unit", "site", "tool", "plate", "cells", "ignore")
 """Tables of ``[import]``: answers of an import by option."""
 IMPORT_KEYS: Final = ("template", "file", "sha256", "notes", *IMPORT_ANSWERS)
@@ -110,21 +101,20 @@ TOP_KEYS: Final = ("name", "place", "observers", *list(CAMPAIGN_KEYS)[2:], *_SEC
 
 
 def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | None:
-    """Read the text of campaign.toml.
+    """Content of the text of campaign.toml, or None if it is not TOML.
 
-    Parameters
-    ----------
-    text
-        The decoded file.
-    problems
-        Takes every problem.
-
-    Returns
-    -------
-    Its content, or None if it is not TOML. Invalid values are missing, with an error in ``problems``.
+    Invalid values are missing, with an error that is added to ``problems``.
     """
-    parsed = _parse_toml(text, problems)
-    if parsed is None:
+    try:
+        parsed = toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
+    except ContentError as failure:
+        allowed = Message("TOML (toml.io)")
+        action = Message(
+            "Correct the line: write texts in quotes, numbers with a decimal point, and lists in brackets."
+        )
+        problems.append(
+            error("bad_toml", CAMPAIGN_FILE, row=failure.line, value=failure.what, allowed=allowed, action=action)
+        )
         return None
     top = TomlValues(CAMPAIGN_FILE, parsed, "", problems)
     top.refuse_misspelt(TOP_KEYS)
@@ -149,18 +139,6 @@ def read_campaign_file(text: str, problems: list[Problem]) -> CampaignFile | Non
     )
 
 
-def _parse_toml(text: str, problems: list[Problem]) -> dict[str, Any] | None:
-    try:
-        return toml_values(text.replace("\r\n", "\n").replace("\r", "\n"))
-    except ContentError as failure:
-        row, what = failure.line, failure.what
-    action = Message("Correct the line: write texts in quotes, numbers with a decimal point, and lists in brackets.")
-    problems.append(
-        error("bad_toml", CAMPAIGN_FILE, row=row, value=what, allowed=Message("TOML (toml.io)"), action=action)
-    )
-    return None
-
-
 def _recording_settings(section: TomlValues) -> SnowMicroPenSettings:
     settings = section.declared(SnowMicroPenSettings)
     if settings.from_depth >= settings.to_depth:
@@ -180,8 +158,8 @@ def _read_tools(top: TomlValues) -> tuple[dict[str, Tool], frozenset[str], froze
         if shape_name is None:
             continue
         shape = SHAPES[shape_name]
-        entry.refuse_misspelt(("name", "shape", *shape.argument_of_key))
-        lengths = {length.field: _needed_length(entry, length) for length in shape.lengths}
+        entry.refuse_misspelt(("name", "shape", *shape.lengths))
+        lengths = {length.field: _needed_length(entry, length) for length in shape.lengths.values()}
         if name is not None and all(length is not None for length in lengths.values()):
             tools[name] = shape.tool(**lengths)
         if name is not None and not shape.has_edge:
@@ -196,7 +174,7 @@ def _read_plates(top: TomlValues) -> tuple[dict[str, float], frozenset[str]]:
     for entry in top.tables("plate"):
         name = _new_name(entry, names)
         entry.refuse_misspelt(("name", "length_mm"))
-        length = _needed_length(entry, PLATE_LENGTH)
+        length = _needed_length(entry, _PLATE_LENGTH)
         if name is not None and length is not None:
             plates[name] = length
     return plates, frozenset(names)
@@ -274,14 +252,9 @@ class Shape:
     has_edge: bool
 
     @property
-    def lengths(self) -> tuple[Quantity, ...]:
-        """Lengths of the shape in campaign.toml."""
-        return own_quantities(self.tool)
-
-    @property
-    def argument_of_key(self) -> Mapping[str, str]:
-        """Argument of the class by key."""
-        return {length.name: length.field for length in self.lengths}
+    def lengths(self) -> dict[str, Quantity]:
+        """Lengths of the shape by their keys in campaign.toml."""
+        return {length.name: length for length in own_quantities(self.tool)}
 
 
 SHAPES: Final[Mapping[str, Shape]] = MappingProxyType(
@@ -326,7 +299,20 @@ def campaign_schema() -> Schema:
             },
             "screening": {"type": "object", "properties": {"exclude": exclude}},
         },
-        "$defs": {"mark": {"enum": list(QUALITY_FLAGS)}, "tool": _tool_schema(), "plate": _plate_schema()},
+        "$defs": {
+            "mark": {"enum": list(QUALITY_FLAGS)},
+            "tool": {
+                "type": "object",
+                "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
+                "required": ["name", "shape"],
+                "oneOf": [_shape_schema(name, shape) for name, shape in SHAPES.items()],
+            },
+            "plate": {
+                "type": "object",
+                "properties": {"name": _NAME, **table_schema([_PLATE_LENGTH])["properties"]},
+                "required": ["name", "length_mm"],
+            },
+        },
     }
 
 
@@ -342,27 +328,7 @@ def _by_heading(words: str) -> Schema:
     return {"description": words, "type": "object", "additionalProperties": either}
 
 
-def _tool_schema() -> Schema:
-    return {
-        "type": "object",
-        "properties": {"name": _NAME, "shape": {"enum": list(SHAPES)}},
-        "required": ["name", "shape"],
-        "oneOf": [_tool_schema_of_shape(name, shape) for name, shape in SHAPES.items()],
-    }
-
-
-def _tool_schema_of_shape(name: str, shape: Shape) -> Schema:
-    lengths = table_schema(shape.lengths)
-    return {
-        "properties": {"shape": {"const": name}, **lengths["properties"]},
-        "required": lengths["required"],
-    }
-
-
-def _plate_schema() -> Schema:
-    length = table_schema([PLATE_LENGTH])
-    return {
-        "type": "object",
-        "properties": {"name": _NAME, **length["properties"]},
-        "required": ["name", *length["required"]],
-    }
+def _shape_schema(name: str, shape: Shape) -> Schema:
+    """Schema of the keys of tools with a shape."""
+    lengths = table_schema(shape.lengths.values())
+    return {"properties": {"shape": {"const": name}, **lengths["properties"]}, "required": lengths["required"]}

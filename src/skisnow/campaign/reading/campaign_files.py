@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from ..._support.csv_text import UnreadableTextError
+from ..._support.csv_text import CsvText, UnreadableTextError, inspect_csv
 from ..._support.errors import FieldDataError
 from ..._support.messages import Message
 from ..._support.units import MM
@@ -19,8 +19,10 @@ from ..snow_micro_pen import parse_snow_micro_pen
 from ..snow_micro_pen_records import SnowMicroPenRecordings, SnowMicroPenSettings
 from .campaign_file import CAMPAIGN_FILE
 from .columns import Table
+from .corrections import RowCorrections
+from .headings import Headings
 from .row_checks import MOST_LISTED
-from .table_forms import SNOW_MICRO_PEN
+from .table_forms import SNOW_MICRO_PEN, TableForm
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,17 +68,20 @@ class FilesInMemory(CampaignFiles):
         return dict.fromkeys((*self.contents, *self.others), True)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class RawFiles:
     """Reader of the files of one campaign, with the problems so far.
 
     problems: takes the problems.
+    headings, corrections: mapping of headings to columns, and corrections of each table, once they are read.
     hashes: SHA-256 of each file that was read.
     absent: names of missing files.
     """
 
     files: CampaignFiles
     problems: list[Problem] = field(default_factory=list)
+    headings: Headings = field(default_factory=Headings)
+    corrections: Mapping[str, RowCorrections] = field(default_factory=dict)
     hashes: dict[str, str] = field(default_factory=dict)
     absent: set[str] = field(default_factory=set)
 
@@ -95,6 +100,19 @@ class RawFiles:
             return None
         self.hashes[name] = hashlib.sha256(data).hexdigest()
         return data
+
+    def csv_text(self, form: TableForm) -> CsvText | None:
+        """Text of a table, before it is split into records; None without a readable file."""
+        data = self.read(form.file)
+        if data is None:
+            return None
+        try:
+            text = inspect_csv(data)
+        except UnreadableTextError as failure:
+            self.report_unreadable(form.file, failure)
+            return None
+        self.report_encoding(form.file, text.foreign_encoding)
+        return text
 
     def _report_unreadable(self, name: str, what: str) -> None:
         action = Message("Make the file readable, or remove it from the campaign.")

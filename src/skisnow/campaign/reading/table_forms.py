@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Final
+from dataclasses import dataclass, replace
+from typing import Final
 
 from ..._support.messages import Message
 from ..._support.units import ICE_DENSITY
-from ...parameters import Allowed, Quantity, own_quantities
-
-if TYPE_CHECKING:
-    pass
+from ...parameters import Quantity
 
 
 def allowed_words(column: Quantity) -> Message:
@@ -61,104 +58,35 @@ class TableForm:
         return tuple(dict.fromkeys(self.names + numbers + self.texts + self.optional + self.further))
 
 
+_ANGLE: Final = "edge_angle_deg"
 _DENSITY: Final = Quantity("snow_density_kg_per_m3", "density of the snow", lowest=0.0, above=True, highest=ICE_DENSITY)
 _DROP_CONE: Final = Quantity("drop_cone_depth_mm", "depth of the drop cone: larger where snow is *softer*", lowest=0.0)
-_AIR: Final = Quantity("air_temperature_C", "temperature of the air")
-_SNOW: Final = Quantity("snow_temperature_C", "temperature of the snow")
+_OPTIONAL_DENSITY: Final = replace(_DENSITY, needed=False)
+_OPTIONAL_DROP_CONE: Final = replace(_DROP_CONE, needed=False)
+_TEMPERATURES: Final = (
+    Quantity("air_temperature_C", "temperature of the air", needed=False),
+    Quantity("snow_temperature_C", "temperature of the snow", needed=False),
+)
 _DEPTH: Final = Quantity("depth_mm", "penetration depth", lowest=0.0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PenetrationRow:
-    """The numbers of a row of penetration.csv."""
-
-    edge_angle: Annotated[
-        float,
-        Quantity("edge_angle_deg", "above 60 a warning; disc and cylinder: 0"),
-        Allowed(0.0, 90.0, below=True),
-    ]
-    load: Annotated[float, Quantity("load_N", "load"), Allowed(0.0, above=True)]
-    depth: Annotated[float, _DEPTH]
-    depth_after: Annotated[
-        float | None,
-        Quantity("depth_after_mm", "depth read once more under the same load, after waiting: creep"),
-        Allowed(0.0),
-    ] = None
-    snow_density: Annotated[float | None, _DENSITY] = None
-    drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
-    air_temperature: Annotated[float | None, _AIR] = None
-    snow_temperature: Annotated[float | None, _SNOW] = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShearRow:
-    """The numbers of a row of shear.csv."""
-
-    edge_angle: Annotated[float, Quantity("edge_angle_deg", "edge angle"), Allowed(0.0, 90.0, above=True)]
-    depth: Annotated[float, _DEPTH]
-    lever_arm: Annotated[float, Quantity("lever_arm_mm", "lever arm"), Allowed(0.0, above=True)]
-    moment: Annotated[float, Quantity("moment_Nm", "moment"), Allowed(0.0)]
-    turning_angle: Annotated[
-        float | None,
-        Quantity(
-            "turning_angle_deg",
-            "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
-        ),
-        Allowed(-360.0, 360.0),
-    ] = None
-    snow_density: Annotated[float | None, _DENSITY] = None
-    drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
-    air_temperature: Annotated[float | None, _AIR] = None
-    snow_temperature: Annotated[float | None, _SNOW] = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DensityRow:
-    """The numbers of a row of density.csv."""
-
-    snow_density: Annotated[float, _DENSITY]
-    sample_depth: Annotated[
-        float | None,
-        Quantity("sample_depth_mm", "depth of the sample's middle below the snow surface"),
-        Allowed(0.0),
-    ] = None
-    sample_thickness: Annotated[
-        float | None,
-        Quantity("sample_thickness_mm", "vertical extent of the sample"),
-        Allowed(0.0, above=True),
-    ] = None
-    drop_cone_depth: Annotated[float | None, _DROP_CONE] = None
-    air_temperature: Annotated[float | None, _AIR] = None
-    snow_temperature: Annotated[float | None, _SNOW] = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DropConeRow:
-    """The numbers of a row of drop_cone.csv."""
-
-    drop_cone_depth: Annotated[float, _DROP_CONE]
-    snow_density: Annotated[float | None, _DENSITY] = None
-    air_temperature: Annotated[float | None, _AIR] = None
-    snow_temperature: Annotated[float | None, _SNOW] = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecordingRow:
-    """The numbers of a row of snow_micro_pen.csv."""
-
-    surface: Annotated[
-        float | None,
-        Quantity("surface_mm", "where the snow begins, from the first sample; blank: estimated"),
-        Allowed(0.0),
-    ] = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CorrectionRow:
-    """The number of a row of corrections.csv."""
-
-    row: Annotated[float, Quantity("row", "line of the file"), Allowed(1.0)]
-
+_DEPTH_AFTER: Final = Quantity(
+    "depth_after_mm", "depth read once more under the same load, after waiting: creep", lowest=0.0, needed=False
+)
+_TURNING_ANGLE: Final = Quantity(
+    "turning_angle_deg",
+    "how far the device was turned under this moment, from any zero; an experiment may then have several rows",
+    lowest=-360.0,
+    highest=360.0,
+    needed=False,
+)
+_SAMPLE_DEPTH: Final = Quantity(
+    "sample_depth_mm", "depth of the sample's middle below the snow surface", lowest=0.0, needed=False
+)
+_SAMPLE_THICKNESS: Final = Quantity(
+    "sample_thickness_mm", "vertical extent of the sample", lowest=0.0, above=True, needed=False
+)
+_SURFACE: Final = Quantity(
+    "surface_mm", "where the snow begins, from the first sample; blank: estimated", lowest=0.0, needed=False
+)
 
 BRANCH: Final = "branch"
 """Column with the branch: a disc was added (loading) or removed (unloading)."""
@@ -173,7 +101,15 @@ PENETRATION: Final = TableForm(
     file="penetration.csv",
     key="experiment",
     names=("experiment", "site", "tool"),
-    numbers=own_quantities(PenetrationRow),
+    numbers=(
+        Quantity(_ANGLE, "above 60 a warning; disc and cylinder: 0", lowest=0.0, highest=90.0, below=True),
+        Quantity("load_N", "load", lowest=0.0, above=True),
+        _DEPTH,
+        _DEPTH_AFTER,
+        _OPTIONAL_DENSITY,
+        _OPTIONAL_DROP_CONE,
+        *_TEMPERATURES,
+    ),
     optional=("spot", "status", BRANCH),
     further=_NOTES,
 )
@@ -181,7 +117,16 @@ SHEAR: Final = TableForm(
     file="shear.csv",
     key="experiment",
     names=("experiment", "site", "plate"),
-    numbers=own_quantities(ShearRow),
+    numbers=(
+        Quantity(_ANGLE, "edge angle", lowest=0.0, above=True, highest=90.0),
+        _DEPTH,
+        Quantity("lever_arm_mm", "lever arm", lowest=0.0, above=True),
+        Quantity("moment_Nm", "moment", lowest=0.0),
+        _TURNING_ANGLE,
+        _OPTIONAL_DENSITY,
+        _OPTIONAL_DROP_CONE,
+        *_TEMPERATURES,
+    ),
     optional=("spot", "status"),
     further=_NOTES,
 )
@@ -189,7 +134,7 @@ DENSITY: Final = TableForm(
     file="density.csv",
     key="sample",
     names=("sample", "site"),
-    numbers=own_quantities(DensityRow),
+    numbers=(_DENSITY, _SAMPLE_DEPTH, _SAMPLE_THICKNESS, _OPTIONAL_DROP_CONE, *_TEMPERATURES),
     optional=("status",),
     further=("spot", "drop_cone_depth_mm", *_NOTES),
 )
@@ -197,7 +142,7 @@ DROP_CONE: Final = TableForm(
     file="drop_cone.csv",
     key="test",
     names=("test", "site", "repeat"),
-    numbers=own_quantities(DropConeRow),
+    numbers=(_DROP_CONE, _OPTIONAL_DENSITY, *_TEMPERATURES),
     optional=("status",),
     further=("spot", "snow_density_kg_per_m3", *_NOTES),
 )
@@ -205,7 +150,7 @@ SNOW_MICRO_PEN: Final = TableForm(
     file="snow_micro_pen.csv",
     key="recording",
     names=("recording", "site", "file"),
-    numbers=own_quantities(RecordingRow),
+    numbers=(_SURFACE,),
     optional=("spot", "status"),
     further=_NOTES,
 )
@@ -213,7 +158,7 @@ CORRECTIONS: Final = TableForm(
     file="corrections.csv",
     key="experiment",
     names=("file", "experiment", "column"),
-    numbers=own_quantities(CorrectionRow),
+    numbers=(Quantity("row", "line of the file", lowest=1.0),),
     texts=("old", "new", "who", "when", "why"),
     may_be_empty=True,
 )

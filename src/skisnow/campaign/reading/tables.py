@@ -16,13 +16,10 @@ from ..._support.spreadsheet_text import SEPARATOR_NAMES, decimal_mark
 from ..problems import Problem, error, warning
 from .campaign_files import RawFiles
 from .columns import Collector, DateCollector, NameCollector, NumberCollector, Rows, Table, TextCollector
-from .corrections import Corrector, RowCorrections, header_with_status
-from .header import ColumnUnits, Header, check_header, column_units, split_header
-from .headings import Headings
+from .corrections import Corrector, header_with_status, report_missing_files
+from .header import Header, check_header, column_units, split_header
 from .table_forms import TableForm
 
-OWN_NAMES: Final = Headings()
-"""Default mapping of headings: columns have their names as headings."""
 DATES: Final = ("time", "when")
 """Names of columns with days and times."""
 MOST_ERRORS: Final = 10_000
@@ -43,22 +40,18 @@ class Cells:
     rows: Sequence[list[str]]
 
 
-def read_table(
-    form: TableForm,
-    text: CsvText,
-    *,
-    corrections: RowCorrections,
-    files: RawFiles,
-    headings: Headings = OWN_NAMES,
-    progress: Callable[[str], None] | None = None,
-) -> Table | None:
+def read_table(form: TableForm, files: RawFiles, progress: Callable[[str], None] | None = None) -> Table | None:
     """Read one table, with its corrections applied, and check each cell.
 
-    files: takes every problem.
-    headings: mapping of headings to columns.
+    files: its headings and corrections are used; it takes every problem.
     progress: called with the number of rows read so far.
     Returns the table, or None if no row can be read. After an error its columns can have gaps.
     """
+    text = files.csv_text(form)
+    if form.file in files.absent:
+        report_missing_files(files.corrections.get(form.file, {}), files.problems)
+    if text is None:
+        return None
     reading: TableReading | None = None
     readable = True
     errors = counted = 0
@@ -69,7 +62,7 @@ def read_table(
             if errors > MOST_ERRORS and rows:
                 raise _too_many_errors(lines[0], errors)
             if reading is None and rows:
-                reading = begin_table(form, text, lines, rows, corrections, headings, files.problems)
+                reading = TableReading(form, files, split_header(lines, rows), text)
             if reading is not None and rows:
                 reading.take(lines, rows)
                 if progress is not None:
@@ -77,34 +70,18 @@ def read_table(
     except UnreadableTextError as failure:
         files.report_unreadable(form.file, failure)
         readable = False
-    return _table_or_empty(form, reading, files.problems, readable=readable)
+    if reading is not None:
+        return reading.finish(readable=readable)
+    if readable:
+        files.problems.append(_empty_error(form, "nothing"))
+    return None
 
 
-def begin_table(
-    form: TableForm,
-    text: CsvText,
-    lines: list[int],
-    rows: list[list[str]],
-    corrections: RowCorrections,
-    headings: Headings,
-    problems: list[Problem],
-) -> TableReading:
-    """Remove the header from the first records of a table, and find its columns, units and decimal mark."""
-    header = split_header(lines, rows)
-    units = column_units(form, header, headings, problems)
-    renamed = header.renamed(form, headings)
-    mark = _decimal_mark_of(form, renamed, text)
-    problems.extend(_format_notes(form.file, text.separator, mark))
-    return TableReading(form, renamed, mark, corrections, problems, header.columns, units)
-
-
-def table_of_cells(form: TableForm, cells: Cells, headings: Headings, problems: list[Problem]) -> Table | None:
+def table_of_cells(form: TableForm, cells: Cells, files: RawFiles) -> Table | None:
     """Check each cell of a table in memory, whose corrections are applied; after an error columns can have gaps."""
-    header = Header(cells.columns, 1)
-    units = column_units(form, header, headings, problems)
-    reading = TableReading(form, header.renamed(form, headings), ".", {}, problems, header.columns, units)
+    reading = TableReading(form, files, Header(cells.columns, 1))
     reading.take(list(cells.lines), list(cells.rows))
-    return _table_or_empty(form, reading, problems, readable=True)
+    return reading.finish(readable=True)
 
 
 def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
@@ -114,19 +91,6 @@ def _too_many_errors(line: int, errors: int) -> UnreadableTextError:
         allowed=Message("at most {most_errors} errors in a table", most_errors=MOST_ERRORS),
         action=Message("The rest was not read. Correct the rows above, or check that this is the right file."),
     )
-
-
-def _table_or_empty(
-    form: TableForm, reading: TableReading | None, problems: list[Problem], *, readable: bool
-) -> Table | None:
-    if reading is None:
-        if readable:
-            problems.append(_empty_error(form, "nothing"))
-        return None
-    reading.finish()
-    if readable and not reading.met_rows and not form.may_be_empty:
-        problems.append(_empty_error(form, "a header only"))
-    return reading.table() if len(reading) or form.may_be_empty else None
 
 
 def _empty_error(form: TableForm, what: str) -> Problem:
@@ -140,29 +104,26 @@ class TableReading:
     header, corrector, units: header with the names of the columns, corrections, and units of the columns.
     """
 
-    def __init__(
-        self,
-        form: TableForm,
-        header: Header,
-        mark: str,
-        corrections: RowCorrections,
-        problems: list[Problem],
-        headings: tuple[str, ...],
-        units: ColumnUnits,
-    ) -> None:
-        self._headings, self.units = headings, units
-        self._form = form
-        self._problems = problems
-        self._file_header = header
-        problems.extend(check_header(form, header))
-        self.header = header_with_status(form, header, corrections)
-        self.corrector = Corrector(form, self.header, corrections, mark=mark, problems=problems)
+    def __init__(self, form: TableForm, files: RawFiles, header: Header, text: CsvText | None = None) -> None:
+        """Begin a table; numbers have decimal points without `text`, the file with the decimal mark."""
+        self._form, self._problems, self._headings = form, files.problems, header.columns
+        self.units = column_units(form, header, files.headings, files.problems)
+        self._file_header = header.renamed(form, files.headings)
+        mark = "."
+        if text is not None:
+            mark = _decimal_mark_of(form, self._file_header, text)
+            files.problems.extend(_format_notes(form.file, text.separator, mark))
+        files.problems.extend(check_header(form, self._file_header))
+        corrections = files.corrections.get(form.file, {})
+        self.header = header_with_status(form, self._file_header, corrections)
+        self.corrector = Corrector(form, self.header, corrections, mark=mark, problems=files.problems)
         self._row: list[IntArray] = []
-        self.met_rows = False
+        self._met_rows = False
         present = self.header.position
         self._names = {name: NameCollector(name, required=name in form.names) for name in form.names + form.optional}
         self._numbers = {
-            column.name: NumberCollector(column, mark, units.conversions.get(column.name)) for column in form.numbers
+            column.name: NumberCollector(column, mark, self.units.conversions.get(column.name))
+            for column in form.numbers
         }
         interpreted = (set(self._names) | set(self._numbers)) - set(form.further)
         self._further = {
@@ -178,7 +139,7 @@ class TableReading:
 
     def take(self, lines: list[int], rows: list[list[str]]) -> None:
         """Add some records."""
-        self.met_rows = True
+        self._met_rows = True
         lines, rows = self._without_surplus(lines, rows)
         self.corrector.apply(lines, rows)
         if not rows:
@@ -213,15 +174,16 @@ class TableReading:
         action = Message("Name the column in the header, or put the cell with a separator or decimal comma in quotes.")
         return error("unreadable_file", self._form.file, row=line, value=cell, allowed=allowed, action=action)
 
-    def finish(self) -> None:
-        """Report problems that only the whole file shows."""
+    def finish(self, *, readable: bool) -> Table | None:
+        """The table from all records, None without any; reports problems that only the whole file shows."""
         self.corrector.finish()
         for collector in self._further.values():
             if isinstance(collector, DateCollector):
                 self._problems.extend(collector.problems(self._form.file))
-
-    def table(self) -> Table:
-        """The table from all records."""
+        if readable and not self._met_rows and not self._form.may_be_empty:
+            self._problems.append(_empty_error(self._form, "a header only"))
+        if not len(self) and not self._form.may_be_empty:
+            return None
         count = len(self)
         present = self.header.position
         return Table(

@@ -15,12 +15,12 @@ from ..._support.messages import Message, joined, template
 from ..._support.spreadsheet_text import number
 from ..._support.user_files import natural_number
 from ...parameters import Quantity
-from ..reading.campaign import csv_text_of, read_description
+from ..reading.campaign import read_description
 from ..reading.campaign_files import CampaignFiles, RawFiles
-from ..reading.corrections import RowCorrections
-from ..reading.headings import Headings, UnitConversion
+from ..reading.header import split_header
+from ..reading.headings import UnitConversion
 from ..reading.table_forms import BRANCH, BRANCHES, TABLES, TableForm
-from ..reading.tables import TableReading, begin_table
+from ..reading.tables import TableReading
 from .rows import damage_error
 
 
@@ -42,8 +42,8 @@ class StoredTable:
 def stored_tables(campaign: CampaignFiles) -> dict[str, StoredTable]:
     """Readable tables of a campaign by file."""
     files = RawFiles(campaign)
-    _, headings, corrections = read_description(files)
-    tables = {form.file: _stored_table(files, form, corrections.get(form.file, {}), headings) for form in TABLES}
+    read_description(files)
+    tables = {form.file: _stored_table(files, form) for form in TABLES}
     return {file: table for file, table in tables.items() if table is not None}
 
 
@@ -71,10 +71,8 @@ def cell_of(key: str) -> tuple[int, str]:
     return line, column
 
 
-def _stored_table(
-    files: RawFiles, form: TableForm, corrections: RowCorrections, headings: Headings
-) -> StoredTable | None:
-    text = csv_text_of(files, form)
+def _stored_table(files: RawFiles, form: TableForm) -> StoredTable | None:
+    text = files.csv_text(form)
     if text is None:
         return None
     table: TableReading | None = None
@@ -82,7 +80,7 @@ def _stored_table(
     try:
         for lines, rows in text.records():
             if table is None and rows:
-                table = begin_table(form, text, lines, rows, corrections, headings, files.problems)
+                table = TableReading(form, files, split_header(lines, rows), text)
             if table is None or form.key not in table.header.position:
                 return None
             positions = table.header.position.items()

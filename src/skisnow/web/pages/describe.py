@@ -236,7 +236,7 @@ class EntryRows:
             entry: dict[str, Any] = {"name": name.value.strip()}
             if shape is not None:
                 entry["shape"] = shape.value
-            used = SHAPES[shape.value].argument_of_key if shape is not None else lengths
+            used = SHAPES[shape.value].lengths if shape is not None else lengths
             entry |= {
                 key: typed_number(
                     Message("{length} of {name}", length=LENGTHS_OF_SHAPES[key], name=entry["name"]),
@@ -250,7 +250,7 @@ class EntryRows:
 
 def _show_lengths(shape: ui.select, lengths: dict[str, TypedField]) -> None:
     for key, length in lengths.items():
-        length.set_visibility(key in SHAPES[shape.value].argument_of_key)
+        length.set_visibility(key in SHAPES[shape.value].lengths)
 
 
 def _default_description() -> dict[str, Any]:
