@@ -163,8 +163,19 @@ def open_engine(place: StorePlace, *, create: bool, busy_timeout_s: float) -> En
 
 
 def _open_file(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    engine = _readable_engine(path, create=create, busy_timeout_s=busy_timeout_s)
-    if _is_outdated(engine, path):
+    engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
+    try:
+        is_outdated = _is_outdated(engine, path)
+    except DBAPIError as error:
+        # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
+        # is writing, and SQLite can read the file as immutable.
+        log = path.with_name(path.name + "-wal")
+        forbidden = primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
+        if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
+            raise
+        engine = _engine(path, "ro&immutable=1", busy_timeout_s)
+        is_outdated = _is_outdated(engine, path)
+    if is_outdated:
         _bring_up_to_date(engine, path, busy_timeout_s)
     _require_tables(engine, path)
     return engine
@@ -182,22 +193,6 @@ def _require_tables(engine: Engine, path: Path) -> None:
             raise StoreError("{path} is damaged: {error}. Put a backup in its place.").tag(
                 "damaged", path=path, error=error
             ) from error
-
-
-def _readable_engine(path: Path, *, create: bool, busy_timeout_s: float) -> Engine:
-    engine = _engine(path, "rwc" if create else "rw", busy_timeout_s)
-    try:
-        _table_names(engine)
-    except DBAPIError as error:
-        # A write-ahead log needs a file next to the store. If the folder is read-only and there is no log, no process
-        # is writing, and SQLite can read the file as immutable.
-        log = path.with_name(path.name + "-wal")
-        forbidden = primary_code(error.orig or error) in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_READONLY)
-        if not forbidden or not path.exists() or (log.exists() and log.stat().st_size > 0):
-            raise
-        engine = _engine(path, "ro&immutable=1", busy_timeout_s)
-        _table_names(engine)
-    return engine
 
 
 def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
@@ -219,11 +214,6 @@ def _engine(path: Path, mode: Mode, busy_timeout_s: float) -> Engine:
 def _begin_transaction(connection: Connection) -> None:
     # The driver's own BEGIN comes late and never before DDL; with isolation_level None it stays out of the way.
     connection.exec_driver_sql(f"BEGIN {connection.get_execution_options().get('skisnow_begin', 'DEFERRED')}")
-
-
-def _table_names(engine: Engine) -> set[str]:
-    with reading(engine) as connection:
-        return set(connection.exec_driver_sql("SELECT name FROM sqlite_master WHERE type = 'table'").scalars())
 
 
 def _revision(connection: Connection, path: Path) -> str | None:

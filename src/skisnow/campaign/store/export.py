@@ -25,7 +25,7 @@ from .replayed import (
     correction_of_cell,
     replay_journal,
 )
-from .rows import ID_DIGITS, NamedId, StoredCampaign, ambiguous_id_error, campaign_ids, required_digits
+from .rows import StoredCampaign, campaign_rows, pick_id
 from .store import Store
 from .stored_tables import cell_of
 
@@ -144,18 +144,11 @@ def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in 
 
     Raises StoreError: no campaign or several have this beginning; the message lists candidates.
     """
-    beginning = required_digits(id)
-    entry_index = {head.id: head for head in Journals(store).list()}
+    heads = {head.id: head for head in Journals(store).list()}
     with database_errors(store.path, "not_read"), reading(store.engine) as connection:
-        stored = campaign_ids(connection)
-    entered = [NamedId(head.id, head.name) for head in entry_index.values()]
-    matching = [candidate for candidate in entered if str(candidate.id).startswith(beginning)]
-    stored_too = [candidate for candidate in stored if str(candidate.id).startswith(beginning[:ID_DIGITS])]
-    if len(matching) == 1 and not stored_too:
-        return entry_index[str(matching[0].id)]
-    if stored_too and not matching:
-        return store.show(beginning)
-    raise ambiguous_id_error(beginning, [*stored_too, *matching], [*stored, *entered])
+        stored = {sha256: row.name for sha256, row in campaign_rows(connection).items()}
+    chosen = pick_id(id, {head.id: head.name for head in heads.values()} | stored)
+    return heads[chosen] if chosen in heads else store.show(chosen)
 
 
 def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A002

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
@@ -21,13 +21,6 @@ ID_DIGITS: Final = 12
 _SHORTEST_PREFIX: Final = 4
 _SHOWN_CANDIDATES: Final = 10
 TIME: Final = "%Y-%m-%dT%H:%M:%SZ"
-
-
-class NamedId(NamedTuple):
-    """Id and name of a campaign for messages."""
-
-    id: object
-    name: object
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,30 +60,23 @@ class StoredCampaign:
         return sum(file.size for file in self.files)
 
 
-def all_campaigns(connection: Connection) -> tuple[StoredCampaign, ...]:
-    """All campaigns, oldest first."""
+def campaign_rows(connection: Connection) -> dict[str, Row[tuple[object, ...]]]:
+    """Rows of all campaigns by their SHA-256, oldest first."""
     rows = connection.execute(select(campaign).order_by(campaign.c.added_at, campaign.c.id)).all()
-    return tuple(stored_campaign(connection, row) for row in rows)
+    return {str(row.sha256): row for row in rows}
 
 
 def one_campaign(connection: Connection, beginning: str) -> StoredCampaign:
-    """Find the campaign by the beginning of its hash.
+    """Find the campaign by the beginning of its hash; errors as in `pick_id`."""
+    rows = campaign_rows(connection)
+    sha256 = pick_id(beginning, {sha256: row.name for sha256, row in rows.items()})
+    return stored_campaign(connection, rows[sha256])
+
+
+def pick_id(beginning: str, names: Mapping[str, object]) -> str:
+    """The id or hash with this beginning, from names by ids, oldest first.
 
     Raises StoreError: not hexadecimal, fewer than 4 digits, unknown, or ambiguous; the message lists candidates.
-    """
-    beginning = required_digits(beginning)
-    begins_so = select(campaign).where(campaign.c.sha256.startswith(beginning)).order_by(campaign.c.id)
-    rows = connection.execute(begins_so).all()
-    if len(rows) == 1:
-        return stored_campaign(connection, rows[0])
-    matching = [NamedId(row.id, row.name) for row in rows]
-    raise ambiguous_id_error(beginning, matching, campaign_ids(connection))
-
-
-def required_digits(beginning: str) -> str:
-    """Validated beginning of an id, in lower case.
-
-    Raises StoreError: it has fewer than 4 hexadecimal digits, or other characters.
     """
     digits = beginning.strip().lower()
     if not re.fullmatch(rf"[0-9a-f]{{{_SHORTEST_PREFIX},64}}", digits):
@@ -98,38 +84,22 @@ def required_digits(beginning: str) -> str:
             "{digits!r} is not the id of a campaign: give its {most} hexadecimal digits or the first "
             "{fewest} or more of them."
         ).tag("not_an_id", digits=digits, most=ID_DIGITS, fewest=_SHORTEST_PREFIX)
-    return digits
-
-
-def campaign_ids(connection: Connection) -> list[NamedId]:
-    """Id and name of each stored campaign, newest first."""
-    rows = connection.execute(select(campaign).order_by(campaign.c.added_at.desc(), campaign.c.id)).all()
-    return [NamedId(row.id, row.name) for row in rows]
-
-
-def ambiguous_id_error(beginning: str, matching: Sequence[NamedId], stored: Sequence[NamedId]) -> StoreError:
-    """Error for an unknown or ambiguous beginning of an id, with candidates."""
+    matching = [id_ for id_ in names if id_.startswith(digits)]
+    if len(matching) == 1:
+        return matching[0]
+    listed = sorted(matching) or list(names)[::-1]  # the newest first
+    named = [f"{id_[:ID_DIGITS]} ({names[id_]})" for id_ in listed]
+    candidates = Message("{names}", names=named[:_SHOWN_CANDIDATES]) if named else Message("none")
+    if len(named) > _SHOWN_CANDIDATES:
+        further = len(named) - _SHOWN_CANDIDATES
+        candidates = Message("{names} and {count} more", names=candidates, count=further)
     if matching:
-        return StoreError("Several campaigns begin with {beginning}: {candidates}; give more digits.").tag(
-            "ambiguous_id", beginning=beginning, candidates=_candidates_text(matching)
+        raise StoreError("Several campaigns begin with {beginning}: {candidates}; give more digits.").tag(
+            "ambiguous_id", beginning=digits, candidates=candidates
         )
-    return StoreError("No campaign begins with {beginning}; the store contains {candidates}.").tag(
-        "unknown_id", beginning=beginning, candidates=_candidates_text(stored)
+    raise StoreError("No campaign begins with {beginning}; the store contains {candidates}.").tag(
+        "unknown_id", beginning=digits, candidates=candidates
     )
-
-
-def _candidates_text(campaigns: Sequence[NamedId]) -> Message:
-    named = [f"{campaign_id.id} ({campaign_id.name})" for campaign_id in campaigns[:_SHOWN_CANDIDATES]]
-    further = len(campaigns) - len(named)
-    if not named:
-        return Message("none")
-    names = Message("{names}", names=named)
-    return Message("{names} and {count} more", names=named, count=further) if further else names
-
-
-def stored_hashes(connection: Connection) -> set[str]:
-    """SHA-256 of all campaigns."""
-    return set(connection.execute(select(campaign.c.sha256)).scalars())
 
 
 def damage_error(what: str) -> StoreError:

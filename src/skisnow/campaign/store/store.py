@@ -36,13 +36,14 @@ from .folder import (
 from .rows import (
     ID_DIGITS,
     StoredCampaign,
-    all_campaigns,
+    campaign_rows,
     one_campaign,
     refuse_changed,
     remove_campaign,
     require_whole,
     store_campaign,
     store_content,
+    stored_campaign,
     stored_chunks,
 )
 from .schema import CHUNK_BYTES
@@ -198,7 +199,7 @@ class Store(Shown):
     def list(self) -> tuple[StoredCampaign, ...]:
         """All campaigns, oldest first."""
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
-            return all_campaigns(connection)
+            return tuple(stored_campaign(connection, row) for row in campaign_rows(connection).values())
 
     def show(self, id: str) -> StoredCampaign:  # noqa: A002 (users know it by this name)
         """One campaign by its id or the beginning of it (at least 4 digits).

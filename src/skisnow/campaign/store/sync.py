@@ -30,13 +30,13 @@ from .journal_entry import (
 from .rows import (
     ID_DIGITS,
     StoredCampaign,
+    campaign_rows,
     copy_content,
     damage_error,
-    one_campaign,
     require_whole,
     store_campaign,
+    stored_campaign,
     stored_chunks,
-    stored_hashes,
 )
 from .schema import campaign, journal, journal_entry
 from .store import Store
@@ -138,12 +138,13 @@ class _Sync:
 
     def _copy_campaigns(self, source: Store, to: Store) -> int:
         with reading(to.engine) as connection:
-            held = stored_hashes(connection)
+            held = campaign_rows(connection)
         n_taken = 0
         with reading(source.engine) as from_:
-            for sha256 in sorted(stored_hashes(from_) - held):
+            missing = {sha256: row for sha256, row in campaign_rows(from_).items() if sha256 not in held}
+            for _, row in sorted(missing.items()):
                 try:
-                    stored = one_campaign(from_, sha256)
+                    stored = stored_campaign(from_, row)
                     with writing(to.engine) as connection:
                         take_campaign(from_, connection, stored)
                     n_taken += 1
