@@ -148,14 +148,13 @@ class Divergence:
         )
 
 
-def find_divergences(
-    here: Connection, there: Connection, journal_id: str, of_here: EntryIndex, of_there: EntryIndex
-) -> Iterator[Divergence]:
-    """Divergence of each test about which each store has entries that the other does not have."""
+def open_divergences(here: Connection, there: Connection, journal_id: str) -> Iterator[Divergence]:
+    """Tests about which the entries that only one store has contradict those that only the other has."""
+    of_here, of_there = entry_index(here, journal_id), entry_index(there, journal_id)
     for subject in of_here.written_on_both(of_there):
         on_here, on_there = entries_about(here, journal_id, subject), entries_about(there, journal_id, subject)
         uids_here, uids_there = {entry.uid for entry in on_here}, {entry.uid for entry in on_there}
-        yield Divergence(
+        divergence = Divergence(
             journal_id,
             subject,
             common=tuple(entry for entry in on_here if entry.uid in uids_there),
@@ -164,6 +163,8 @@ def find_divergences(
             uid_here=of_here.uid,
             uid_there=of_there.uid,
         )
+        if not divergence.is_agreed:
+            yield divergence
 
 
 def _corrected(entries: Sequence[JournalEntry], uids: Mapping[int, str]) -> dict[tuple[str, str], str]:
@@ -268,16 +269,8 @@ def entries_about(connection: Connection, journal_id: str, subject: Subject) -> 
 
 def shared_journals(here: Connection, there: Connection) -> Iterator[str]:
     """Ids of the journals that can be compared: of campaigns in entry, or stored in both stores."""
-    of_here, of_there = _journal_ids(here), _journal_ids(there)
-    stored_here, stored_there = _campaign_ids(here), _campaign_ids(there)
-    for id_ in sorted(of_here | of_there):
+    journals = {id_ for store in (here, there) for id_ in store.execute(select(journal.c.id)).scalars()}
+    stored_here, stored_there = (set(store.execute(select(campaign.c.id)).scalars()) for store in (here, there))
+    for id_ in sorted(journals):
         if (id_ in stored_here) == (id_ in stored_there):
             yield id_
-
-
-def _journal_ids(connection: Connection) -> set[str]:
-    return set(connection.execute(select(journal.c.id)).scalars())
-
-
-def _campaign_ids(connection: Connection) -> set[str]:
-    return set(connection.execute(select(campaign.c.id)).scalars())

@@ -15,7 +15,7 @@ from sqlalchemy import Connection, insert, select
 
 from ..._support.errors import StoreError
 from ..._support.messages import Message
-from .conflict import Conflict, Divergence, Side, entries_by_uid, entry_index, find_divergences, shared_journals
+from .conflict import Conflict, Divergence, Side, entries_by_uid, entry_index, open_divergences, shared_journals
 from .engine import database_errors, reading, writing
 from .folder import Progress, no_progress
 from .journal import entered_name
@@ -194,8 +194,7 @@ class _Sync:
     def _open_divergences(self, here: Connection, there: Connection) -> Iterator[Divergence]:
         for id_ in shared_journals(here, there):
             with self._collect_damage(id_):
-                candidates = find_divergences(here, there, id_, entry_index(here, id_), entry_index(there, id_))
-                yield from [divergence for divergence in candidates if not divergence.is_agreed]
+                yield from list(open_divergences(here, there, id_))
 
     @contextmanager
     def _collect_damage(self, journal_id: str) -> Iterator[None]:
@@ -278,11 +277,7 @@ def take_journal(source: Connection, to: Connection, journal_id: str) -> int:
     Raises StoreError: an entry is damaged.
     """
     of_source, held = entry_index(source, journal_id), entry_index(to, journal_id)
-    open_ = {
-        divergence.subject
-        for divergence in find_divergences(source, to, journal_id, of_source, held)
-        if not divergence.is_agreed
-    }
+    open_ = {divergence.subject for divergence in open_divergences(source, to, journal_id)}
     wanted = [uid for uid in of_source.missing_in(held) if of_source.subject[uid] not in open_]
     return len(take_entries(source, to, journal_id, wanted))
 
