@@ -4,24 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from functools import partial
 from itertools import islice
-from types import TracebackType
 from typing import Any, Final, Self, TypeAlias
 
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import (
-    LOST,
-    Crew,
-    Done,
-    ExecutorCrew,
-    Numbered,
-    PointFunction,
-    ProcessCrew,
-    ThreadCrew,
-    lost_workers_message,
-)
+from .crews import Crew, Done, ExecutorCrew, Numbered, PointFunction, ProcessCrew
 from .kept_rows import KeptRows, NumberedText, Row, json_text
 
 Progress: TypeAlias = Callable[[int, int], None]
@@ -157,9 +147,7 @@ class Pool:
         """Start nothing yet."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         """End the workers; after an error or an interrupt at once, in the middle of their work."""
         unfinished = [future for future in self._running if not future.done()]
         for future in unfinished:
@@ -171,11 +159,8 @@ class Pool:
     def _compute_chunks(self, points: Iterator[Numbered], left: int) -> Iterator[list[NumberedText]]:
         """Rows of each finished chunk. Each worker has two chunks; their size follows from the time per point."""
         if self._crew is None:
-            self._crew = (
-                ProcessCrew(self._function, self._workers)
-                if self._executor is None
-                else crew_of(self._executor, self._function, self._workers)
-            )
+            executor = "processes" if self._executor is None else self._executor
+            self._crew = crew_of(executor, self._function, self._workers)
         crew, size, self._running = self._crew, 1, set()
         try:
             while left or self._running:
@@ -193,11 +178,7 @@ class Pool:
                     size = max(1, min(crew.largest, int(crew.chunk_s / max(done.seconds_per_point, 1e-9))))
                     yield done.rows
         except Exception as error:
-            message = (
-                lost_workers_message()
-                if isinstance(error, SkisnowError) and error.code == LOST
-                else crew.explain(error)
-            )
+            message = crew.explain(error)
             if message is None:
                 raise
             raise SkisnowError("{problem} {advice}").tag("pool_failed", problem=message, advice=self._advice) from error
@@ -236,7 +217,9 @@ def crew_of(executor: ExecutorLike, function: PointFunction, workers: int) -> Cr
     if executor == "processes":
         return ProcessCrew(function, workers)
     if executor == "threads":
-        return ThreadCrew(function, workers)
+        threads = ThreadPoolExecutor(workers)  # the compiled core lets other threads run while it computes
+        end = partial(threads.shutdown, wait=True, cancel_futures=True)
+        return ExecutorCrew(function, threads, lambda: workers, end, here=True)
     from .dask_cluster import DaskCrew, crew_of_scheduler
 
     if isinstance(executor, str):

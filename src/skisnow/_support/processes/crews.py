@@ -17,15 +17,14 @@ from concurrent.futures import (
     Executor,
     Future,
     ProcessPoolExecutor,
-    ThreadPoolExecutor,
 )
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import version
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Final, NamedTuple, Protocol, TypeAlias, runtime_checkable
+from typing import Any, Final, NamedTuple, TypeAlias
 
 from ...compiled import core
 from ..errors import SkisnowError
@@ -42,9 +41,7 @@ CHUNK_S: Final = 0.25
 """Work (s) that is handed over at once, and that a kill loses (handing over costs 1 ms here)."""
 
 
-def lost_workers_message() -> Message:
-    """Message for workers that were lost because their scheduler ended."""
-    return Message("The scheduler was lost, or gave the work up.")
+LOST_WORKERS: Final = Message("The scheduler was lost, or gave the work up.")
 
 
 class Crew(ABC):
@@ -67,7 +64,8 @@ class Crew(ABC):
         """Explanation of an error that the function did not raise; None: it is passed on."""
         if isinstance(error, BrokenExecutor):
             return Message("A worker process ended unexpectedly, perhaps for lack of memory.")
-        return lost_workers_message() if isinstance(error, CancelledError) else None
+        is_lost = isinstance(error, CancelledError) or (isinstance(error, SkisnowError) and error.code == LOST)
+        return LOST_WORKERS if is_lost else None
 
     def require_alive(self) -> None:  # noqa: B027 - most have nothing to look after
         """Raise an error if no worker can compute the chunks; called regularly during the wait."""
@@ -122,26 +120,6 @@ class ProcessCrew(Crew):
         self._leash = None
 
 
-class ThreadCrew(Crew):
-    """Threads of this process: the compiled core lets other threads run while it computes."""
-
-    def __init__(self, function: PointFunction, workers: int) -> None:
-        self._function, self._workers = function, workers
-        self._executor = ThreadPoolExecutor(workers)
-
-    def size(self) -> int:
-        """The number of threads."""
-        return self._workers
-
-    def submit(self, points: list[Numbered]) -> Future[Done]:
-        """Hand out a chunk."""
-        return self._executor.submit(compute_rows, self._function, points)
-
-    def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - a thread cannot be stopped
-        """Wait for the chunks that are being computed."""
-        self._executor.shutdown(wait=True, cancel_futures=True)
-
-
 class ExecutorCrew(Crew):
     """Executor of the caller, on this computer or others; each chunk carries the pickled function.
 
@@ -149,6 +127,7 @@ class ExecutorCrew(Crew):
     executor: it is not shut down here.
     size: how many chunks it computes at once.
     close: called at the end; None: there is nothing to close.
+    here: True for threads of this process, which call the function itself.
     """
 
     def __init__(
@@ -157,9 +136,13 @@ class ExecutorCrew(Crew):
         executor: Executor,
         size: Callable[[], int],
         close: Callable[[], None] | None = None,
+        *,
+        here: bool = False,
     ) -> None:
-        self._packed, self._executor, self._size, self._close = pickle.dumps(function), executor, size, close
-        self._identity, self._folder = own_identity(), str(Path.cwd())
+        self._executor, self._size, self._close = executor, size, close
+        self._compute: Callable[[list[Numbered]], Done] = partial(compute_rows, function)
+        if not here:
+            self._compute = partial(compute_on_worker, pickle.dumps(function), own_identity(), str(Path.cwd()))
 
     def size(self) -> int:
         """Number of workers that the executor reports."""
@@ -167,7 +150,7 @@ class ExecutorCrew(Crew):
 
     def submit(self, points: list[Numbered]) -> Future[Done]:
         """Hand out a chunk."""
-        return self._executor.submit(compute_on_worker, self._packed, self._identity, self._folder, points)
+        return self._executor.submit(self._compute, points)
 
     def end(self, *, at_once: bool) -> None:  # noqa: ARG002 - the executor's owner stops its work
         """Call `close`, for example to end the connection to a scheduler; the executor is not shut down."""
@@ -246,15 +229,6 @@ class Identity(NamedTuple):
         return f"skisnow {self.version} with the core {self.core}"
 
 
-@runtime_checkable
-class NeedsFiles(Protocol):
-    """A function that reads files, which a worker on another machine may not have."""
-
-    def require_files(self) -> None:
-        """Raise an error if the files of a worker differ."""
-        ...
-
-
 @lru_cache(maxsize=1)
 def own_identity() -> Identity:
     """Identity of this process, cached: reading the version takes milliseconds, too long for each chunk."""
@@ -287,6 +261,6 @@ def _unpacked(packed: bytes, folder: str) -> Any:
     if Path(folder).is_dir() and folder != str(Path.cwd()):
         os.chdir(folder)
     function = pickle.loads(packed)
-    if isinstance(function, NeedsFiles):
-        function.require_files()
+    if (require_files := getattr(function, "require_files", None)) is not None:
+        require_files()  # an error if a file differs from that of the sender
     return function

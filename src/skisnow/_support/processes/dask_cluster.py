@@ -10,7 +10,7 @@ from typing import Any, Final
 from ..environment import import_extra
 from ..errors import ParameterError, SkisnowError
 from ..messages import Message
-from .crews import LOST, Crew, ExecutorCrew, PointFunction, lost_workers_message
+from .crews import LOST, LOST_WORKERS, Crew, ExecutorCrew, PointFunction
 
 _NOT_LOADED: Final = ("Can't get attribute", "deserializ")
 """Texts of Python and Dask where a function is not there."""
@@ -87,7 +87,7 @@ class DaskCrew(ExecutorCrew):
         if self._client.status == "running":
             self._last_seen = time.monotonic()
         elif time.monotonic() - self._last_seen > AWAY_S or self._client.status == "closed":
-            raise SkisnowError(lost_workers_message()).tag(LOST)
+            raise SkisnowError(LOST_WORKERS).tag(LOST)
 
     def explain(self, error: Exception) -> Message | None:
         """Explanation of an error of Dask."""
