@@ -50,9 +50,7 @@ def run(options: argparse.Namespace) -> int:
     from ..studies import read_study
 
     study = read_study(file)
-    if options.shard is not None:
-        return _run_part(options, study)
-    return _run_whole(options, study)
+    return _run_whole(options, study) if options.shard is None else _run_part(options, study)
 
 
 def _run_whole(options: argparse.Namespace, study: Study) -> int:
