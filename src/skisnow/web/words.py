@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
@@ -96,6 +96,21 @@ def reword(message: str, change: Callable[[str], str]) -> str:
     return Message(message.template, **fields)
 
 
+def replaced(message: str, words: Mapping[str, str]) -> str:
+    """A message in which words are replaced one after the other, as by `reword`.
+
+    >>> replaced("mass_kg is 3", {"mass_kg": "Mass (kg)"})
+    'Mass (kg) is 3'
+    """
+
+    def change(text: str) -> str:
+        for old, new in words.items():
+            text = text.replace(old, new)
+        return text
+
+    return reword(message, change)
+
+
 def _change_text(value: object, change: Callable[[str], str]) -> object:
     if isinstance(value, SkisnowError):
         value = value.message
@@ -104,28 +119,17 @@ def _change_text(value: object, change: Callable[[str], str]) -> object:
     return reword(value if isinstance(value, str) else str(value), change) if isinstance(value, str | Path) else value
 
 
-def hardness_words(row: dict[str, Any]) -> str:
-    """H_V with its interval, from a row of ``penetration.experiments``."""
-    return estimate_words(row["H_V_N_per_mm3"], row["H_V_interval_N_per_mm3"], "N/mm³")
-
-
-def unloading_words(row: dict[str, Any]) -> str:
-    """k_u/H_V with its interval, from a row of ``penetration.experiments``; "" without a measurement."""
-    if not row["n_unloading"]:
-        return ""
-    return f"k_u/H_V = {estimate_words(row['unloading_ratio'], row['unloading_ratio_interval'])}"
-
-
-def stress_words(row: dict[str, Any]) -> str:
-    """S_f with its interval, from a row of ``shear.experiments``."""
-    return estimate_words(row["S_f_N_per_mm2"], row["S_f_interval_N_per_mm2"], "N/mm²")
-
-
-def displacement_words(row: dict[str, Any]) -> str:
-    """u_y with its interval, from a row of ``shear.experiments``; "" without a measurement."""
+def result_words(row: dict[str, Any]) -> str:
+    """H_V and k_u/H_V, or S_f and u_y, with their intervals, from a row of ``experiments`` in results.json."""
+    if "H_V_N_per_mm3" in row:
+        words = f"H_V = {estimate_words(row['H_V_N_per_mm3'], row['H_V_interval_N_per_mm3'], 'N/mm³')}"
+        if not row["n_unloading"]:
+            return words
+        return f"{words}; k_u/H_V = {estimate_words(row['unloading_ratio'], row['unloading_ratio_interval'])}"
+    words = f"S_f = {estimate_words(row['S_f_N_per_mm2'], row['S_f_interval_N_per_mm2'], 'N/mm²')}"
     if row["shear_displacement_mm"] is None:
-        return ""
-    return f"u_y = {estimate_words(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
+        return words
+    return f"{words}; u_y = {estimate_words(row['shear_displacement_mm'], row['shear_displacement_interval_mm'], 'mm')}"
 
 
 def estimate_words(value: float | None, pair: list[float] | None, unit: str = "") -> str:

@@ -11,7 +11,7 @@ from skisnow import analyse, read_campaign
 from skisnow._support.errors import StoreError
 from skisnow.campaign.store import JournalEntry, Journals, NewEntry, export_corrected
 from skisnow.web.edit_session import CorrectionSession
-from skisnow.web.words import hardness_words
+from skisnow.web.words import result_words
 from tests.coded import raises
 
 from ...support.user_files.test_workbook import packed
@@ -87,9 +87,9 @@ def test_a_test_is_listed_cell_by_cell(desk: Desk, id_: str, tmp_path: Path) -> 
     """A value of the whole test is shown once; the hardness is that of an analysis."""
     page = opened(desk, id_)
     row = analyse(read_campaign(tmp_path / "drawer")).results["penetration"]["experiments"][0]
-    page.shows(f"[value] H_V = {hardness_words(row)}")
+    page.shows(f"[value] {result_words(row)}")
     assert (
-        values(page.between("h1 From a drawer", f"[value] H_V = {hardness_words(row)}")).items()
+        values(page.between("h1 From a drawer", f"[value] {result_words(row)}")).items()
         >= {
             "Operator": "Ada",
             "Site": "A",
@@ -159,7 +159,7 @@ def test_a_cell_is_corrected_with_a_reason(desk: Desk, id_: str, tmp_path: Path)
     assert "misheard" in undo_button(page)
     export_corrected(desk.lab.store, id_, tmp_path / "out")
     row = analyse(read_campaign(tmp_path / "out")).results["penetration"]["experiments"][0]
-    page.shows(f"[value] H_V = {hardness_words(row)}")
+    page.shows(f"[value] {result_words(row)}")
     page.press(undo_button(page))
     assert page.outcome() == "good"
     assert page.field("Depth (mm), row 3").value == "2,1"

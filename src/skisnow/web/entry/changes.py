@@ -184,12 +184,6 @@ def _add_history(test: ReplayedTest, view: TableView) -> None:
         add_items(lines)
 
 
-def _cell_words(key: str, text: str, view: TableView) -> Message:
-    line, column = cell_of(key)
-    shown = number_text(text) or Message("nothing")
-    return Message("{column} in row {line} to {text}", column=view.label(column), line=line, text=shown)
-
-
 _DONE: Final = {
     "add": template("entered {what}"),
     "correct": template("corrected {what}"),
@@ -205,7 +199,14 @@ def _entry_words(entry: JournalEntry, view: TableView) -> str:
         return entry.why
     what: str
     if entry.action == "correct" and all("/" in key for key in cells):
-        what = joined([_cell_words(key, text, view) for key, text in entry.cells.items()], ", ")
+        places = {cell_of(key): text or Message("nothing") for key, text in cells.items()}
+        what = joined(
+            [
+                Message("{column} in row {line} to {text}", column=view.label(column), line=line, text=text)
+                for (line, column), text in places.items()
+            ],
+            ", ",
+        )
     elif entry.action == "correct" and entry.why == WAITED:
         return Message("read once more after waiting: {depths} mm", depths=list(cells.values()))
     elif entry.action == "add" and "load_N" in cells:
@@ -250,9 +251,9 @@ class Attachments:
                 with ui.element("label").classes("act"):
                     Words(Message("Add a photo"))
                     made = ui.element("input").props("type=file accept=image/* hidden")
-                made.on("change", self._take_photo, js_handler=ON_PHOTO)
+                made.on("change", self._store_attachment, js_handler=ON_PHOTO)
                 placed = button(Message("Store my position with this test"), None, "secure")
-                placed.on("click", self._take_position, js_handler=ON_POSITION)
+                placed.on("click", self._store_attachment, js_handler=ON_POSITION)
             self._list = ui.element("div")
         self.show()
 
@@ -264,28 +265,20 @@ class Attachments:
         tests = self._view.tests()
         return tests[-1].name if tests else ""
 
-    def _take_photo(self, event: Any) -> None:
-        self._store_attachment(
-            event.args, lambda file, test, who: photo_entry(file, test, str(event.args["photo"]), who=who)
-        )
-
-    def _take_position(self, event: Any) -> None:
-        def entry(file: str, test: str, who: str) -> NewEntry:
-            numbers = (float(event.args[key]) for key in ("latitude", "longitude", "accuracy"))
-            return position_entry(file, test, Position(*numbers), who=who)
-
-        self._store_attachment(event.args, entry)
-
-    def _store_attachment(self, answer: Any, entry: Callable[[str, str, str], NewEntry]) -> None:
+    def _store_attachment(self, event: Any) -> None:
+        answer, test, file, who = event.args, self._test(), self._view.file, self._view.writer
         if "refused" in answer:
             self._view.say(REFUSED[str(answer["refused"])], "bad")
             return
-        test = self._test()
         if not test:
             self._view.say(Message("Store a test first; then add its photo or position."), "bad")
             return
-        new = entry(self._view.file, test, self._view.writer)
-        if self._view.write(new, 0, Message("Stored with test {test}.", test=test)):
+        if "photo" in answer:
+            entry = photo_entry(file, test, str(answer["photo"]), who=who)
+        else:
+            numbers = (float(answer[key]) for key in ("latitude", "longitude", "accuracy"))
+            entry = position_entry(file, test, Position(*numbers), who=who)
+        if self._view.write(entry, 0, Message("Stored with test {test}.", test=test)):
             self.show()
 
     def show(self) -> None:

@@ -19,7 +19,7 @@ from ...campaign.store import NewEntry, Reading
 from ...campaign.store.stored_tables import FORMS, CellError, checked_cell
 from ...report.formatting import significant
 from ..edit_session import EditSession
-from ..elements import Words
+from ..elements import Words, field, named
 from ..page_requests import LONGEST
 from ..words import in_words, label, number_text, plain_number, said
 
@@ -39,28 +39,28 @@ class Step(NamedTuple):
         load = number_text(self.load)
         return Message("{load} N on the way back", load=load) if self.branch else Message("{load} N", load=load)
 
-    @property
-    def field_name(self) -> Message:
-        """Name of the field of the step's depth."""
+    def field_name(self, column: str) -> Message:
+        """Name of the field of the step's depth, by its column."""
         load = number_text(self.load)
+        if column == AFTER:
+            return Message("Depth after waiting under {load} N (mm)", load=load)
         if self.branch:
             return Message("Depth back under {load} N (mm)", load=load)
         return Message("Depth under {load} N (mm)", load=load)
 
 
-def add_load(load: str) -> None:
-    """Label of a load in N; lab.js shows it in kg if the user says so."""
-    in_kilograms = significant(float(load) / KILOGRAM_FORCE)
-    Words(f"{number_text(load)} N").classes("load").props["data-kg"] = f"{in_kilograms} kg"
+DEPTH: Final = "depth_mm"
+AFTER: Final = "depth_after_mm"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadingField:
-    """Field of the depth under one load, label of its state, and the element around them."""
+    """Field of a depth under one load, label of its state, the element around them, and the column of the depth."""
 
     depth: ui.input
     state: ui.label
     row: ui.element
+    column: str
 
     @property
     def typed(self) -> str:
@@ -75,27 +75,49 @@ class ReadingField:
 
     def differs(self, row: Reading | None) -> bool:
         """True if the text differs from the stored reading, or from "" without one."""
-        return is_other(self.typed, stored_depth(row))
+        return is_other(self.typed, stored_depth(row, self.column))
 
     def show_state(self, row: Reading | None) -> None:
-        """Show whether the text in the field is stored."""
-        if row is None:
-            show_state(self.state, "")
-        elif self.differs(row):
-            show_state(self.state, CHANGED)
-        elif row.cells["depth_mm"] != row.entered.cells["depth_mm"]:
-            show_state(self.state, Message("corrected from {depth}", depth=number_text(row.entered.cells["depth_mm"])))
-        else:
-            show_state(self.state, STORED)
+        """Show whether the text in the field is stored; mark an unstored change."""
+        stored = stored_depth(row, self.column)
+        entered = stored if row is None else row.entered.cells.get(self.column, stored)
+        is_changed = bool(stored) and self.differs(row)
+        words = Message("corrected from {depth}", depth=number_text(entered)) if entered != stored else STORED
+        self.state.set_text(CHANGED if is_changed else words if stored else "")
+        self.state.classes(add="changed" if is_changed else "", remove="" if is_changed else "changed")
 
     def restore(self, row: Reading | None) -> None:
         """Put the stored depth back into the field."""
-        self.depth.set_value(number_text(stored_depth(row), self.depth.client))
+        self.depth.set_value(number_text(stored_depth(row, self.column), self.depth.client))
 
 
-def stored_depth(row: Reading | None) -> str:
-    """The depth of a reading (mm, as text); "" if there is no reading."""
-    return "" if row is None else row.cells["depth_mm"]
+def add_reading_field(
+    step: Step, typed: str | None, stored: Callable[[], Reading | None], *, column: str = DEPTH, closed: bool
+) -> ReadingField:
+    """Field of a depth with its state; lab.js shows the load in kg if the user says so.
+
+    typed: text of the field (default: the stored depth).
+    stored: function that returns the current reading.
+    closed: True if the text cannot be changed.
+    """
+    depth = stored_depth(stored(), column)
+    with ui.element("div").classes("reading") as holder:
+        in_kilograms = significant(float(step.load) / KILOGRAM_FORCE)
+        Words(f"{number_text(step.load)} N").classes("load").props["data-kg"] = f"{in_kilograms} kg"
+        text = number_text(depth) if typed is None else typed
+        made = field(label(column), text, numeric=True, optional=column == AFTER)
+        named(made, step.field_name(column)).props("readonly" if closed else "")
+        reading = ReadingField(made, Words("").classes("stored"), holder, column)
+        if depth:
+            holder.props["data-stored"] = depth
+    reading.show_state(stored())
+    made.on_value_change(lambda: reading.show_state(stored()))
+    return reading
+
+
+def stored_depth(row: Reading | None, column: str = DEPTH) -> str:
+    """A depth of a reading (mm, as text); "" without one."""
+    return "" if row is None else row.cells.get(column, "")
 
 
 def is_other(typed: str, stored: str) -> bool:
@@ -105,12 +127,6 @@ def is_other(typed: str, stored: str) -> bool:
     (False, True, False)
     """
     return stored not in {typed.strip(), plain_number(typed)}
-
-
-def show_state(label: ui.label, words: str) -> None:
-    """Show the state of a field; mark an unstored change."""
-    label.set_text(words)
-    label.classes(add="changed" if words == CHANGED else "", remove="" if words == CHANGED else "changed")
 
 
 Field: TypeAlias = ui.input | ui.select
@@ -125,12 +141,13 @@ def checked_fields(
     """
     cells: dict[str, str] = {}
     units = conversions or {}
-    for column, field in fields.items():
-        field.error = None
+    for column, typed in fields.items():
+        typed.error = None
         try:
-            cells[column] = checked_cell(form, column, str(field.value or ""), conversion=units.get(column))
+            cells[column] = checked_cell(form, column, str(typed.value or ""), conversion=units.get(column))
         except CellError as error:
-            field.error = error_text(error, name=_translated_name(field))
+            name = typed.props.get("aria-label") or typed.props.get("label") or ""
+            typed.error = error_text(error, name=str(name))
     return cells if len(cells) == len(fields) else None
 
 
@@ -139,10 +156,6 @@ def error_text(error: SkisnowError, *, name: str = "") -> str:
     if not isinstance(error, CellError):
         return f"{said(in_words(error.message)).rstrip('.')}."
     return said(error.problem(error.code, name or label(error.column)))
-
-
-def _translated_name(field: Field) -> str:
-    return str(field.props.get("aria-label") or field.props.get("label") or "")
 
 
 def refuse(field: Field, fault: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from functools import partial
 from typing import Final
 
 from nicegui import ui
@@ -11,14 +12,14 @@ from nicegui import ui
 from ..._support.messages import Message
 from ...campaign.reading.table_forms import BRANCH, UNLOADING
 from ...campaign.store import ReplayedTest
-from ..elements import Words, button, choice, field, folded, named
+from ..elements import button, choice, field, folded
 from ..layout import heading, sentence
 from ..page_requests import asking_button, current_request, entry_address, event_handler, form
 from ..words import label, number_text
 from .changes import changes, focus_button
-from .readings import HEAD, Field, ReadingField, Step, add_load, checked_fields, faults, refuse, stored_depth
+from .readings import HEAD, Field, ReadingField, Step, add_reading_field, checked_fields, faults, refuse
 from .series_corrections import DepthsAfterWaiting, SeriesCorrections
-from .table_view import EntryList, LiveResults, Places, TableView
+from .table_view import EntryList, TableView
 
 ON_ENTER: Final = "(event) => lab.reading(event, emit)"
 ON_BLUR: Final = "(event) => lab.leaving(event, emit)"
@@ -27,10 +28,8 @@ ON_BLUR: Final = "(event) => lab.leaving(event, emit)"
 class SeriesForm:
     """The form of one series at a time."""
 
-    def __init__(self, view: TableView, live_results: LiveResults, places: Places, entry_list: EntryList) -> None:
+    def __init__(self, view: TableView, entry_list: EntryList) -> None:
         self._view = view
-        self._live_results = live_results
-        self._places = places
         self._head: dict[str, str] = {}
         self._readings: dict[Step, ReadingField] = {}
         self._shown: str = ""
@@ -48,8 +47,8 @@ class SeriesForm:
         self._list.show("")
         described = self._view.session.described
         before = self._view.tests()[-1].rows[0].cells if self._view.tests() else {}
-        self._places.clear()
-        with self._places.form:
+        self._view.clear()
+        with self._view.form_place:
             heading(Message("New series"))
             with form(sends=lambda: self._begin_series(typed)):
                 name = field(label("experiment"), self._view.next_name())
@@ -67,13 +66,9 @@ class SeriesForm:
 
     def _begin_series(self, typed: dict[str, Field]) -> bool:
         head = checked_fields(self._view.form, typed)
-        if head is not None and self._view.test(head["experiment"]).history:
-            refuse(
-                typed["experiment"],
-                Message(
-                    "there is a test {experiment} already; give this one another name", experiment=head["experiment"]
-                ),
-            )
+        if head is not None and self._view.test(name := head["experiment"]).history:
+            words = Message("there is a test {experiment} already; give this one another name", experiment=name)
+            refuse(typed["experiment"], words)
             head = None
         if head is None:
             self._view.say(Message("Not begun:"), "bad", faults(typed.values()))
@@ -101,7 +96,7 @@ class SeriesForm:
         self._draw(test)
         self._focus_next(test)
         if test.rows:
-            self._live_results.follow(name, head["site"], in_progress=self._is_in_progress(name))
+            self._view.live_results.follow(name, head["site"], in_progress=self._is_in_progress(name))
 
     def _is_in_progress(self, name: str) -> bool:
         """True for the last series of the table."""
@@ -123,8 +118,8 @@ class SeriesForm:
         self._shown = test.name
         self._readings.clear()
         self._refused = {}
-        self._places.clear()
-        with self._places.form:
+        self._view.clear()
+        with self._view.form_place:
             with ui.element("div").classes("series-head"):
                 heading(Message("Series {name}", name=test.name))
                 angle = number_text(self._head["edge_angle_deg"])
@@ -132,15 +127,16 @@ class SeriesForm:
             if test.cancelled:
                 sentence(Message("Cancelled: {cancelled}", cancelled=test.cancelled), "bad")
             loads = self._loads(test)
-            self._draw_fields(test, map(Step, loads), unstored)
+            rising = [Step(load) for load in loads]
+            self._draw_fields(test, rising, unstored)
             self._ask = ui.element("div")
             self._corrections.begin(test.name, self._ask)
             self._then = asking_button(Message("Next series"), self._next, "main then")
             button(Message("Loads in N or kg"), None, "small switch-kg")
             self._unloading_fields(test, [Step(load, UNLOADING) for load in loads[-2::-1]], unstored)
             self._waiting = DepthsAfterWaiting(self._view, test.name, lambda: self.show(test.name, self._head))
-            self._waiting.draw(loads, waiting, self._ask)
-        with self._places.below:
+            self._waiting.draw(rising, waiting, self._ask)
+        with self._view.changes_place:
             self._changes = ui.element("div")
             self._draw_further_load(test)
         self._show_changes()
@@ -181,14 +177,14 @@ class SeriesForm:
         if self._corrections.is_unanswered():
             return False
         if self._waiting is not None and self._waiting.unstored:
-            loads = [Message("{load} N after waiting", load=number_text(load)) for load in self._waiting.unstored]
+            loads = [Message("{load} N after waiting", load=number_text(load)) for load, _ in self._waiting.unstored]
             self._view.say(
                 Message("Not stored yet: {loads}. Store it or empty the field, then continue.", loads=loads), "bad"
             )
             self._waiting.focus()
             return False
         if self._test.rows:
-            self._live_results.follow(self._shown, self._head["site"])
+            self._view.live_results.follow(self._shown, self._head["site"])
         self.begin()
         return True
 
@@ -201,13 +197,8 @@ class SeriesForm:
         test = self._test
         self._changes.clear()
         with self._changes:
-            changes(
-                self._view,
-                test,
-                self._ask,
-                lambda: self.show(test.name, self._head),
-                is_unanswered=self._corrections.is_unanswered,
-            )
+            show = partial(self.show, test.name, self._head)
+            changes(self._view, test, self._ask, show, is_unanswered=self._corrections.is_unanswered)
         self._list.show(test.name)
 
     def _loads(self, test: ReplayedTest) -> list[str]:
@@ -218,23 +209,11 @@ class SeriesForm:
         return sorted(dict.fromkeys([*entered, *also]), key=float)
 
     def _add_reading(self, test: ReplayedTest, step: Step, unstored: str | None) -> ReadingField:
-        row = test.row_under(*step)
-        with ui.element("div").classes("reading") as holder:
-            holder.props["data-load"] = step.load
-            holder.props["data-branch"] = step.branch
-            add_load(step.load)
-            stored = number_text(stored_depth(row))
-            typed = stored if unstored is None or test.cancelled else unstored
-            depth = field(label("depth_mm"), typed, numeric=True)
-            named(depth, step.field_name)
-            depth.props("readonly" if test.cancelled else "")
-            made = ReadingField(depth, Words("").classes("stored"), holder)
-            if row is not None:
-                holder.props["data-stored"] = row.cells["depth_mm"]
-        made.show_state(row)
-        depth.on_value_change(lambda: made.show_state(self._test.row_under(*step)))
-        depth.on("keydown.enter", event_handler(lambda: self._entered(step)), js_handler=ON_ENTER)
-        depth.on("blur", event_handler(lambda: self._entered(step, left=True)), js_handler=ON_BLUR)
+        typed, closed = None if test.cancelled else unstored, bool(test.cancelled)
+        made = add_reading_field(step, typed, lambda: self._test.row_under(*step), closed=closed)
+        made.row.props["data-load"], made.row.props["data-branch"] = step
+        made.depth.on("keydown.enter", event_handler(lambda: self._entered(step)), js_handler=ON_ENTER)
+        made.depth.on("blur", event_handler(lambda: self._entered(step, left=True)), js_handler=ON_BLUR)
         return made
 
     def _draw_further_load(self, test: ReplayedTest) -> None:
@@ -294,12 +273,9 @@ class SeriesForm:
             refuse(depth, Message("the depths under rising loads come first"))
             cells = None
         if cells is not None and not isinstance(load, Step) and test.row_under(cells["load_N"]) is not None:
+            load_n = number_text(cells["load_N"])
             refuse(
-                load,
-                Message(
-                    "there is a reading under {load_n} N already; correct it in its own field",
-                    load_n=number_text(cells["load_N"]),
-                ),
+                load, Message("there is a reading under {load_n} N already; correct it in its own field", load_n=load_n)
             )
             cells = None
         if cells is None:
@@ -311,10 +287,10 @@ class SeriesForm:
         said = Message(
             "Stored: {depth_mm} mm under {words}.", depth_mm=number_text(cells["depth_mm"]), words=step.words
         )
-        stored = self._view.add(test.name, cells, position=test.next_position, seen=test.last, said=said)
+        stored = self._view.add(test, cells, position=test.next_position, said=said)
         if stored:
             self._show_changes()
-            self._live_results.follow(test.name, self._head["site"], in_progress=self._is_in_progress(test.name))
+            self._view.live_results.follow(test.name, self._head["site"], in_progress=self._is_in_progress(test.name))
         else:
             self._draw(self._test)
         return stored

@@ -2,31 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Final
 
 from nicegui import ui
 
 from ..._support.messages import Message, template
-from ...campaign.store import ReplayedTest
-from ..elements import Words, field, folded, named
-from ..entry.readings import STORED
+from ...campaign.store import Reading, ReplayedTest
+from ..elements import folded
 from ..page_requests import asking_button, form
-from ..words import label, number_text
+from ..words import number_text
 from .changes import ASKED, LEFT_AS_IT_WAS, UNANSWERED, USUAL_REASON, WAITED, ask_reason
-from .readings import (
-    CHANGED,
-    ReadingField,
-    Step,
-    add_load,
-    checked_fields,
-    faults,
-    is_other,
-    refuse,
-    show_state,
-    stored_depth,
-)
-from .table_view import TableView
+from .readings import AFTER, DEPTH, ReadingField, Step, add_reading_field, checked_fields, faults, refuse, stored_depth
+from .table_view import CORRECTED, TableView
 
 
 class SeriesCorrections:
@@ -96,7 +85,7 @@ class SeriesCorrections:
             for step, depth in depths.items()
             for stored in [stored_depth(test.row_under(*step))]
         ]
-        act = (Message("Correct it"), lambda why: self._store_corrections(depths, why))
+        act = (Message("Correct it"), lambda why: self._correct(depths, why))
         ask_reason(self._place, lines, act, usual=USUAL_REASON, leave=self._leave, focus=focus)
         if is_said:
             self._view.say(ASKED, "")
@@ -113,14 +102,11 @@ class SeriesCorrections:
         else:
             self._view.say(LEFT_AS_IT_WAS)
 
-    def _store_corrections(self, depths: Mapping[Step, str], why: str) -> bool:
-        for step, depth in depths.items():
-            test = self._test
-            row = test.row_under(*step)
-            if row is None or not self._view.correct(test, row.entered.sequence, {"depth_mm": depth}, why):
-                return False
-        self._redraw()
-        return True
+    def _correct(self, depths: Mapping[Step, str], why: str) -> bool:
+        is_stored = _store_corrections(self._view, self._name, DEPTH, depths, why)
+        if is_stored:
+            self._redraw()
+        return is_stored
 
     def _leave(self) -> None:
         """Restore the stored depths."""
@@ -130,7 +116,18 @@ class SeriesCorrections:
         self._redraw()
 
 
-AFTER: Final = "depth_after_mm"
+def _store_corrections(
+    view: TableView, name: str, column: str, depths: Mapping[Step, str], why: str, said: str = CORRECTED
+) -> bool:
+    """Store depths of a series as corrections; False after the first rejected one."""
+    for step, depth in depths.items():
+        test = view.test(name)
+        row = test.row_under(*step)
+        if row is None or not view.correct(test, row.entered.sequence, {column: depth}, why, said=said):
+            return False
+    return True
+
+
 BECOMES: Final = template("After waiting under {load} N: {old} mm becomes {new} mm.")
 IS_EMPTIED: Final = template("After waiting under {load} N: {old} mm becomes nothing.")
 
@@ -142,69 +139,48 @@ class DepthsAfterWaiting:
         self._view = view
         self._name = name
         self._shown = shown
-        self._fields: dict[str, ui.input] = {}
+        self._fields: dict[Step, ReadingField] = {}
 
     @property
-    def unstored(self) -> dict[str, str]:
-        """Unstored texts by load."""
-        test = self._test
-        typed = {load: str(field.value or "").strip() for load, field in self._fields.items()}
-        return {load: text for load, text in typed.items() if is_other(text, _depth_after(test, load))}
+    def unstored(self) -> dict[Step, str]:
+        """Unstored texts by step."""
+        fields = self._fields.items()
+        return {step: reading.typed for step, reading in fields if reading.differs(self._row(step))}
 
-    @property
-    def _test(self) -> ReplayedTest:
-        return self._view.test(self._name)
+    def _row(self, step: Step) -> Reading | None:
+        return self._view.test(self._name).row_under(*step)
 
-    def draw(self, loads: Iterable[str], unstored: dict[str, str], ask: ui.element) -> None:
+    def draw(self, steps: Sequence[Step], unstored: dict[Step, str], ask: ui.element) -> None:
         """Draw the fields, folded without a depth."""
-        test = self._test
-        stored = {load: _depth_after(test, load) for load in loads}
-        is_open = any(stored.values()) or bool(unstored)
+        closed = bool(self._view.test(self._name).cancelled)
+        is_open = any(stored_depth(self._row(step), AFTER) for step in steps) or bool(unstored)
         with (
             folded(Message("Depths read once more after waiting"), is_open=is_open),
             form("readings", sends=lambda: self._store(ask)),
         ):
-            for load, text in stored.items():
-                typed = unstored.get(load, number_text(text))
-                self._fields[load] = self._add_depth_field(load, text, typed, closed=bool(test.cancelled))
-            if not test.cancelled:
+            for step in steps:
+                stored = partial(self._row, step)
+                self._fields[step] = add_reading_field(step, unstored.get(step), stored, column=AFTER, closed=closed)
+            if not closed:
                 asking_button(Message("Store what was read after waiting"), lambda: self._store(ask))
 
     def focus(self) -> None:
         """Put the focus on the first unstored field."""
-        self._fields[next(iter(self.unstored))].run_method("focus")
-
-    def _add_depth_field(self, load: str, stored: str, text: str, *, closed: bool) -> ui.input:
-        with ui.element("div").classes("reading") as made:
-            add_load(load)
-            depth = field(label(AFTER), text, numeric=True, optional=True)
-            named(depth, Message("Depth after waiting under {load} N (mm)", load=number_text(load)))
-            depth.props("readonly" if closed else "")
-            state = Words("").classes("stored")
-            if stored:
-                made.props["data-stored"] = stored
-
-        def show() -> None:
-            depth_after = _depth_after(self._test, load)
-            is_changed = is_other(str(depth.value or ""), depth_after)
-            show_state(state, "" if not depth_after else CHANGED if is_changed else STORED)
-
-        show()
-        depth.on_value_change(show)
-        return depth
+        self._fields[next(iter(self.unstored))].depth.run_method("focus")
 
     def _store(self, ask: ui.element) -> bool:
         """Store new depths, and ask for the reason of changed ones; False if nothing is stored or asked."""
         depths = self._valid_changes()
         if depths is None:
             return False
-        new = {load: text for load, text in depths.items() if not _depth_after(self._test, load)}
-        others = {load: text for load, text in depths.items() if load not in new}
+        new = {step: text for step, text in depths.items() if not stored_depth(self._row(step), AFTER)}
+        others = {step: text for step, text in depths.items() if step not in new}
         listed = [
-            Message("{depth} mm under {load} N", depth=number_text(text), load=number_text(load))
-            for load, text in new.items()
+            Message("{depth} mm under {load} N", depth=number_text(text), load=number_text(step.load))
+            for step, text in new.items()
         ]
-        if not self._store_corrections(new, WAITED, Message("Stored after waiting: {listed}.", listed=listed)):
+        stored = Message("Stored after waiting: {listed}.", listed=listed)
+        if not _store_corrections(self._view, self._name, AFTER, new, WAITED, stored):
             return False
         if others:
             self._ask_correction(ask, others)
@@ -216,56 +192,41 @@ class DepthsAfterWaiting:
             self._view.say(Message("Nothing is different."))
         return True
 
-    def _valid_changes(self) -> dict[str, str] | None:
-        """Changed depths by load; None, after a message, if one of them is not valid."""
-        depths: dict[str, str] = {}
-        typed = {load: self._fields[load] for load in self.unstored}
-        for load, depth in typed.items():
+    def _valid_changes(self) -> dict[Step, str] | None:
+        """Changed depths by step; None, after a message, if one of them is not valid."""
+        depths: dict[Step, str] = {}
+        typed = {step: self._fields[step].depth for step in self.unstored}
+        for step, depth in typed.items():
             cells = checked_fields(self._view.form, {AFTER: depth})
-            if cells is not None and self._test.row_under(load) is None:
-                refuse(depth, Message("the first depth under {load} N comes before it", load=number_text(load)))
+            if cells is not None and self._row(step) is None:
+                refuse(depth, Message("the first depth under {load} N comes before it", load=number_text(step.load)))
             elif cells is not None:
-                depths[load] = cells[AFTER]
+                depths[step] = cells[AFTER]
         if len(depths) == len(typed):
             return depths
         self._view.say(Message("Not stored:"), "bad", faults(typed.values()))
         return None
 
-    def _store_corrections(self, depths: dict[str, str], why: str, said: str) -> bool:
-        for load, text in depths.items():
-            test = self._test
-            row = test.row_under(load)
-            if row is None or not self._view.correct(test, row.entered.sequence, {AFTER: text}, why, said=said):
-                return False
-        return True
-
-    def _ask_correction(self, ask: ui.element, depths: dict[str, str]) -> None:
+    def _ask_correction(self, ask: ui.element, depths: dict[Step, str]) -> None:
         def correct(why: str) -> bool:
-            if not self._store_corrections(depths, why, Message("Corrected; the first reading is kept.")):
-                return False
-            self._shown()
-            return True
-
-        test = self._test
-        lines = [
-            Message(
-                BECOMES if text else IS_EMPTIED,
-                load=number_text(load),
-                old=number_text(_depth_after(test, load)),
-                new=number_text(text),
-            )
-            for load, text in depths.items()
-        ]
+            is_stored = _store_corrections(self._view, self._name, AFTER, depths, why)
+            if is_stored:
+                self._shown()
+            return is_stored
 
         def leave() -> None:
-            for load in depths:
-                self._fields[load].set_value(number_text(_depth_after(self._test, load), self._fields[load].client))
+            for step in depths:
+                self._fields[step].restore(self._row(step))
             self._view.say(LEFT_AS_IT_WAS)
             self._shown()
 
+        lines = [
+            Message(
+                BECOMES if text else IS_EMPTIED,
+                load=number_text(step.load),
+                old=number_text(stored_depth(self._row(step), AFTER)),
+                new=number_text(text),
+            )
+            for step, text in depths.items()
+        ]
         ask_reason(ask, lines, (Message("Correct it"), correct), usual=USUAL_REASON, leave=leave)
-
-
-def _depth_after(test: ReplayedTest, load: str) -> str:
-    row = test.row_under(load)
-    return "" if row is None else row.cells.get(AFTER, "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
 from nicegui import ui
@@ -15,7 +16,7 @@ from ..page_requests import asking_button, entry_address, form
 from ..words import label, number_text
 from .changes import UNANSWERED, ask_correction, change_message, changes
 from .readings import checked_fields, faults, is_other, refuse
-from .table_view import EntryList, LiveResults, Places, TableView
+from .table_view import EntryList, TableView
 
 OPTIONAL: Final = {"shear.csv": ("spot", TURNING), "density.csv": ("sample_depth_mm",)}
 KEPT: Final = ("site", "plate", "edge_angle_deg", "lever_arm_mm")
@@ -27,12 +28,10 @@ ONCE: Final = ("site", "spot", "plate", "edge_angle_deg", "depth_mm", "lever_arm
 class SingleForm:
     """Form of one row, with the list of rows."""
 
-    def __init__(self, view: TableView, live_results: LiveResults, places: Places, entry_list: EntryList) -> None:
+    def __init__(self, view: TableView, entry_list: EntryList) -> None:
         self._view = view
         self._list = entry_list
         entry_list.open_row = self._open_row
-        self._live_results = live_results
-        self._places = places
         table = view.form
         required = [column.name for column in table.numbers if column.needed]
         self._columns = (*table.names, *OPTIONAL.get(table.file, ()), *required)
@@ -47,27 +46,24 @@ class SingleForm:
         """Show the form of a new row, with texts that were typed before."""
         self._draw(self._begun or self._prefilled_cells(), None)
 
-    def _leave_for_new(self) -> bool:
-        if self._is_unanswered():
-            return False
-        self.begin()
-        return True
-
-    def _open_row(self, name: str, row: str) -> bool:
+    def _open_row(self, name: str = "", row: str = "") -> bool:
         if self._is_unanswered():
             return False
         self.show(name, row=row)
         return True
 
     def show(self, name: str, *, row: str = "") -> None:
-        """Show a row of a test for correction; ``row``: number of its entry (default: the first row)."""
+        """Show a row of a test for correction, or the form of a new one if there is no such test.
+
+        row: number of its entry (default: the first row).
+        """
         test = self._view.test(name)
         if not test.rows:
             self.begin()
             return
         chosen = next((candidate for candidate in test.rows if _entry_number(candidate) == row), test.rows[0])
         self._draw(chosen.cells, (test, chosen))
-        self._live_results.follow(name, chosen.cells["site"])
+        self._view.live_results.follow(name, chosen.cells["site"])
 
     def _prefilled_cells(self) -> dict[str, str]:
         tests, key = self._view.tests(), self._view.form.key
@@ -86,9 +82,11 @@ class SingleForm:
             typed = {column: str(field_.value) for column, field_ in self._fields.items() if field_.value}
             self._begun = typed if typed.items() - self._prefilled_cells().items() else None
         self._is_new, self._correcting = correcting is None, correcting
-        ui.navigate.history.replace(self._page_address())  # the browser keeps typed texts by address: each row has one
-        self._places.clear()
-        with self._places.form:
+        name, head = (correcting[0].name, {"row": _entry_number(correcting[1])}) if correcting else ("", {})
+        address = entry_address(self._view.session.id, table=self._view.file, test=name, head=head)
+        ui.navigate.history.replace(address)  # the browser keeps typed texts by address: each row has one
+        self._view.clear()
+        with self._view.form_place:
             heading(Message("Correct a test") if correcting else Message("New test"))
             if correcting and correcting[0].cancelled:
                 sentence(Message("Cancelled: {cancelled}", cancelled=correcting[0].cancelled), "bad")
@@ -99,23 +97,13 @@ class SingleForm:
             with ui.element("div").classes("acts"):
                 asking_button(Message("Store") if correcting is None else Message("Correct"), sends, "main")
                 if correcting is not None:
-                    asking_button(Message("New test"), self._leave_for_new)
-        with self._places.below:
+                    asking_button(Message("New test"), self._open_row)
+        with self._view.changes_place:
             if correcting is not None:
-                changes(
-                    self._view,
-                    correcting[0],
-                    self._ask,
-                    lambda: self.show(correcting[0].name, row=_entry_number(correcting[1])),
-                    is_unanswered=self._is_unanswered,
-                )
-        self._list.show(correcting[0].name if correcting else "")
+                show = partial(self.show, name, **head)
+                changes(self._view, correcting[0], self._ask, show, is_unanswered=self._is_unanswered)
+        self._list.show(name)
         self._focus_first()
-
-    def _page_address(self) -> str:
-        test, row = self._correcting or (None, None)
-        head = {"row": _entry_number(row)} if row is not None else {}
-        return entry_address(self._view.session.id, table=self._view.file, test=test.name if test else "", head=head)
 
     def _field(self, column: str, cells: dict[str, str], *, fixed: bool) -> ui.input | ui.select:
         if column == "plate":
@@ -155,13 +143,13 @@ class SingleForm:
             refuse(self._fields[key], fault)
             self._view.say(Message("Not stored:"), "bad", faults([self._fields[key]]))
             return False
-        if not self._view.add(test.name, cells, position=len(test.rows), seen=test.last, said=""):
+        if not self._view.add(test, cells, position=len(test.rows), said=""):
             return False
         return self._announce_stored(test.name, cells["site"])
 
     def _announce_stored(self, name: str, site: str) -> bool:
         self._view.say(Message("Stored: test {name}.", name=name))
-        self._live_results.follow(name, site)
+        self._view.live_results.follow(name, site)
         self._begun = None
         self.begin()
         return True
@@ -169,12 +157,10 @@ class SingleForm:
     def _fault_of_second_row(self, test: ReplayedTest, cells: dict[str, str]) -> str:
         if cells.get(TURNING) and all(row.cells.get(TURNING) for row in test.rows):
             first = test.rows[0].cells if test.rows else cells
-            changed = [column for column in ONCE if cells.get(column, "") != first.get(column, "")]
-            return (
-                Message("the rows of test {name} have one {label}", name=test.name, label=label(changed[0]))
-                if changed
-                else ""
-            )
+            changed = next((column for column in ONCE if cells.get(column, "") != first.get(column, "")), None)
+            if changed is None:
+                return ""
+            return Message("the rows of test {name} have one {label}", name=test.name, label=label(changed))
         if "repeat" not in cells:
             return Message("there is a test {name} already; give this one another name", name=test.name)
         if any(row.cells["repeat"] == cells["repeat"] for row in test.rows):

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final
 
 from nicegui import background_tasks, run, ui
 
@@ -13,63 +12,47 @@ from ..._support.errors import FieldDataError, SkisnowError, StoreError
 from ..._support.messages import Message
 from ..._support.user_files import natural_number
 from ...campaign import QUALITY_FLAGS
-from ...campaign.reading.table_forms import PENETRATION, SHEAR
-from ...campaign.store import NewEntry, OvertakenError
+from ...campaign.reading.table_forms import PENETRATION, SHEAR, TableForm
+from ...campaign.store import NewEntry, OvertakenError, Reading, ReplayedTest
+from ...campaign.store.journal_entry import Action
 from ...campaign.store.stored_tables import FORMS
+from ...report.charts import SeriesCurve
 from ...report.formatting import significant
+from ..edit_session import EditSession, QuickResults, TestKey
 from ..elements import StatusLine, Words, add_items, choice, field, link, named
 from ..layout import error_sentence, heading
 from ..page_requests import asking_button, current_request, entry_address
 from ..widgets import BEHIND, ChartLine, LineChart
-from ..words import (
-    TABLES,
-    displacement_words,
-    hardness_words,
-    in_words,
-    label,
-    minute_words,
-    number_text,
-    said,
-    stress_words,
-    unloading_words,
-)
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-
-    from ...campaign.reading.table_forms import TableForm
-    from ...campaign.store import Reading, ReplayedTest
-    from ...campaign.store.journal_entry import Action
-    from ...report.charts import SeriesCurve
-    from ..edit_session import EditSession, QuickResults, TestKey
-
-    _Values: TypeAlias = list[float | None]
+from ..words import TABLES, in_words, label, minute_words, number_text, result_words, said
 
 WHO: Final = Message("Operator")
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Parts of the page for a form: the form, and the changes below."""
-
-    form: ui.element
-    below: ui.element
-
-    def clear(self) -> None:
-        """Remove all elements."""
-        self.form.clear()
-        self.below.clear()
+CORRECTED: Final = Message("Corrected; the first reading is kept.")
 
 
 class TableView:
-    """Stores entries about the tests of one table and shows the outcome."""
+    """One table on a page: stores entries about its tests, and shows the outcome and the results.
 
-    def __init__(self, session: EditSession, file: str, who: ui.select | ui.input, status: StatusLine) -> None:
+    session, file: campaign and table.
+    form, below: names of the sections of the form and of the changes for screen readers.
+    """
+
+    def __init__(self, session: EditSession, file: str, *, form: str, below: str) -> None:
         self.session = session
         self.file = file
         self.form: TableForm = FORMS[file]
-        self._who = who
-        self._status = status
+        self.entry_list: EntryList | None = None
+        self._who = _writer_field(session)
+        self._status = StatusLine()
+        with ui.element("div").classes("two"):
+            self.form_place = named(ui.element("section"), form)
+            self.live_results = LiveResults(self)
+            with named(ui.element("section").classes("below"), below) as self.below:
+                self.changes_place = ui.element("div")
+
+    def clear(self) -> None:
+        """Remove the form and the changes."""
+        self.form_place.clear()
+        self.changes_place.clear()
 
     def test(self, name: str) -> ReplayedTest:
         """Rows and entries of a test, as the journal had them when this page last read it."""
@@ -93,10 +76,10 @@ class TableView:
         numbers = (natural_number(test.name) for test in self.tests())
         return str(max((number for number in numbers if number is not None), default=0) + 1)
 
-    def add(self, name: str, cells: Mapping[str, str], *, position: int, seen: int, said: str) -> bool:
+    def add(self, test: ReplayedTest, cells: Mapping[str, str], *, position: int, said: str) -> bool:
         """Store a row; True if it is stored, now or by an earlier request with the same key."""
         once = current_request().once
-        return self.write(self._make_entry("add", name, cells=cells, position=position, once=once), seen, said)
+        return self.write(self._make_entry("add", test, cells=cells, position=position, once=once), test.last, said)
 
     def stored_before(self) -> str | None:
         """Name of the test that an earlier request with the same key stored; None without one."""
@@ -105,19 +88,13 @@ class TableView:
         return next((entry.test for entry in sent), None)
 
     def correct(
-        self,
-        test: ReplayedTest,
-        row: int,
-        cells: Mapping[str, str],
-        why: str,
-        *,
-        said: str = Message("Corrected; the first reading is kept."),
+        self, test: ReplayedTest, row: int, cells: Mapping[str, str], why: str, *, said: str = CORRECTED
     ) -> bool:
         """Store a correction of a row, given by the sequence of its entry."""
         if not why.strip():
             self.say(Message("A correction needs a reason."), "bad")
             return False
-        entry = self._make_entry("correct", test.name, about=row, cells=cells, why=why.strip())
+        entry = self._make_entry("correct", test, about=row, cells=cells, why=why.strip())
         return self.write(entry, test.last, said)
 
     def cancel(self, test: ReplayedTest, why: str) -> bool:
@@ -125,24 +102,23 @@ class TableView:
         if not why.strip():
             self.say(Message("A test is cancelled with a reason."), "bad")
             return False
-        entry = self._make_entry("cancel", test.name, why=" ".join(why.split()))
+        entry = self._make_entry("cancel", test, why=" ".join(why.split()))
         return self.write(entry, test.last, Message("{name} is cancelled; its readings are kept.", name=test.name))
 
     def undo(self, test: ReplayedTest) -> bool:
         """Store the undo of the last entry."""
-        last = test.undoable
-        if last is None:
+        if test.undoable is None:
             self.say(Message("There is nothing to undo."), "bad")
             return False
-        entry = self._make_entry("undo", test.name, about=last.sequence)
+        entry = self._make_entry("undo", test, about=test.undoable.sequence)
         return self.write(entry, test.last, Message("Undone."))
 
     def say(self, text: str, kind: str = "good", items: Sequence[str] = ()) -> None:
         """Show the outcome of the last action; ``items``: problems in the language of the page."""
         self._status.say(in_words(text), kind, items)
 
-    def _make_entry(self, action: Action, test: str, **fields: Any) -> NewEntry:
-        return NewEntry(action=action, file=self.file, test=test, who=self.writer, **fields)
+    def _make_entry(self, action: Action, test: ReplayedTest, **fields: Any) -> NewEntry:
+        return NewEntry(action=action, file=self.file, test=test.name, who=self.writer, **fields)
 
     def write(self, entry: NewEntry, seen: int, said: str) -> bool:
         """Store an entry and show ``said``, or why it is rejected; True if it is stored."""
@@ -263,24 +239,6 @@ def table_links(tables: Mapping[str, str], here: str, further: Mapping[Message, 
             ui.link(said(name), address)
 
 
-@contextmanager
-def table_view(
-    session: EditSession, file: str, *, form: str, below: str
-) -> Iterator[tuple[TableView, LiveResults, Places]]:
-    """View of a table with its parts of the page; elements of the block are added below the changes.
-
-    session, file: campaign and table.
-    form, below: names of the sections of the form and of the changes for screen readers.
-    """
-    who = _writer_field(session)
-    view = TableView(session, file, who, StatusLine())
-    with ui.element("div").classes("two"):
-        place = named(ui.element("section"), form)
-        live_results = LiveResults(view)
-        with named(ui.element("section").classes("below"), below):
-            yield view, live_results, Places(place, ui.element("div"))
-
-
 def _writer_field(session: EditSession) -> ui.select | ui.input:
     """Field of the writer: a menu of the campaign's observers, or a text field."""
     observers = list(session.described.observers)
@@ -304,8 +262,6 @@ class LiveResults:
 
     def __init__(self, view: TableView) -> None:
         self._view = view
-        self.entry_list: EntryList | None = None
-        """List that takes each result, too."""
         self._wanted: tuple[str, str, frozenset[str]] | None = None
         self._working = False
         is_pressed = view.file == PENETRATION.file
@@ -363,25 +319,17 @@ class LiveResults:
 
     def _show(self, name: str, results: QuickResults, unsaid: frozenset[str]) -> None:
         key = self._view.file, name
-        if self.entry_list is not None:
-            self.entry_list.take(results)
+        if self._view.entry_list is not None:
+            self._view.entry_list.take(results)
         row = results.experiments.get(key)
         self._name.set_text(Message("Test {name}", name=name) if row else "")
-        self._measured_value.set_text(_measured_value(row, pressed=self._view.file == PENETRATION.file))
+        self._measured_value.set_text("" if row is None else result_words(row))
         self._marks.clear()
         with self._marks:
             flags = results.flags.get(key, {})
             add_items(in_words(sentence) for code, sentence in flags.items() if code not in unsaid)
         if self._chart is not None:
             self._chart.show(list(_lines(key, results.curves)), from_zero="xy")
-
-
-def _measured_value(row: dict[str, Any] | None, *, pressed: bool) -> str:
-    if row is None:
-        return ""
-    if not pressed:
-        return "; ".join(filter(None, (f"S_f = {stress_words(row)}", displacement_words(row))))
-    return "; ".join(filter(None, (f"H_V = {hardness_words(row)}", unloading_words(row))))
 
 
 def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLine]:
@@ -396,7 +344,9 @@ def _lines(key: TestKey, curves: dict[TestKey, SeriesCurve]) -> Iterator[ChartLi
             yield ChartLine(*_joined(laws), style)
 
 
-def _joined(pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]]) -> tuple[_Values, _Values]:
+def _joined(
+    pairs: Iterable[tuple[Iterable[float | None], Iterable[float | None]]],
+) -> tuple[list[float | None], list[float | None]]:
     """All x and all y of several curves, one curve after the other."""
     x, y = zip(*pairs, strict=True)
     return list(chain.from_iterable(x)), list(chain.from_iterable(y))

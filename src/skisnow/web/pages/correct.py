@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Final
 
 from nicegui import run, ui
 
 from ..._support.errors import ParameterError
 from ..._support.messages import Message
-from ...campaign.store import ReplayedTest
 from ...campaign.store.stored_tables import cell_key
 from ..edit_session import CorrectionSession
 from ..elements import choice, field, folded, link
-from ..entry.changes import (
-    UNANSWERED,
-    Attachments,
-    ask_correction,
-    change_message,
-    changes,
-)
+from ..entry.changes import UNANSWERED, Attachments, ask_correction, change_message, changes
 from ..entry.readings import Field, checked_fields, faults
-from ..entry.table_view import LiveResults, Places, TableView, table_links, table_view
+from ..entry.table_view import TableView, table_links
 from ..layout import heading, page_frame, sentence
 from ..page_requests import analysis, asking_button, correction_address, export, form, required_id
 from ..settings import BUILD_S, Lab
@@ -56,13 +49,11 @@ def add_page(lab: Lab) -> None:
 
 
 def _show_test(session: CorrectionSession, file: str, name: str) -> None:
-    with (
-        table_view(session, file, form=Message("Cells"), below=Message("Changes")) as (view, live_results, places),
-        ui.element("div").classes("acts"),
-    ):
+    view = TableView(session, file, form=Message("Cells"), below=Message("Changes"))
+    with view.below, ui.element("div").classes("acts"):
         link(Message("Another test"), correction_address(session.id, table=file))
         Attachments(view, lambda: name)
-    ImportedTestForm(session, view, live_results, places).show(name)
+    ImportedTestForm(session, view).show(name)
 
 
 ONCE: Final = ("site", "spot", "tool", "plate", "edge_angle_deg")
@@ -74,11 +65,8 @@ FEW: Final = 40
 class ImportedTestForm:
     """Form of one test: fields of the columns with one value, and of each row."""
 
-    def __init__(self, session: CorrectionSession, view: TableView, live_results: LiveResults, places: Places) -> None:
-        self._desk = session
+    def __init__(self, session: CorrectionSession, view: TableView) -> None:
         self._view = view
-        self._live_results = live_results
-        self._places = places
         self._table = session.tables[view.file]
         columns = (column for column in view.form.known if column in self._table.columns)
         self._columns = [column for column in columns if column not in (view.form.key, *LEFT_ALONE)]
@@ -89,8 +77,8 @@ class ImportedTestForm:
         test, rows = self._view.test(name), self._table.tests[name]
         cells = test.rows[0].cells
         cancelled = next(filter(None, (cells.get(cell_key(line, "status"), "") for line in rows)), "")
-        self._places.clear()
-        with self._places.form:
+        self._view.clear()
+        with self._view.form_place:
             heading(Message("Test {name}", name=name))
             if test.cancelled or cancelled:
                 sentence(Message("Cancelled: {value}", value=test.cancelled or cancelled), "bad")
@@ -98,7 +86,7 @@ class ImportedTestForm:
                 self._draw_fields(tuple(rows), cells)
             self._ask = ui.element("div")
             asking_button(Message("Correct"), lambda: self._ask_correction(name), "main")
-        with self._places.below:
+        with self._view.changes_place:
             changes(
                 self._view,
                 test,
@@ -107,10 +95,11 @@ class ImportedTestForm:
                 is_unanswered=lambda: self._is_unanswered(name),
                 cancelled=bool(cancelled),
             )
-        self._live_results.follow(name, cells.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
+        self._view.live_results.follow(name, cells.get(cell_key(min(rows), "site"), ""))  # a file may lack the column
 
     def _draw_fields(self, lines: tuple[int, ...], cells: Mapping[str, str]) -> None:
-        once = [column for column in self._columns if column in ONCE and self._is_once(lines, column, cells)]
+        one_value = [column for column in self._columns if len({cells[cell_key(line, column)] for line in lines}) == 1]
+        once = [column for column in one_value if column in ONCE]
         self._fields = {lines: {}}
         with ui.element("div").classes("fields"):
             for column in once:
@@ -123,14 +112,11 @@ class ImportedTestForm:
                         row = line if len(lines) > 1 else None
                         own[column] = self._make_field(column, cells[cell_key(line, column)], row=row)
 
-    def _is_once(self, lines: Iterable[int], column: str, cells: Mapping[str, str]) -> bool:
-        return len({cells[cell_key(line, column)] for line in lines}) == 1
-
     def _make_field(self, column: str, text: str, *, row: int | None = None) -> Field:
         words = self._view.label(column)
         if row is not None:
             words = Message("{column}, row {row}", column=words, row=row)
-        described = self._desk.described
+        described = self._view.session.described
         if column in ("tool", "plate"):
             names = sorted({text, *(described.tools if column == "tool" else described.plates)})
             return choice(words, names, text)
@@ -152,11 +138,8 @@ class ImportedTestForm:
         if changed is None:
             return False
         columns = {key: self._view.label(key.split("/", 1)[1]) for key in changed}
-        lines = list(
-            dict.fromkeys(
-                change_message(columns[key], number_text(stored[key]), number_text(new)) for key, new in changed.items()
-            )
-        )
+        texts = {key: (number_text(stored[key]), number_text(new)) for key, new in changed.items()}
+        lines = list(dict.fromkeys(change_message(columns[key], *pair) for key, pair in texts.items()))
         row, show = (test, test.rows[0]), lambda: self.show(name)
         return ask_correction(self._view, self._ask, row, changed, lines=lines, show=show, leave=show)
 
@@ -192,12 +175,7 @@ def list_tests(session: CorrectionSession, file: str) -> None:
             ui.element("div").classes("acts so-far"),
         ):
             for name in names:
-                link(
-                    _link_text(session.test(file, name)), correction_address(session.id, table=file, test=name), "small"
-                )
-
-
-def _link_text(test: ReplayedTest) -> str:
-    if test.cancelled:
-        return Message("{name} (cancelled)", name=test.name)
-    return f"{test.name} (corrected)" if test.rows[0].corrections else test.name
+                test = session.test(file, name)
+                text = f"{name} (corrected)" if test.rows[0].corrections else name
+                words = Message("{name} (cancelled)", name=name) if test.cancelled else text
+                link(words, correction_address(session.id, table=file, test=name), "small")

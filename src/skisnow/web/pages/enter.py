@@ -12,7 +12,7 @@ from ..entry.changes import Attachments
 from ..entry.readings import FILE, receive_offline_readings
 from ..entry.series import SeriesForm
 from ..entry.single import SingleForm
-from ..entry.table_view import EntryList, LiveResults, Places, TableView, table_links, table_view
+from ..entry.table_view import EntryList, TableView, table_links
 from ..layout import page_frame
 from ..page_requests import analysis, entry_address, required_id
 from ..settings import Lab
@@ -41,42 +41,28 @@ def add_page(lab: Lab) -> None:
         with page_frame(session.described.name or Message("Campaign"), here=HERE, ahead=True):
             further = {Message("Analysis"): analysis("entry", id_), Message("Campaign"): f"/describe?entry={id_}"}
             table_links({file: entry_address(id_, table=file) for file in TABLES}, table, further)
-            with table_view(session, table, form=Message("Entry"), below=Message("Changes and entries")) as (
-                view,
-                live_results,
-                places,
-            ):
-                entry_list = live_results.entry_list = EntryList(view)
+            view = TableView(session, table, form=Message("Entry"), below=Message("Changes and entries"))
+            with view.below:
+                entry_list = view.entry_list = EntryList(view)
                 Attachments(view, lambda: entry_list.current)
-            head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
-            _show_form(view, (test, row), head, (live_results, places), entry_list)
+            if table == FILE:
+                head = {"experiment": test, "site": site, "spot": spot, "tool": tool, "edge_angle_deg": edge_angle_deg}
+                _show_series(view, entry_list, test, head)
+            else:
+                receive_offline_readings(session, lambda _: None)
+                SingleForm(view, entry_list).show(test, row=row)
 
 
-def _show_form(
-    view: TableView,
-    shown: tuple[str, str],
-    head: dict[str, str],
-    where: tuple[LiveResults, Places],
-    entry_list: EntryList,
-) -> None:
-    """Show the form of a test and its row, or of a new test."""
-    test, row = shown
-    if view.file == FILE:
-        series = SeriesForm(view, *where, entry_list)
-        receive_offline_readings(view.session, series.show_offline_readings)
-        if test and not view.test(test).history and _is_head(view, head):
-            series.show(test, head)  # a new series, loaded again before its first reading
-        elif test and view.test(test).rows:
-            series.show(test)
-        else:
-            series.begin()
+def _show_series(view: TableView, entry_list: EntryList, test: str, head: dict[str, str]) -> None:
+    """Show the form of a series, or of a new one."""
+    series = SeriesForm(view, entry_list)
+    receive_offline_readings(view.session, series.show_offline_readings)
+    if test and not view.test(test).history and _is_head(view, head):
+        series.show(test, head)  # a new series, loaded again before its first reading
+    elif test and view.test(test).rows:
+        series.show(test)
     else:
-        single = SingleForm(view, *where, entry_list)
-        receive_offline_readings(view.session, lambda _: None)
-        if test:
-            single.show(test, row=row)
-        else:
-            single.begin()
+        series.begin()
 
 
 def _is_head(view: TableView, head: dict[str, str]) -> bool:

@@ -45,7 +45,7 @@ def curve(name: str, *, law: bool = True) -> SeriesCurve:
 def beside(page: Sheet, answer: Callable[[str], QuickResults]) -> LiveResults:
     """A separate page with the results of the readings."""
     session = SimpleNamespace(quick_results=answer, quick_verdicts=lambda _file: [])
-    view: Any = SimpleNamespace(file=PENETRATION, session=session)
+    view: Any = SimpleNamespace(file=PENETRATION, session=session, entry_list=None)
 
     def made() -> LiveResults:
         with page.content:

@@ -7,7 +7,7 @@ from nicegui import ui
 
 from skisnow.campaign.store import NewEntry
 from skisnow.report.formatting import significant
-from skisnow.web.words import hardness_words
+from skisnow.web.words import result_words
 
 from ..desk import Sheet, values
 from .conftest import (
@@ -33,8 +33,8 @@ def test_the_hardness_follows_the_readings(entered: Entered) -> None:
     enter(page, "Depth under 60 N (mm)", "2.6")
     by_hand = 60.0 / (200.0 * 2.6**2 / (2.0 * math.tan(math.radians(30.0))))
     row = entered.session().quick_results("A").experiments["penetration.csv", "1"]
-    assert hardness_words(row).startswith(f"{significant(by_hand)} N/mm³, [")
-    page.shows(f"[value] H_V = {hardness_words(row)}")
+    assert result_words(row).startswith(f"H_V = {significant(by_hand)} N/mm³, [")
+    page.shows(f"[value] {result_words(row)}")
     assert "[quiet] Test 1" in page.outline()
     (value,) = (each for each in page.of(ui.label) if "value" in each.classes)
     assert value.props["role"] == "status"

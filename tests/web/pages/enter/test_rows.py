@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from skisnow.campaign import read_campaign
-from skisnow.web.transfer import write_entry
+from skisnow.web.transfer import write_campaign
 
 from ..desk import Desk, Sheet, values
 from .conftest import CANCEL, DENSITY, DROP_CONE, KG_PER_M3, NAME, SHEAR, SHEARED, Entered, begun, undo_button
@@ -69,7 +69,7 @@ def test_the_depth_of_a_density_sample_reaches_the_campaign(desk: Desk, entered:
     page = entered.open("?table=density.csv")
     store(page, site="A", density="350", sample="12,5")
     assert page.outcome() == "good"
-    write_entry(desk.lab, entered.id_, tmp_path / "export")
+    write_campaign(desk.lab, "entry", entered.id_, tmp_path / "export")
     samples = read_campaign(tmp_path / "export").density
     assert samples is not None
     assert samples.sample_depth.tolist() == [0.0125]

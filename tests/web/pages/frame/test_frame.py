@@ -17,16 +17,13 @@ from skisnow.web.widgets import STYLES, ChartLine, LineChart
 from skisnow.web.words import (
     LABELS,
     TABLES,
-    displacement_words,
     estimate_words,
-    hardness_words,
     in_words,
     label,
     language_asked,
     language_of_request,
     minute_words,
-    stress_words,
-    unloading_words,
+    result_words,
 )
 
 from ..desk import Desk
@@ -143,21 +140,22 @@ def test_columns_and_tables_are_called_as_on_the_pages(name: str, words: str) ->
     assert label(name) == LABELS.get(name, name)
 
 
-ROW = {
+SERIES = {
     "H_V_N_per_mm3": 0.2, "H_V_interval_N_per_mm3": [0.15, 0.25],
     "n_unloading": 3, "unloading_ratio": 12.0, "unloading_ratio_interval": None,
+}  # fmt: skip
+SHEARED = {
     "S_f_N_per_mm2": 0.034412, "S_f_interval_N_per_mm2": [0.03, 0.04],
     "shear_displacement_mm": 1.5, "shear_displacement_interval_mm": [1.0, 2.0],
 }  # fmt: skip
 
 
 def test_results_in_words() -> None:
-    assert hardness_words(ROW) == "0.200 N/mm³, [0.150, 0.250]"
-    assert unloading_words(ROW) == "k_u/H_V = 12.0, interval not known"
-    assert stress_words(ROW) == "0.0344 N/mm², [0.0300, 0.0400]"
-    assert displacement_words(ROW) == "u_y = 1.50 mm, [1.00, 2.00]"
-    assert unloading_words(ROW | {"n_unloading": 0}) == ""
-    assert displacement_words(ROW | {"shear_displacement_mm": None}) == ""
+    hardness, stress = "H_V = 0.200 N/mm³, [0.150, 0.250]", "S_f = 0.0344 N/mm², [0.0300, 0.0400]"
+    assert result_words(SERIES) == f"{hardness}; k_u/H_V = 12.0, interval not known"
+    assert result_words(SHEARED) == f"{stress}; u_y = 1.50 mm, [1.00, 2.00]"
+    assert result_words(SERIES | {"n_unloading": 0}) == hardness
+    assert result_words(SHEARED | {"shear_displacement_mm": None}) == stress
     assert estimate_words(None, [1.0, 2.0], "mm") == "not defined"
 
 
