@@ -13,7 +13,7 @@ import pytest
 from skisnow._support.errors import FieldDataError, ParameterError, StoreError
 from skisnow.campaign.store import Journals, Store, replay_journal
 from skisnow.studies import read_study
-from skisnow.web.page_requests import analysis, carve_address, correction_address, entry_address, export, required_id
+from skisnow.web.page_requests import address, analysis, correction_address, entry_address, export, required_id
 from skisnow.web.studies import CARVE_S
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from skisnow.web.subprocesses import BOUNDS, Bounds, confined
@@ -63,8 +63,8 @@ def test_memory_has_an_end() -> None:
         (correction_address("ab12", test="7"), "/correct/ab12", {"test": ["7"]}),
         (analysis("kept", "ab12"), "/analysis/kept/ab12", {}),
         (export("entry", "ab12"), "/export/entry/ab12.zip", {}),
-        (carve_address("my ski"), "/carve", {"ski": ["my ski"]}),
-        (carve_address("a/b", "c&d"), "/carve", {"ski": ["a/b"], "other": ["c&d"]}),
+        (address("/carve", ski="my ski", other=""), "/carve", {"ski": ["my ski"]}),
+        (address("/carve", ski="a/b", other="c&d"), "/carve", {"ski": ["a/b"], "other": ["c&d"]}),
     ],
 )
 def test_what_is_asked_is_in_the_address(address: str, path: str, query: dict[str, list[str]]) -> None:

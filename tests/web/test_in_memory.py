@@ -16,7 +16,7 @@ from skisnow.web.campaign_analysis import CampaignSource, Choice, Numbers, analy
 from skisnow.web.edit_session import CorrectionSession
 from skisnow.web.settings import Lab
 from skisnow.web.snow_choice import campaign_snow, results_and_snow_words
-from skisnow.web.transfer import entry_files, kept_files, write_entry
+from skisnow.web.transfer import files_in_memory, write_campaign
 from tests.present import present
 
 from ..campaign.recordings import plain_snow
@@ -70,18 +70,18 @@ def experiments(results: dict[str, Any]) -> Any:
 
 def test_a_campaign_being_entered_is_analysed_as_its_export(lab: Lab, tmp_path: Path) -> None:
     id_ = entered(lab)
-    write_entry(lab, id_, tmp_path / "export")
-    found = analyse_files(entry_files(lab, id_), Choice())
+    write_campaign(lab, "entry", id_, tmp_path / "export")
+    found = analyse_files(files_in_memory(lab, "entry", id_), Choice())
     assert isinstance(found, Numbers)
     assert experiments(found.results) == experiments(analyse(read_campaign(tmp_path / "export")).results)
 
 
 def test_a_kept_campaign_is_analysed_as_its_export_with_what_was_corrected(lab: Lab, tmp_path: Path) -> None:
     id_ = kept_id(lab, tmp_path / "kept")
-    before = kept_files(lab, id_)
+    before = files_in_memory(lab, "kept", id_)
     correct(lab, id_)
     export_corrected(lab.store, id_, tmp_path / "export")
-    found = analyse_files(kept_files(lab, id_), Choice())
+    found = analyse_files(files_in_memory(lab, "kept", id_), Choice())
     assert isinstance(found, Numbers)
     results = analyse(read_campaign(tmp_path / "export")).results
     assert experiments(found.results) == experiments(results)
@@ -106,13 +106,13 @@ def test_recordings_and_weather_of_a_kept_campaign_are_read_from_the_store(lab: 
     (folder / "R.PNT").write_bytes(plain_snow(2.0))
     (folder / "s.smet").write_text(SMET, encoding="utf-8")
     id_ = lab.store.add(folder).id
-    found = analyse_files(kept_files(lab, id_), Choice())
+    found = analyse_files(files_in_memory(lab, "kept", id_), Choice())
     assert isinstance(found, Numbers)
     assert found.results["snow_micro_pen"]["recordings"][0]["mean_force_N"] == pytest.approx(2.0, rel=0.01)
     assert found.results["weather"]["station"] == "S"
     assert "regressions" in found.tables["en"]
     (folder / "penetration.csv").unlink()
-    alone = analyse_files(kept_files(lab, lab.store.add(folder).id), Choice())
+    alone = analyse_files(files_in_memory(lab, "kept", lab.store.add(folder).id), Choice())
     assert isinstance(alone, Numbers)
     assert list(alone.tables["de"]) == ["published_relations", "snow_micro_pen"]
     assert "Handhärte" in alone.key_results["de"][0] and "Plattenversuch" in alone.key_results["de"][0]

@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 import asyncio
-from dataclasses import replace
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, TypeAlias
 
 from nicegui import ui
+from nicegui.events import ValueChangeEventArguments
 
 from .._support.messages import Message, in_language, template
 from ..report.campaign.data import ReportData
-from .campaign_analysis import Choice, Numbers, Refusal, choosable_flags
+from .campaign_analysis import (
+    AnalysisCache,
+    CachedAnalysis,
+    CampaignSource,
+    Choice,
+    FigureImage,
+    Numbers,
+    Refusal,
+    choosable_flags,
+)
 from .elements import Words, add_items, choice, folded, html_words, named
 from .layout import error_sentence, heading, sentence
 from .words import language_of, said
 
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-    from typing import TypeAlias
-
-    from nicegui.events import ValueChangeEventArguments
-
-    from .campaign_analysis import AnalysisCache, CachedAnalysis, CampaignSource, FigureImage
-
-    Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
+Chooser: TypeAlias = Callable[[ValueChangeEventArguments[bool | None]], Awaitable[None]]
 
 LONG_TABLES: Final = {
     "penetration_experiments": Message("Every penetration experiment"),
@@ -45,19 +48,19 @@ _EXPERIMENT: Final = {
 """Texts of an experiment by its kind, and whether it is cancelled."""
 
 
+@dataclass(eq=False)
 class OpenAnalysis:
     """State of an open page: campaign, its state when the page was opened, last choice and its result."""
 
-    def __init__(self, kind: str, id_: str, subject: CampaignSource | None) -> None:
-        self.kind = kind
-        self.id = id_
-        self.subject = subject
-        self.choice = Choice()
-        self.analysed: CachedAnalysis | None = None
-        self.refused = ""
-        self.closed = False
-        self.settled = asyncio.Event()
-        """Set while the result, or the reason of its absence, belongs to the choice."""
+    kind: str
+    id: str
+    subject: CampaignSource | None
+    choice: Choice = field(default_factory=Choice)
+    analysed: CachedAnalysis | None = None
+    refused: str = ""
+    closed: bool = False
+    settled: asyncio.Event = field(default_factory=asyncio.Event)
+    """Set while the result, or the reason of its absence, belongs to the choice."""
 
 
 DIFFERENCES: Final = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)
@@ -199,10 +202,9 @@ class AnalysisView:
             _add_folded(Message("Included experiments"), lambda: self._list_experiments(numbers))
 
     def _list_marks(self, numbers: Numbers) -> None:
+        before = numbers.excluding
         for code, words in choosable_flags().items():
-            ui.checkbox(
-                said(words), value=code in numbers.excluding, on_change=self._flag_chooser(code, numbers.excluding)
-            )
+            ui.checkbox(said(words), value=code in before, on_change=self._flag_chooser(code, before))
 
     def _list_experiments(self, numbers: Numbers) -> None:
         for file, kind in (("penetration.csv", "penetration"), ("shear.csv", "shear")):
@@ -226,9 +228,8 @@ class AnalysisView:
         async def chosen(event: ValueChangeEventArguments[bool | None]) -> None:
             chosen_before = self._page.choice.excluding
             excluding = of_campaign if chosen_before is None else chosen_before
-            await self._choose(
-                replace(self._page.choice, excluding=excluding | {code} if event.value else excluding - {code})
-            )
+            excluding = excluding | {code} if event.value else excluding - {code}
+            await self._choose(replace(self._page.choice, excluding=excluding))
 
         return chosen
 

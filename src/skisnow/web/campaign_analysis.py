@@ -36,7 +36,7 @@ from ..report.figures.drawing import Drawing, data_uri, drawing_svg
 from ..report.figures.style import journal_style, local_axes, site_styles
 from .settings import Lab
 from .subprocesses import Worker
-from .transfer import entry_files, kept_files
+from .transfer import files_in_memory
 
 LEFT_OUT: Final = Message("excluded by choice in the lab")
 N_FIGURES: Final = len(DRAWERS) + 2
@@ -198,7 +198,7 @@ class CampaignSource:
 
     def __init__(self, lab: Lab, kind: str, id_: str) -> None:
         self._lab, self._kind, self._id = lab, kind, id_
-        self.files = (kept_files if kind == "kept" else entry_files)(lab, id_)
+        self.files = files_in_memory(lab, kind, id_)
         self._computed = OrderedDict[Choice, CachedAnalysis]()
         self._computing = asyncio.Lock()
 

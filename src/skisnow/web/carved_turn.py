@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, ClassVar, Final, NamedTuple
 
@@ -199,16 +199,8 @@ class CarvedTurn:
 
     def add_charts(self) -> None:
         """Add the charts."""
-        self._charts = {
-            key: LineChart(
-                ALONG,
-                PANELS[key],
-                Message("{title} along the ski", title=PANELS[key]),
-                height=self.height,
-                ends=ENDS,
-            )
-            for key in self.panels
-        }
+        titles = {key: (PANELS[key], Message("{title} along the ski", title=PANELS[key])) for key in self.panels}
+        self._charts = {key: LineChart(ALONG, *title, height=self.height, ends=ENDS) for key, title in titles.items()}
 
     def add_download_buttons(self, name: str) -> None:
         """Add buttons that download the curves as CSV, PNG or SVG under this name."""
@@ -216,21 +208,26 @@ class CarvedTurn:
             button(Message("Curves as CSV"), partial(self._download, f"{name}.csv"))
             save_buttons(name)
 
-    async def update_snow(self) -> None:
+    def update_snow(self) -> None:
         """Show the sliders that the snow leaves to the page, and ask."""
         for key, is_given in zip(OF_SNOW, (self.snow.gives_hardness, self.snow.gives_stress), strict=True):
             self.sliders[key].place.set_visibility(not is_given)
         self.ask()
 
-    def turn(self, snow: ChosenSnow | None) -> dict[str, Any]:
-        """Numbers and snow of a question."""
-        numbers: dict[str, Any] = {key: float(self.sliders[key].value) for key in SLIDERS}
-        if snow is None:
-            return numbers
-        site = {"site": snow.site} if snow.site else {}
-        where = {"published": snow.published} if snow.published else {"results": RESULTS, **site}
-        replaced = OF_SNOW if self.snow.gives_stress else OF_SNOW[:1]
-        return {key: value for key, value in numbers.items() if key not in replaced} | where
+    def inputs(self, skis: Iterable[Any], unloading_ratio: float) -> CarveInputs:
+        """A question for each ski, by its word or its keys, in the turn of the sliders on the chosen snow.
+
+        Raises ParameterError: the chosen campaign gives no snow.
+        """
+        snow = self.snow.chosen()
+        turn: dict[str, Any] = {key: float(self.sliders[key].value) for key in SLIDERS}
+        turn["unloading_ratio"] = unloading_ratio
+        if snow is not None:
+            for key in OF_SNOW if self.snow.gives_stress else OF_SNOW[:1]:
+                del turn[key]
+            site = {"site": snow.site} if snow.site else {}
+            turn |= {"published": snow.published} if snow.published else {"results": RESULTS, **site}
+        return CarveInputs([{"ski": ski, **turn} for ski in skis], snow)
 
     def ask(self) -> None:
         """Request the answer for the current positions of the sliders."""

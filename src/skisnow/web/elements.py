@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, TypeVar
 
 from nicegui import ui
 
 from ..report.formatting import SYMBOL
 from .words import said
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-    from typing import TypeVar
-
-    AnyElement = TypeVar("AnyElement", bound=ui.element)
+AnyElement = TypeVar("AnyElement", bound=ui.element)
 
 FIRST: Final = "(event) => { if (event.detail < 2) emit(kept.once()); }"
 """JavaScript handler that ignores the second click of a double click and sends the key of the request."""

@@ -133,23 +133,19 @@ class Guard:
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
-        headers = Headers(scope=scope)
+        headers, is_socket = Headers(scope=scope), scope["type"] == "websocket"
         answer = self._refusing_response(scope, headers)
-        if answer is None and scope["type"] == "http" and not self.access.has_access(headers):
-            answer = await self._token_answer(scope, receive)
-        if scope["type"] == "websocket":
-            await self._web_socket(scope, receive, send, refused=answer is not None)
+        if answer is None and not self.access.has_access(headers):
+            answer = Response(status_code=401) if is_socket else await self._token_answer(scope, receive)
+        if is_socket and answer is not None:
+            await receive()
+            await send({"type": "websocket.close", "code": 1008})
+        elif is_socket:
+            await self.app(scope, receive, send)
         elif answer is not None:
             await answer(scope, receive, _add_headers(send, scope))
         else:
             await self.app(scope, _limit_body(receive, self.access.body_bytes), _add_headers(send, scope))
-
-    async def _web_socket(self, scope: Scope, receive: Receive, send: Send, *, refused: bool) -> None:
-        if refused or not self.access.has_access(Headers(scope=scope)):
-            await receive()
-            await send({"type": "websocket.close", "code": 1008})
-            return
-        await self.app(scope, receive, send)
 
     def _refusing_response(self, scope: Scope, headers: Headers) -> Response | None:
         host, origin = headers.get("host", ""), headers.get("origin")
@@ -270,15 +266,10 @@ def token_page(
 def too_many_tries(scope: Scope, wait_s: float) -> Response:
     """Page with the form and the time to wait."""
     seconds = math.ceil(wait_s)
-    answer = token_page(
-        scope,
-        429,
-        Message(
-            "Those were {tries} tries in a minute. Wait {seconds} seconds, then try again.",
-            tries=TRIES,
-            seconds=seconds,
-        ),
+    sentence = Message(
+        "Those were {tries} tries in a minute. Wait {seconds} seconds, then try again.", tries=TRIES, seconds=seconds
     )
+    answer = token_page(scope, 429, sentence)
     answer.headers["retry-after"] = str(seconds)
     return answer
 

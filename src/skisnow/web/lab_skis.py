@@ -2,31 +2,25 @@
 
 from __future__ import annotations
 
-import json
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
-from typing import IO, TYPE_CHECKING, Final
+from typing import IO, Any, Final
 
 from .._support.errors import OutputError, ParameterError
 from .._support.messages import Message
 from .._support.staging import write_file
-from .._support.user_files import ContentError, toml_values
-from ..ski import read_ski, ski_names, write_ski
+from .._support.user_files import ContentError, toml_text, toml_values
+from ..ski import Ski, read_ski, ski_names, write_ski
 from ..snow.measured_range import with_range_warnings
 from .page_requests import hidden_folder
+from .settings import Limits
 from .subprocesses import SKI_BOUNDS, confined
 from .uploads import Unpacking
-from .words import reword, typed_number
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..ski import Ski
-    from .settings import Limits
+from .words import replaced, typed_number
 
 FOLDER: Final = "skis"
 FILE: Final = "ski.toml"
@@ -86,7 +80,7 @@ class LabSkis:
 
     def save_texts(self, name: str, text: str, table: str) -> None:
         """Save the text of a ski's file and table under a new name; see `save_ski`."""
-        line = f"name = {json.dumps(name, ensure_ascii=False)}"
+        line = f"name = {toml_text(name)}"
         named = _NAME_LINE.sub(lambda _: line, text, count=1) if _NAME_LINE.search(text) else f"{line}\n{text}"
         ski, _ = ski_of_texts(named, table)
         if ski.name != name:
@@ -116,7 +110,7 @@ class LabSkis:
                 "there is a ski {name} already, and none is overwritten; give this one another name"
             ).tag("already_there", name=name)
 
-    def _save_ski(self, name: str, write: Writing) -> None:
+    def _save_ski(self, name: str, write: Callable[[Path], object]) -> None:
         self.require_new(name)
         with hidden_folder(self._folder) as made:
             try:
@@ -177,15 +171,7 @@ def _require_no_other_file(text: str) -> None:
 
 def _without_folder(folder: str, message: str) -> str:
     """A message without the path of a temporary folder."""
-    start, resolved_start = f"{Path(folder) / 'x'}"[:-1], f"{Path(folder).resolve() / 'x'}"[:-1]
-    return reword(message, lambda text: text.replace(start, "").replace(resolved_start, ""))
-
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
-    Writing: TypeAlias = Callable[[Path], None]
+    return replaced(message, {f"{place / 'x'}"[:-1]: "" for place in (Path(folder), Path(folder).resolve())})
 
 
 NAME: Final = "name"
@@ -229,29 +215,17 @@ def measured_text(name: str, typed: Mapping[str, str]) -> str:
 
 
 def _toml(texts: Mapping[str, str], typed: Mapping[str, str]) -> str:
-    lines = [f"{key} = {json.dumps(text, ensure_ascii=False)}" for key, text in texts.items()]
+    values: dict[str, Any] = dict(texts)
     for key, text in typed.items():
         if text.strip() or key not in OPTIONAL:
-            lines.append(
-                f"{key} = {_numbers(MEASURED[key], text) if key in LISTS else typed_number(MEASURED[key], text)}"
-            )
-    return "\n".join([*lines, ""])
+            values[key] = (_numbers if key in LISTS else typed_number)(MEASURED[key], text)
+    return "".join(f"{key} = {toml_text(value)}\n" for key, value in values.items())
 
 
 def _numbers(words: str, text: str) -> list[float]:
     """Numbers separated by blanks or semicolons, with a decimal point or comma."""
     parts = text.replace(";", " ").split()
     return [typed_number(words, part.removesuffix(",")) for part in parts or [""]]
-
-
-def add_ski(skis: LabSkis, name: str, texts: SkiTexts) -> str:
-    """Save a ski that was read, under a name (default: its own); returns the name.
-
-    Raises ParameterError or OutputError: see `LabSkis.save_ski`.
-    """
-    saved_name = " ".join((name or texts.name).split())
-    skis.save_texts(saved_name, texts.text, texts.table)
-    return saved_name
 
 
 def ski_of_uploads(uploads: Sequence[tuple[str, IO[bytes]]], further: Mapping[str, str], limits: Limits) -> SkiTexts:

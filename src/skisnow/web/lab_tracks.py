@@ -5,32 +5,24 @@ from __future__ import annotations
 import contextlib
 import json
 import shutil
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import IO, TYPE_CHECKING, Final
+from typing import IO, Final
 
 from .._support.errors import FieldDataError, ParameterError
 from .._support.messages import joined, template
 from .._support.staging import cannot_write, write_file
 from .._support.units import DEGREE
 from .._support.user_files import ContentError, read_record
-from ..replay.replay import measured_track
+from ..replay.replay import Replay, ReplayTrack, measured_track
 from ..track.course import course_names, read_course
 from ..track.read import SUFFIXES, read_track
 from ..track.slope_frame import in_slope_frame
-from .page_requests import free_place, hidden_folder, plain_stem
+from ..track.track import Track
+from .page_requests import free_place, hidden_folder, newest_first, plain_stem
 from .subprocesses import BOUNDS, confined
-from .words import reword, typed_number
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
-    from ..replay.replay import Replay, ReplayTrack
-    from ..track.track import Track
-
-    Check: TypeAlias = Callable[[Path, "Placing"], "Placing"]
-    Read: TypeAlias = Callable[[Path, "Placing", float | None], ReplayTrack]
+from .words import replaced, typed_number
 
 TRACKS_FOLDER: Final = "tracks"
 ABOUT: Final = "about.json"
@@ -72,10 +64,12 @@ class TrackFolders:
 
     def names(self) -> list[str]:
         """Names of all tracks, the newest first."""
-        paths = sorted(self._folder.glob(f"*/{ABOUT}"), key=lambda place: -place.stat().st_mtime)
+        paths = newest_first(self._folder.glob(f"*/{ABOUT}"))
         return [place.parent.name for place in paths if not place.parent.name.startswith(".")]
 
-    def keep(self, content: IO[bytes], placing: Placing, *, check: Check | None = None) -> str:
+    def keep(
+        self, content: IO[bytes], placing: Placing, *, check: Callable[[Path, Placing], Placing] | None = None
+    ) -> str:
         """Store a track that can be read; returns its name.
 
         content: contents of the file.
@@ -140,12 +134,9 @@ class TrackFolders:
         except OSError as error:
             raise cannot_write(place, error) from error
 
-    def beside(self, name: str, replay: Replay, *, read: Read | None = None) -> ReplayTrack:
-        """A track in the axes of a run.
+    def beside(self, name: str, replay: Replay, *, read: Callable[..., ReplayTrack] | None = None) -> ReplayTrack:
+        """A track in the axes of a run, read by a function (default: `track_on_slope` in this process).
 
-        name: one of `names`.
-        replay: the run.
-        read: function that reads the track (default: `track_on_slope` in this process).
         Raises ParameterError: the lab has no such track, or it cannot be placed.
         """
         place, placing = self.file(name)
@@ -202,12 +193,8 @@ def _read_named(place: Path, placing: Placing) -> Track:
     try:
         return replace(read_track(place), name=placing.called)
     except FieldDataError as error:
-        raise ParameterError(_with_name(joined(error.sentences), place, placing.called)).tag(error.code) from error
-
-
-def _with_name(message: str, place: Path, name: str) -> str:
-    """A message with the name of the uploaded file instead of the place where it is stored."""
-    return reword(message, lambda text: text.replace(str(place), name).replace(place.name, name))
+        sentences, name = joined(error.sentences), placing.called
+        raise ParameterError(replaced(sentences, {str(place): name, place.name: name})).tag(error.code) from error
 
 
 def _to_slope_axes(track: Track, placing: Placing, *, slope_angle: float | None) -> Track:
@@ -249,8 +236,8 @@ class LabCourses:
 
     def kept(self) -> list[str]:
         """Names of the uploaded courses, the newest first."""
-        paths = [place for place in self._folder.glob("[!.]*") if place.suffix in COURSE_SUFFIXES]
-        return [place.name for place in sorted(paths, key=lambda place: -place.stat().st_mtime)]
+        paths = newest_first(self._folder.glob("[!.]*"))
+        return [place.name for place in paths if place.suffix in COURSE_SUFFIXES]
 
     def names(self) -> list[str]:
         """Names of all courses, first the built-in ones."""
@@ -294,7 +281,8 @@ class LabCourses:
         except OSError as error:
             raise cannot_write(place, error) from error
         except ParameterError as error:
-            raise ParameterError(_with_name(error.message, made, called)).tag(error.code) from error
+            message = replaced(error.message, {str(made): called, made.name: called})
+            raise ParameterError(message).tag(error.code) from error
         finally:
             made.unlink(missing_ok=True)
         return place.name

@@ -52,7 +52,9 @@ def page_frame(title: str, *, here: str = "", ahead: bool = False, keeps: bool =
     ui.page_title(f"{said(title)} · skisnow")
     ui.add_head_html(f'<link rel="stylesheet" href="{STYLES}">')
     ui.add_head_html(f'<script src="{KEEPING}"{" data-keeps" if keeps or ahead else ""}></script>')
-    ui.add_head_html(_script_element(ahead=ahead))
+    words = escape(json.dumps({key: said(text) for key, text in SAID_BY_SCRIPT.items()}, ensure_ascii=False))
+    further = f'data-language="{language_of()}" data-words="{words}"{" data-ahead" if ahead else ""}'
+    ui.add_head_html(f'<script src="{SCRIPT}" {further}></script>')
     client = ui.context.client
     client.run_javascript(CONNECTED)  # first, because a disabled field cannot get the focus
     client.on_connect(lambda: client.run_javascript(CONNECTED))
@@ -60,13 +62,14 @@ def page_frame(title: str, *, here: str = "", ahead: bool = False, keeps: bool =
         Words(Message("Skip to the content"))
     with ui.element("header").classes("lab-head"):
         Words("skisnow").classes("lab-name")
-        menu = ui.button(said(Message("Menu")), color=None).props(
-            "flat no-caps aria-expanded=false aria-controls=pages"
-        )
-        menu.classes("menu")  # lab.js opens the navigation
+        menu = ui.button(said(Message("Menu")), color=None).classes("menu")  # lab.js opens the navigation
+        menu.props("flat no-caps aria-expanded=false aria-controls=pages")
         with named(ui.element("nav").props("id=pages"), Message("Pages")):
             for name in PAGES:
-                _navigation_link(name, here)
+                page = import_module(f".pages.{name}", __package__)
+                page_link = ui.link(said(page.TITLE), page.PATH)
+                if here == page.PATH:
+                    page_link.props('aria-current="page"')
         _language_links()
     with (
         ui.element("div").props('id="content"'),  # inside the framework's main
@@ -81,13 +84,6 @@ def page_frame(title: str, *, here: str = "", ahead: bool = False, keeps: bool =
         client.run_javascript("lab.answered(0, true)")
 
 
-def _script_element(*, ahead: bool) -> str:
-    """Script element with the texts of the script in the language of the page."""
-    words = escape(json.dumps({key: said(text) for key, text in SAID_BY_SCRIPT.items()}, ensure_ascii=False))
-    further = f'data-language="{language_of()}" data-words="{words}"{" data-ahead" if ahead else ""}'
-    return f'<script src="{SCRIPT}" {further}></script>'
-
-
 def _language_links() -> None:
     """Add links to this page in the other languages."""
     request = ui.context.client.request
@@ -96,13 +92,6 @@ def _language_links() -> None:
         if code != language_of():
             link = ui.link(code.upper(), f"{LANGUAGE}/{code}?back={back}").classes("language")
             link.props(f'hreflang={code} lang={code} title="{name}"').props["aria-label"] = name
-
-
-def _navigation_link(name: str, here: str) -> None:
-    page = import_module(f".pages.{name}", __package__)
-    link = ui.link(said(page.TITLE), page.PATH)
-    if here == page.PATH:
-        link.props('aria-current="page"')
 
 
 def heading(text: str, level: int = 2) -> None:
@@ -196,10 +185,7 @@ async def _not_found_answer(request: Request, _: Exception) -> Response:
 
 async def _error_answer(request: Request, error: Exception) -> Response:
     if isinstance(error, SkisnowError):  # shown by the page
-        return plain_page(Message("This cannot be shown"), error_sentence(error), 500, request)
-    return plain_page(
-        Message("This cannot be shown"),
-        Message("Something went wrong. Reference: {log_error}.", log_error=log_error(error)),
-        500,
-        request,
-    )
+        words = error_sentence(error)
+    else:
+        words = Message("Something went wrong. Reference: {log_error}.", log_error=log_error(error))
+    return plain_page(Message("This cannot be shown"), words, 500, request)

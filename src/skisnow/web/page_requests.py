@@ -6,17 +6,19 @@ import json
 import re
 import shutil
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any, Final
-from urllib.parse import quote
+from typing import Any, Final, TypeAlias
+from urllib.parse import quote, urlencode
 from weakref import WeakKeyDictionary
 
+from fastapi import FastAPI
 from nicegui import Client, ui
+from nicegui.events import GenericEventArguments
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import FormData, UploadFile
 from starlette.exceptions import HTTPException
@@ -29,17 +31,7 @@ from .._support.staging import cannot_write
 from .elements import Words, button
 from .layout import error_sentence, plain_page
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
-    from nicegui.events import GenericEventArguments
-
-    Act: TypeAlias = Callable[[], bool | None]
-    from collections.abc import Callable, Mapping
-
-    from fastapi import FastAPI
-
+Act: TypeAlias = Callable[[], bool | None]
 ASK: Final = "() => lab.ask(emit)"
 ASK_FOR_ROW: Final = "() => lab.ask(emit, 'row')"
 ENTER: Final = "(event) => lab.enter(event, emit)"
@@ -83,32 +75,20 @@ def event_handler(act: Act) -> Callable[[GenericEventArguments], None]:
 
     def answered(event: GenericEventArguments) -> None:
         request, answers = _parse_request(event.args), _ANSWERS.setdefault(client, {})
-        fine = answers.get(request.number, False) if request.number is not None else False
+        fine = request.number is not None and answers.get(request.number, False)
+        before = _ASKED.set(request)
         try:
             if request.number is None or request.number not in answers:
-                fine = _run_action(act, request)
+                fine = act() is not False
         finally:
-            if request.number is not None:
+            _ASKED.reset(before)
+            if request.number is not None:  # the page waits
                 answers[request.number] = fine
-            _send_outcome(client, request, fine=fine)
+                client.run_javascript(f"lab.answered({request.number}, {'true' if fine else 'false'})")
+            elif request.once is not None:
+                client.run_javascript(f"lab.told({json.dumps(request.once)})")
 
     return answered
-
-
-def _run_action(act: Act, what: PageRequest) -> bool:
-    before = _ASKED.set(what)
-    try:
-        return act() is not False
-    finally:
-        _ASKED.reset(before)
-
-
-def _send_outcome(client: Client, request: PageRequest, *, fine: bool) -> None:
-    """Tell the waiting page by the request's number whether it was accepted, or by its key that it arrived."""
-    if request.number is not None:
-        client.run_javascript(f"lab.answered({request.number}, {'true' if fine else 'false'})")
-    elif request.once is not None:
-        client.run_javascript(f"lab.told({json.dumps(request.once)})")
 
 
 def _parse_request(message: Any) -> PageRequest:
@@ -155,25 +135,24 @@ def form(classes: str = "fields", *, sends: Act | None = None) -> ui.element:
 _ID: Final = re.compile(r"[0-9a-f]{4,64}")
 
 
+def address(path: str, **parameters: str) -> str:
+    """Address of a page with its parameters; empty ones are left out.
+
+    >>> address("/carve", ski="a&b", other="")
+    '/carve?ski=a%26b'
+    """
+    query = urlencode({key: value for key, value in parameters.items() if value}, quote_via=quote, safe="")
+    return f"{path}?{query}" if query else path
+
+
 def entry_address(id_: str, *, table: str = "", test: str = "", head: Mapping[str, str] | None = None) -> str:
     """Address of the entry of a campaign, or of a table and test in it; ``head``: cells of a test without rows."""
-    return f"/enter/{id_}" + _query_string(table, test, **(head or {}))
+    return address(f"/enter/{id_}", table=table, test=test, **(head or {}))
 
 
 def correction_address(id_: str, *, table: str = "", test: str = "") -> str:
     """Address of the correction of an imported campaign, or of a table and test in it."""
-    return f"/correct/{id_}" + _query_string(table, test)
-
-
-def _query_string(table: str, test: str, **further: str) -> str:
-    parameters = {"table": table, "test": test, **further}
-    words = [f"{key}={quote(value, safe='')}" for key, value in parameters.items() if value]
-    return "?" + "&".join(words) if words else ""
-
-
-def carve_address(ski: str, other: str = "") -> str:
-    """Address of the page Carve with a ski, and another one for comparison."""
-    return f"/carve?ski={quote(ski, safe='')}" + (f"&other={quote(other, safe='')}" if other else "")
+    return address(f"/correct/{id_}", table=table, test=test)
 
 
 def analysis(kind: str, id_: str) -> str:
@@ -201,6 +180,11 @@ def free_place(folder: Path, stem: str, suffix: str = "") -> Path:
     """Place in a folder with this name, or with the first free number after it."""
     places = (folder / f"{stem}{end}{suffix}" for end in ("", *(f"-{number}" for number in range(2, 1000))))
     return next(place for place in places if not place.exists())
+
+
+def newest_first(paths: Iterable[Path]) -> list[Path]:
+    """Paths in the order of their last change."""
+    return sorted(paths, key=lambda path: -path.stat().st_mtime)
 
 
 @contextmanager
@@ -236,7 +220,7 @@ ONE_FILE = Message("Nothing was stored: import one file at a time.")
 
 def add_upload(
     app: FastAPI,
-    address: str,
+    place: str,
     store: Callable[[FormData], str],
     *,
     max_files: int = 1,
@@ -245,25 +229,25 @@ def add_upload(
 ) -> None:
     """Add an address that receives a form; the guard in front of the application checks where requests come from.
 
-    app, address: the application, and the address: that of the page with the form, and a further part.
+    app, place: the application, and the address: that of the page with the form, and a further part.
     store: function that stores the upload and returns the address of the next page. Its errors are shown on a page.
     max_files, max_fields: maximum numbers of files and of other fields.
     too_many: sentence for a form with more.
     """
-    page = address.rpartition("/")[0] or "/"
+    page = place.rpartition("/")[0] or "/"
 
     async def receive(request: Request) -> Response:
         try:
             async with request.form(max_files=max_files, max_fields=max_fields) as form:
-                place = await run_in_threadpool(store, form)
+                next_page = await run_in_threadpool(store, form)
         except (SkisnowError, OSError) as error:
             wrong = Message("Nothing was stored: {error}", error=error_sentence(error))
             return plain_page(NOT_STORED, wrong, 400, request, page)
         except HTTPException:
             return plain_page(NOT_STORED, too_many, 400, request, page)
-        return RedirectResponse(place, 303)
+        return RedirectResponse(next_page, 303)
 
-    app.add_api_route(address, receive, methods=["POST"], include_in_schema=False, response_model=None)
+    app.add_api_route(place, receive, methods=["POST"], include_in_schema=False, response_model=None)
 
 
 def uploaded_files(form: FormData, key: str, missing: str) -> list[UploadFile]:

@@ -28,7 +28,7 @@ from ..report.track.summary import GPX_FILE, TURNS_FILE
 from ..ski import Ski, read_ski
 from .lab_tracks import Placing, TrackFolders, check_track, number_of, track_on_slope
 from .layout import plain_page
-from .page_requests import add_upload, uploaded_files
+from .page_requests import add_upload, address, newest_first, uploaded_files
 from .runs import JOB, Job
 from .subprocesses import BOUNDS, confined
 from .words import language_of_request
@@ -59,10 +59,7 @@ class RunFolders:
 
     def names(self) -> list[str]:
         """Names of all runs, the newest first."""
-        if not self.folder.is_dir():
-            return []
-        folders = [place for place in self.folder.iterdir() if (place / RUN_FILE).is_file()]
-        return [place.name for place in sorted(folders, key=lambda place: -(place / RUN_FILE).stat().st_mtime)]
+        return [place.parent.name for place in newest_first(self.folder.glob(f"*/{RUN_FILE}"))]
 
     def title(self, name: str) -> str:
         """Title of a run of the lab, or the name of its folder."""
@@ -83,21 +80,17 @@ class RunFolders:
         return self.folder / name
 
     def replay(self, name: str, track: str = "") -> Replay:
-        """Replay of a run, with a measured track if one is named.
-
-        The file of the ski is given in the run's job. The uploaded track is read in a separate process.
+        """Replay of a run, with a measured track if one is named, which is read in a separate process.
 
         Raises ParameterError: the lab has no such run, or it cannot be shown.
         """
         place = self.folder_of(name)
-        ski = _ski_of_job(place / JOB)
-        title = self.title(name)
+        ski, title = _ski_of_job(place / JOB), self.title(name)
         alone = replay_of_file(place, title=title, ski=ski)
         if not track:
             return alone
-        beside = TrackFolders(self.folder).beside(
-            track, alone, read=lambda *what: confined(BOUNDS, track_on_slope, *what)
-        )
+        tracks = TrackFolders(self.folder)
+        beside = tracks.beside(track, alone, read=lambda *what: confined(BOUNDS, track_on_slope, *what))
         return replay_of_file(place, title=title, ski=ski, track=beside)
 
 
@@ -148,37 +141,38 @@ def _add_tables(app: FastAPI, runs: RunFolders) -> None:
     tracks = TrackFolders(runs.folder)
 
     def gates(request: Request, run: str, ghost: str = "") -> Response:
-        def arguments() -> tuple[Path | str, ...]:
-            folders, titles = map(runs.folder_of, (run, ghost)), map(runs.title, (run, ghost))
-            return *folders, *map(str, titles), language_of_request(request)
+        def page() -> Response:
+            folders, titles = map(runs.folder_of, (run, ghost)), (runs.title(run), runs.title(ghost))
+            work = partial(page_of_folders, names=titles, back=LIST)
+            return HTMLResponse(confined(BOUNDS, work, *folders, language_of_request(request)))
 
-        return _confined_page(request, _page_of_folders, arguments)
+        return _or_error_page(request, page)
 
     def turns(request: Request, track: str, other: str = "") -> Response:
-        def arguments() -> tuple[Path | str, ...]:
+        def page() -> Response:
             files = map(tracks.file, (track, other) if other else (track,))
             named = [part for path, placing in files for part in (path, placing.called)]
-            return *named, language_of_request(request)
+            work: Callable[..., str] = partial(page_of_tracks if other else page_of_track, back=LIST)
+            return HTMLResponse(confined(BOUNDS, work, *named, language_of_request(request)))
 
-        return _confined_page(request, partial(page_of_tracks if other else page_of_track, back=LIST), arguments)
+        return _or_error_page(request, page)
 
     def track_file(request: Request, track: str, file: str) -> Response:
-        def arguments() -> tuple[Path, str, str]:
+        def download() -> Response:
             path, placing = tracks.file(track)
-            return path, placing.called, file
+            text = confined(BOUNDS, file_of_track, path, placing.called, file)
+            return _download(text, f"{track}-{file}", TRACK_FILES[file])
 
         if file not in TRACK_FILES:
             return PlainTextResponse("", 404)
-        return _confined_page(
-            request, file_of_track, arguments, lambda text: _download(text, f"{track}-{file}", TRACK_FILES[file])
-        )
+        return _or_error_page(request, download)
 
     _add_route(app, GATES, gates)
     _add_route(app, TURNS, turns)
     _add_route(app, f"{TURNS}/{{file}}", track_file)
 
 
-def _add_route(app: FastAPI, address: str, answer: Callable[..., Response]) -> None:
+def _add_route(app: FastAPI, place: str, answer: Callable[..., Response]) -> None:
     """Add the answer of an address; unknown runs and tracks are not found."""
 
     @wraps(answer)
@@ -188,26 +182,17 @@ def _add_route(app: FastAPI, address: str, answer: Callable[..., Response]) -> N
         except ParameterError as error:
             return PlainTextResponse(str(error), 404)
 
-    app.add_api_route(address, answered, include_in_schema=False, response_model=None)
+    app.add_api_route(place, answered, include_in_schema=False, response_model=None)
 
 
-def _confined_page(
-    request: Request,
-    work: Callable[..., str],
-    arguments: Callable[[], tuple[Any, ...]],
-    answer: Callable[[str], Response] = HTMLResponse,
-) -> Response:
-    """Page or file of a function in a separate process, or a page with the sentence why it cannot be shown."""
+def _or_error_page(request: Request, answer: Callable[[], Response]) -> Response:
+    """Answer of a function, or a page with the sentence why it cannot be shown."""
     try:
-        return answer(confined(BOUNDS, work, *arguments()))
+        return answer()
     except (FieldDataError, ParameterError) as error:
         message = joined(error.sentences) if isinstance(error, FieldDataError) else error.message
         sentence = message.text(language_of_request(request)) if isinstance(message, Message) else message
         return plain_page(Message("This cannot be shown"), f"{sentence[0].upper()}{sentence[1:]}.", 404, request)
-
-
-def _page_of_folders(folder: Path, other: Path, name: str, other_name: str, language: str) -> str:
-    return page_of_folders(folder, other, language, names=(name, other_name), back=LIST)
 
 
 def _limit_exaggeration(exaggeration: float) -> float:
@@ -244,16 +229,16 @@ def show_page(run: str, ghost: str | None, track: str = "", language: str = ENGL
         words=page_words(language),
         files=FILES,
         list=LIST,
-        run=f"{DATA}/{quote(run)}" + (f"?track={quote(track, safe='')}" if track else ""),
+        run=address(f"{DATA}/{quote(run)}", track=track),
         ghost=f"{DATA}/{quote(ghost)}" if ghost else "",
         model=f"{MODEL}/{quote(run)}.glb",
         moving_model=f"{MOVING_MODEL}/{quote(run)}.glb",
     )
 
 
-def show_address(run: str, ghost: str | None = None) -> str:
+def show_address(run: str, ghost: str = "") -> str:
     """Address of the replay of a run, with a second run if it is named."""
-    return f"{SHOW}?run={quote(run, safe='')}" + (f"&ghost={quote(ghost, safe='')}" if ghost else "")
+    return address(SHOW, run=run, ghost=ghost)
 
 
 TRACK_UPLOAD: Final = f"{LIST}/track"
@@ -268,6 +253,6 @@ def add_track_uploads(app: FastAPI, tracks: TrackFolders) -> None:
         start = number_of(str(form.get("start", "")), Message("the time at the first point"))
         placing = Placing((upload.filename or "")[:200], azimuth, start or 0.0)
         name = tracks.keep(upload.file, placing, check=lambda *what: confined(BOUNDS, check_track, *what))
-        return f"{LIST}?track={quote(name, safe='')}"
+        return address(LIST, track=name)
 
     add_upload(app, TRACK_UPLOAD, store, max_fields=4)

@@ -19,7 +19,7 @@ from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple, TypeAlias
+from typing import Any, ClassVar, Final, Literal, NamedTuple, TypeAlias
 
 from .._support.errors import ParameterError
 from .._support.messages import ENGLISH, LANGUAGE_OF_ERRORS, Message, in_language, joined, outcome_words, template
@@ -118,9 +118,11 @@ class Runs:
     folder: folder with the folders of the jobs.
     progress: last progress message of the running job.
     kind: class of the jobs.
+    progress_lines: form of the lines of a running job that are progress messages.
     """
 
     kind: type[Job] = Job
+    progress_lines: ClassVar[re.Pattern[str]] = re.compile("")
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -259,13 +261,9 @@ class Runs:
         assert process.stderr is not None
         while line := await process.stderr.readline():
             last = line.decode("utf-8", "replace").strip()
-            if not self._cancelling:
-                self.progress = self._progress_of(last)
+            if not self._cancelling and self.progress_lines.search(last):
+                self.progress = last
         return last[-LAST_WORDS:]
-
-    def _progress_of(self, line: str) -> str:
-        """Progress message of a line from the running job."""
-        return line
 
     def _finished_job(self, job: Job, last: str, *, cancelled: bool) -> Job:
         """Job with its final state and a sentence about it in the language of its request."""
@@ -283,17 +281,29 @@ class Runs:
             if finished.outcome == "interrupted":  # a job that was cancelled after its end counts as finished
                 words = Message("{outcome}: {extent}. The results so far are kept.", **fields)
                 return replace(job, state="cancelled", said=str(words))
-            sentence = joined(
-                [
-                    Message("{outcome}: {extent}.", **fields),
-                    remedy,
-                ]
-            )
+            sentence = joined([Message("{outcome}: {extent}.", **fields), remedy])
             return replace(job, state="done", said=str(sentence).strip())
 
     def _keep(self, job: Job) -> None:
         """Store a job."""
         write_file(self.folder / job.name / JOB, json.dumps(asdict(job), ensure_ascii=False, indent=1))
+
+    def estimated_s(self, values: Mapping[str, Any]) -> float | None:
+        """Estimated time of a run (s) with values of its scenario by key; None if they do not determine its end."""
+        simulated = simulated_s(values)
+        if simulated is None:
+            return None
+        runs = self._last_run_times()
+        around = sum(run.took - run.wall for run in runs) / len(runs) if runs else AROUND_S
+        return self.slowness(values.get("solver.method")) * simulated + around
+
+    def slowness(self, method: object) -> float:
+        """Ratio of computing time to simulated time of the last runs with this method."""
+        alike = [run for run in self._last_run_times() if run.method == method]
+        return sum(run.wall for run in alike) / sum(run.simulated for run in alike) if alike else SLOWNESS
+
+    def _last_run_times(self) -> list[_RunTime]:
+        return [run for job in self.jobs() if (run := _run_time(self.folder, job)) is not None][:LOOKED_AT]
 
 
 def new_name(what: str, time_utc: datetime) -> str:
@@ -310,27 +320,6 @@ _NEVER_S: Final = 1e9
 """Maximum simulated time (s) with an estimate."""
 
 
-def estimated_s(folder: Path, jobs: list[Job], values: Mapping[str, Any]) -> float | None:
-    """Estimated time of a run (s); None if its inputs do not determine its duration.
-
-    folder: folder of the runs.
-    jobs: jobs, the newest first.
-    values: values of the scenario by key.
-    """
-    simulated = simulated_s(values)
-    if simulated is None:
-        return None
-    runs = _last_run_times(folder, jobs)
-    around = sum(run.took - run.wall for run in runs) / len(runs) if runs else AROUND_S
-    return slowness(folder, jobs, values.get("solver.method")) * simulated + around
-
-
-def slowness(folder: Path, jobs: list[Job], method: object) -> float:
-    """Ratio of computing time to simulated time of the last runs with this method."""
-    alike = [run for run in _last_run_times(folder, jobs) if run.method == method]
-    return sum(run.wall for run in alike) / sum(run.simulated for run in alike) if alike else SLOWNESS
-
-
 def duration_words(seconds: float) -> str:
     """Rounded duration in words.
 
@@ -341,10 +330,6 @@ def duration_words(seconds: float) -> str:
         return f"{max(5, 5 * round(seconds / 5))} s"
     minutes = round(seconds / 60)
     return f"{minutes} min" if minutes < 120 else f"{round(minutes / 60)} h"
-
-
-def _last_run_times(folder: Path, jobs: list[Job]) -> list[_RunTime]:
-    return [run for job in jobs if (run := _run_time(folder, job)) is not None][:LOOKED_AT]
 
 
 def simulated_s(values: Mapping[str, Any]) -> float | None:

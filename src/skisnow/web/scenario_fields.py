@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import re
-from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, TypeAlias
 
 from nicegui import ui
 
 from .._support.errors import ParameterError
 from .._support.messages import Message
-from .elements import choice, field, named
+from ..parameters import InputValue, Quantity
+from .elements import TypedField, choice, field, named
 from .layout import sentence
-from .words import number_text, plain_number, reword, said
+from .words import number_text, plain_number, replaced, said
 
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    from ..parameters import InputValue, Quantity
-    from .elements import TypedField
-
-    InputField: TypeAlias = TypedField | ui.select | ui.switch
+InputField: TypeAlias = TypedField | ui.select | ui.switch
 
 ON: Final = "true"
 OFF: Final = "false"
@@ -156,10 +150,6 @@ class ScenarioField:
         client.run_javascript(f"lab.goTo({id_})")
 
 
-def _with_label(name: str, label: str, text: str) -> str:
-    return text.replace(name, label)
-
-
 def in_labels(message: str, *keys: Quantity) -> str:
     """A message of the library with the names of fields instead of keys.
 
@@ -167,6 +157,5 @@ def in_labels(message: str, *keys: Quantity) -> str:
     >>> in_labels("sledge.mass_kg is -5.0; allowed is above 0 to 1000 kg", SCENARIO_KEYS["sledge.mass_kg"])
     'Mass of the sledge m (kg) is -5.0; allowed is above 0 to 1000 kg'
     """
-    for key in sorted(keys, key=lambda key: -len(key.name)):
-        message = reword(message, partial(_with_label, key.name, field_label(key)))
-    return message
+    longest_first = sorted(keys, key=lambda key: -len(key.name))
+    return replaced(message, {key.name: field_label(key) for key in longest_first})

@@ -10,7 +10,7 @@ import logging
 import socket
 import ssl
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
@@ -96,7 +96,8 @@ def serve(
     Raises OSError: the port is in use.
     """
     require_allowed(host, token)
-    with _listener(host, port) as listener:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.create_server((host, port), family=family) as listener:
         app = lab_application(lab, host=host, token=token)
         config = uvicorn.Config(
             app,
@@ -120,11 +121,6 @@ def serve(
                     tell(line)
 
         _AnnouncingServer(config, begun).run(sockets=[listener])
-
-
-def _listener(host: str, port: int) -> socket.socket:
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    return socket.create_server((host, port), family=family)
 
 
 class _AnnouncingServer(uvicorn.Server):
@@ -221,7 +217,7 @@ class TimeLimitedProtocol(_Protocol):
             self._limit_time(None)
         elif not self._is_waiting():
             self._head_bytes = 0
-            self._limit_time(self.body_s if self._is_in_body() else None)
+            self._limit_time(self.body_s if self.cycle.more_body else None)
         else:
             self._head_bytes += len(data)
             if self._head_bytes > HEAD_BYTES:
@@ -245,9 +241,6 @@ class TimeLimitedProtocol(_Protocol):
         # None until the first request, unlike its type
         return self.cycle is None or bool(self.cycle.response_complete)  # type: ignore[redundant-expr]
 
-    def _is_in_body(self) -> bool:
-        return self.cycle is not None and bool(self.cycle.more_body)  # type: ignore[redundant-expr]
-
     def _limit_time(self, seconds: float | None) -> None:
         if self._closing is not None:
             self._closing.cancel()
@@ -268,10 +261,8 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     """
     log_to(lab.runs / LOG_FILE)
     outer = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
-    outer.add_api_route(STYLES, lambda: _asset_response("lab.css", "text/css"), include_in_schema=False)
-    outer.add_api_route(SCRIPT, lambda: _asset_response("lab.js", "text/javascript"), include_in_schema=False)
-    outer.add_api_route(FIRST_SCRIPT, lambda: _asset_response("first.js", "text/javascript"), include_in_schema=False)
-    outer.add_api_route(KEEPING, lambda: _asset_response("kept.js", "text/javascript"), include_in_schema=False)
+    for place in (STYLES, SCRIPT, FIRST_SCRIPT, KEEPING):
+        outer.add_api_route(place, partial(_asset_response, place), include_in_schema=False, response_model=None)
     outer.add_api_route(LANGUAGE + "/{code}", _set_language, include_in_schema=False, response_model=None)
     add_transfer(outer, lab)
     add_ski_uploads(outer, lab)
@@ -289,9 +280,8 @@ def lab_application(lab: Lab, *, host: str, token: str | None) -> ASGIApp:
     pages_app.on_startup(set_heartbeat)
     log_socket_errors()
     pages_app.config.socket_io_js_transports = ["websocket"]
-    pages_app.config.quasar_config["loadingBar"] = {
-        "skipHijack": True
-    }  # a bar without an accessible name; the page shows the status
+    # the bar has no accessible name; the page shows the status
+    pages_app.config.quasar_config["loadingBar"] = {"skipHijack": True}
     return Guard(outer, Access(host, token, lab.limits.upload_bytes))
 
 
@@ -304,8 +294,9 @@ def _set_language(code: str, back: str = "/") -> Response:
     return answer
 
 
-def _asset_response(name: str, kind: str) -> FileResponse:
-    return FileResponse(_HERE / name, media_type=kind, headers={"cache-control": "no-cache"})
+def _asset_response(place: str) -> FileResponse:
+    kind = "text/css" if place == STYLES else "text/javascript"
+    return FileResponse(_HERE / place.removeprefix("/"), media_type=kind, headers={"cache-control": "no-cache"})
 
 
 _LIBRARIES: Final = ("engineio.server", "socketio.server")

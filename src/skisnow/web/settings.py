@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ..campaign.store import Store
+from ..campaign.store import Store
 
 MEGABYTE: Final = 1_000_000
 STALL_S: Final = 60.0
@@ -39,9 +37,7 @@ class Limits:
 class Lab:
     """Store, folder and settings of a lab, the argument of each page's ``add_page``.
 
-    store: open store of campaigns.
     runs: folder of runs, studies, skis, tracks and courses.
-    limits: limits of uploads.
     scheduler: scheduler of studies as in ``skisnow study --scheduler`` (default: this machine).
     """
 

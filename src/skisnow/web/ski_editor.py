@@ -6,7 +6,6 @@ import dataclasses
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
-from urllib.parse import quote
 
 import numpy as np
 from fastapi import FastAPI
@@ -26,14 +25,13 @@ from .lab_skis import (
     OPTIONAL,
     STIFFNESS,
     LabSkis,
-    add_ski,
     check_ski_texts,
     measured_text,
     ski_of_texts,
     ski_of_uploads,
 )
 from .layout import error_sentence, heading, sentence
-from .page_requests import add_upload, file_input, submit_button, text_input, upload_form, uploaded_files
+from .page_requests import add_upload, address, file_input, submit_button, text_input, upload_form, uploaded_files
 from .settings import Lab
 from .subprocesses import SKI_BOUNDS, confined
 from .words import number_text, said, typed_number
@@ -69,7 +67,7 @@ class SkiEditor:
 
     def _add_factor_field(self, words: str) -> ui.input:
         made = field(f"{words} ×", ONE, numeric=True)
-        made.on("change", self._notify_change)
+        made.on("change", self._changed)
         return made
 
     def _add_file_fields(self, text: str, table: str) -> tuple[ui.textarea, ui.textarea]:
@@ -81,15 +79,11 @@ class SkiEditor:
                 ),
                 "quiet",
             )
-            written = (
-                ui.textarea(said(Message("File of the edited ski")), value=text)
-                .props("outlined autogrow")
-                .classes("code")
-            )
+            written = ui.textarea(said(Message("File of the edited ski")), value=text).props("outlined autogrow")
             with folded(Message("Its table, where it has one")):
-                rows = (
-                    ui.textarea(said(Message("Table of the edited ski")), value=table).props("outlined").classes("code")
-                )
+                rows = ui.textarea(said(Message("Table of the edited ski")), value=table).props("outlined")
+            for area in (written, rows):
+                area.classes("code")
             button(Message("Draw the file"), self._take_file, "main")
         return written, rows
 
@@ -125,9 +119,6 @@ class SkiEditor:
 
     def _show_origin(self, name: str) -> None:
         self._begun.set_text(Message("Begun from {name}. Nothing is saved until you give it another name.", name=name))
-
-    async def _notify_change(self) -> None:
-        await self._changed()
 
     def show(self, stations: tuple[float, ...], cells: Mapping[tuple[str, int], str]) -> None:
         """Show the values of the curves at the stations, except in cells with typed texts."""
@@ -261,8 +252,9 @@ def add_ski_uploads(app: FastAPI, lab: Lab) -> None:
         files = [(file.filename or "", file.file) for file in uploaded_files(form, "files", missing)]
         further = {key: str(form.get(key, "")) for key in STIFFNESS}
         texts = ski_of_uploads(files, further, lab.limits)
-        name = add_ski(LabSkis(lab.runs), str(form.get(NAME, "")), texts)
-        return f"/skis?ski={quote(name, safe='')}&added=1"
+        name = " ".join((str(form.get(NAME, "")) or texts.name).split())
+        LabSkis(lab.runs).save_texts(name, texts.text, texts.table)
+        return address("/skis", ski=name, added="1")
 
     too_many = Message("Nothing was stored: at most {most_files} files at once can be imported.", most_files=MOST_FILES)
     add_upload(app, SKI_UPLOAD, store, max_files=MOST_FILES, too_many=too_many)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,7 +15,7 @@ from ..campaign.store import Journals
 from ..estimation import Analysis
 from ..estimation.results import results_json
 from ..report.campaign.page import RESULTS
-from ..scenario.reading import ScenarioFile
+from ..scenario.reading import ScenarioFile, build_input, load_input
 from ..ski.ski_file import Sources
 from ..snow import SnowProperties, published_names, published_snow
 from .campaign_analysis import Choice, Refusal, analyse_files
@@ -23,7 +23,7 @@ from .edit_session import EditSession
 from .elements import Words, choice, option_texts
 from .layout import error_sentence
 from .settings import Lab
-from .transfer import entry_files, kept_files
+from .transfer import files_in_memory
 from .words import estimate_words
 
 PUBLISHED: Final = "published-"
@@ -48,9 +48,9 @@ class ChosenSnow:
 
 
 class SnowChoice:
-    """Menu of snows; ``changed`` is awaited after a choice. ``numbers``: entry for the page's numbers."""
+    """Menu of snows; ``changed`` is called after a choice. ``numbers``: entry for the page's numbers."""
 
-    def __init__(self, lab: Lab, numbers: tuple[str, str], changed: Callable[[], Awaitable[None]]) -> None:
+    def __init__(self, lab: Lab, numbers: tuple[str, str], changed: Callable[[], None]) -> None:
         self._lab, self._numbers, self._changed = lab, numbers[0], changed
         self._campaigns = _campaigns(lab)
         named = {f"{PUBLISHED}{name}": Message("published: {name}", name=name) for name in published_names()}
@@ -98,13 +98,14 @@ class SnowChoice:
         if of_campaign and not await self._analyse_campaign(key):
             return
         if of_campaign and self._analysis is not None:
-            sites = sites_of(self._analysis[1])
+            means = self._analysis[1].site_means
+            sites = list(dict.fromkeys(row.site for row in means if row.quantity.startswith("H_V")))
             self._site.set_options(option_texts({ALL_SITES: Message("all sites")}) | {site: site for site in sites})
             self._site.set_visibility(len(sites) > 1)
             if self._site.value != ALL_SITES:
                 self._site.set_value(ALL_SITES)  # which chooses
                 return
-        await self._use_choice()
+        self._use_choice()
 
     async def _analyse_campaign(self, key: str) -> bool:
         self._found, self._refused = None, ""
@@ -120,7 +121,7 @@ class SnowChoice:
             self._analysis = key, analysis
         return True
 
-    async def _use_choice(self) -> None:
+    def _use_choice(self) -> None:
         self._found, self._refused = None, ""
         key = str(self._menu.value)
         try:
@@ -128,10 +129,9 @@ class SnowChoice:
         except SkisnowError as error:
             self._show_error(error)
             return
-        self.words.set_text(
-            "" if self._found is None else Message("Snow: {snow_words}", snow_words=snow_words(self._found.snow))
-        )
-        await self._changed()
+        found = self._found
+        self.words.set_text("" if found is None else Message("Snow: {snow_words}", snow_words=snow_words(found.snow)))
+        self._changed()
 
     def _snow_of(self, key: str) -> ChosenSnow | None:
         if key == self._numbers:
@@ -158,49 +158,32 @@ def _campaigns(lab: Lab) -> dict[str, str]:
 
 
 def require_scenario(scenario: str, changes: Mapping[str, str], sources: Sources | None = None) -> ScenarioFile:
-    """Read a scenario with changes as the command line would.
+    """Read a scenario with changes as on the command line; ``sources``: skis and snows in memory.
 
-    scenario, changes: as on the command line.
-    sources: sources of skis and snows in memory.
     Raises ParameterError: a value is not valid.
     """
     from ..scenario.keys import parse_change
-    from ..scenario.reading import build_input, load_input
 
-    scenario_input = load_input(scenario).changed(
-        dict(parse_change(f"{name}={text}") for name, text in changes.items())
-    )
-    return build_input(scenario_input, sources=sources)
+    parsed = dict(parse_change(f"{name}={text}") for name, text in changes.items())
+    return build_input(load_input(scenario).changed(parsed), sources=sources)
 
 
 def campaign_snow(lab: Lab, key: str) -> Analysis:
-    """Analysis of a campaign of the lab.
+    """Analysis of a campaign of the lab; ``key``: its kind (entry or kept) and id, joined by "-".
 
-    lab: lab with the campaign in its store.
-    key: kind (entry or kept) and id of the campaign, joined by "-".
     Raises ParameterError: the campaign gives no snow.
     """
-    kind, id_ = key.split("-", 1)
-    numbers = analyse_files((kept_files if kind == "kept" else entry_files)(lab, id_), Choice())
+    numbers = analyse_files(files_in_memory(lab, *key.split("-", 1)), Choice())
     if isinstance(numbers, Refusal):
         raise ParameterError("this campaign gives no snow yet. {said}").tag("no_snow", said=numbers.said)
     return numbers.analysis
 
 
-def sites_of(analysis: Analysis) -> list[str]:
-    """Sites with a measured H_V."""
-    return list(dict.fromkeys(row.site for row in analysis.site_means if row.quantity.startswith("H_V")))
-
-
 def results_and_snow_words(analysis: Analysis, scenario: str, changes: Mapping[str, str]) -> tuple[bytes, str]:
-    """Text of results.json of a campaign, and the resulting snow of a scenario in words.
+    """Text of results.json of a campaign, and in words the snow of a scenario whose changes can name the site.
 
-    analysis: analysis of the campaign.
-    scenario, changes: scenario with changes; ``snow.site`` is the site.
     Raises ParameterError: a value is not valid.
     """
-    from ..ski.ski_file import Sources
-
     sources, site = Sources(), changes.get("snow.site") or None
     sources.take_snow(analysis.snow(site), results=RESULTS, site=site)
     resolved = require_scenario(scenario, {**changes, "snow.results": RESULTS}, sources).scenario

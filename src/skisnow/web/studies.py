@@ -22,16 +22,15 @@ from .._support.processes.kept_rows import KeptRows
 from .._support.staging import write_file
 from ..studies import Study, StudyTable
 from .page_requests import hidden_folder
-from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s, slowness
-from .study_fields import CARVE, STUDY, TABLE, StudyQuestion, require_few_points
+from .runs import AROUND_S, JOB, LOOKED_AT, Job, Runs, duration_words, new_name, simulated_s
+from .study_fields import CARVE, MOST_POINTS, STUDY, TABLE, StudyQuestion
 from .uploads import files_below
-from .words import reword
+from .words import replaced
 
 FOLDER: Final = "studies"
 FIGURE: Final = "map.svg"
 PARTIAL: Final = f"{TABLE}.partial"
 _IN_USE: Final = "is being written by another run"
-_POINTS: Final = re.compile(r"^\d+ of \d+ points")
 _AGAIN_S: Final = 3.0
 """Time (s) before a new attempt: a process of an earlier server ends at its next progress message."""
 
@@ -58,6 +57,7 @@ class Studies(Runs):
     """
 
     kind = StudyJob
+    progress_lines = re.compile(r"^\d+ of \d+ points")
 
     def __init__(self, folder: Path, scheduler: str | None = None) -> None:
         super().__init__(folder / FOLDER)
@@ -91,7 +91,11 @@ class Studies(Runs):
                 write_file(made / file, content)
             try:
                 points = len(read_study(made / STUDY).points)
-                require_few_points(points)
+                if points > MOST_POINTS:
+                    raise ParameterError(
+                        "the study has {points} points; the lab accepts at most {most}. Use fewer values, or the "
+                        "command skisnow study, which accepts a million"
+                    ).tag("too_many_points", points=points, most=MOST_POINTS)
             except ParameterError as error:
                 raise ParameterError(_without_folder(made, error.message)).tag(error.code) from error
             made.chmod(0o755)
@@ -160,22 +164,18 @@ class Studies(Runs):
         folder, said = self.folder / job.name, _without_folder(self.folder / job.name, last)
         job = replace(job, took_s=job.took_s + took_s)
         if (folder / TABLE).is_file():
-            return replace(
-                job, state="done", said=await asyncio.to_thread(self._outcome_counts, job.name, job.language)
-            )
+            counts = await asyncio.to_thread(self._outcome_counts, job.name, job.language)
+            return replace(job, state="done", said=counts)
         if _IN_USE in said and not cancelled:
             await asyncio.sleep(_AGAIN_S)
             return replace(job, state="waiting", said="")
         n_finished = await asyncio.to_thread(_finished, folder / PARTIAL)
         n_points = job.points if isinstance(job, StudyJob) else 0
-        with in_language(job.language):
-            finished = str(Message("{done} of {all} points are finished and kept.", done=n_finished, all=n_points))
-        return replace(
-            job, state="cancelled" if cancelled else "failed", said=finished if cancelled else f"{said} {finished}"
-        )
-
-    def _progress_of(self, line: str) -> str:
-        return line if _POINTS.search(line) else self.progress
+        kept = Message("{done} of {all} points are finished and kept.", done=n_finished, all=n_points)
+        finished = kept.text(job.language)
+        if cancelled:
+            return replace(job, state="cancelled", said=finished)
+        return replace(job, state="failed", said=f"{said} {finished}")
 
     def _outcome_counts(self, name: str, language: str) -> str:
         """Text such as "15 points: finished 12; fell 3."; the error if the table cannot be read."""
@@ -183,13 +183,33 @@ class Studies(Runs):
             counts = self.table(name)[1].counts()
         except SkisnowError as error:
             return error.text(language)
-        every = [
-            Message("{outcome} {count}", outcome=outcome_words(outcome), count=count)
-            for outcome, count in counts.items()
-        ]
-        return Message("{points} points: {outcomes}.", points=sum(counts.values()), outcomes=joined(every, "; ")).text(
-            language
-        )
+        words = {outcome_words(outcome): count for outcome, count in counts.items()}
+        every = [Message("{outcome} {count}", outcome=outcome, count=count) for outcome, count in words.items()]
+        points = Message("{points} points: {outcomes}.", points=sum(counts.values()), outcomes=joined(every, "; "))
+        return points.text(language)
+
+    def estimate_words(self, runs: Runs, points: int, method: str, unit: float) -> str:
+        """Number of points and estimated time in words.
+
+        runs: runs of the lab.
+        method: method of the solver; "" for a carved turn.
+        unit: see `unit_s`.
+        """
+        if not unit:
+            return Message("{points} points.", points=points)
+        slowness = measured_slowness(self.study_jobs(), method)
+        if slowness is None:
+            slowness = runs.slowness(method) if method else 1.0
+        seconds = points * unit * slowness
+        if self.elsewhere:
+            return Message(
+                "{points} points, about {took} of one core, shared by the workers of {elsewhere}.",
+                points=points,
+                took=duration_words(seconds),
+                elsewhere=self.elsewhere,
+            )
+        took = duration_words(seconds / self.workers + AROUND_S)
+        return Message("{points} points. Takes about {duration_words}.", points=points, duration_words=took)
 
 
 def _finished(partial: Path) -> int:
@@ -209,7 +229,7 @@ def _without_folder(folder: Path, message: str) -> str:
     """A message without the path of the study's folder and file."""
     if not isinstance(message, Message):
         return message.replace(f"{folder / STUDY}: ", "").replace(f"{folder}/", "").removeprefix("skisnow: ")
-    return reword(message, lambda text: text.replace(str(folder / STUDY), STUDY).replace(f"{folder}/", ""))
+    return replaced(message, {str(folder / STUDY): STUDY, f"{folder}/": ""})
 
 
 CARVE_S: Final = 0.03
@@ -223,36 +243,6 @@ def unit_s(of: str, values: Mapping[str, Any]) -> float:
     values: values of the scenario by key.
     """
     return CARVE_S if of == CARVE else simulated_s(values) or 0.0
-
-
-def estimate_words(studies: Studies, runs: Path, jobs: list[Job], *, points: int, method: str, unit: float) -> str:
-    """Number of points and estimated time in words.
-
-    studies: studies of the lab.
-    runs, jobs: folder and jobs of the lab's runs.
-    points: number of points.
-    method: method of the solver; "" for a carved turn.
-    unit: see `unit_s`.
-    """
-    if not unit:
-        return Message("{points} points.", points=points)
-    slowness_ = measured_slowness(studies.study_jobs(), method)
-    if slowness_ is None:
-        slowness_ = slowness(runs, jobs, method) if method else 1.0
-    seconds = points * unit * slowness_
-    if studies.elsewhere:
-        took = duration_words(seconds)
-        return Message(
-            "{points} points, about {took} of one core, shared by the workers of {elsewhere}.",
-            points=points,
-            took=took,
-            elsewhere=studies.elsewhere,
-        )
-    return Message(
-        "{points} points. Takes about {duration_words}.",
-        points=points,
-        duration_words=duration_words(seconds / studies.workers + AROUND_S),
-    )
 
 
 def measured_slowness(jobs: Sequence[StudyJob], method: str) -> float | None:

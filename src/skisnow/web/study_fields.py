@@ -19,7 +19,7 @@ from ..parameters import Quantity
 from .elements import choice, field, named
 from .layout import sentence
 from .scenario_fields import field_label, typed_form, with_point
-from .words import number_text, reword, said, typed_number
+from .words import number_text, replaced, said, typed_number
 
 CARVE: Final = "carved-turn"
 """Subject of a study of carved turns, instead of the name of a scenario."""
@@ -126,18 +126,6 @@ def study_keys(of: str) -> Mapping[str, Quantity]:
 def is_number(key: Quantity) -> bool:
     """True for an input that can have a range."""
     return key.kind in ("number", "whole number")
-
-
-def require_few_points(points: int) -> None:
-    """Reject a study with more points than the lab's page can show.
-
-    Raises ParameterError: the study has more points than `MOST_POINTS`.
-    """
-    if points > MOST_POINTS:
-        raise ParameterError(
-            "the study has {points} points; the lab accepts at most {most}. Use fewer values, or the command skisnow "
-            "study, which accepts a million"
-        ).tag("too_many_points", points=points, most=MOST_POINTS)
 
 
 def _toml_key(name: str) -> str:
@@ -269,8 +257,7 @@ class AxisFields:
             try:
                 key.in_range(round(end) if key.kind == "whole number" and end == round(end) else end)
             except ParameterError as error:
-                message = reword(error.message, lambda text: text.replace(key.name, said(words)))
-                raise ParameterError(message).tag(error.code) from error
+                raise ParameterError(replaced(error.message, {key.name: said(words)})).tag(error.code) from error
         if not low < high:
             raise ParameterError(
                 "{input}: it goes from {low:g} to {high:g}; the first end must be the smaller one"

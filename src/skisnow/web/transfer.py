@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import secrets
 import shutil
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Final
+from typing import IO, Final
 
+from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import FormData, UploadFile
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
@@ -33,17 +36,9 @@ from ..campaign.store import Journals, campaign_files, corrected_files, export_c
 from ..estimation.result_rows import first_hardness
 from .layout import error_sentence, plain_page
 from .page_requests import add_upload, required_id, uploaded_files
+from .settings import Lab
 from .subprocesses import BOUNDS, confined
 from .uploads import add_uploaded, zip_download, zip_of_campaign
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from typing import IO
-
-    from fastapi import FastAPI
-
-    from .settings import Lab
-
 
 IMPORT: Final = "/import"
 
@@ -63,16 +58,18 @@ def add_transfer(app: FastAPI, lab: Lab) -> None:
         uploads[0].file.seek(0)
         return f"{IMPORT}/{FileImports(lab).keep(name, uploads[0].file)}"
 
-    async def entry(request: Request, id_: str) -> Response:
-        return await _zip_answer(lambda folder: write_entry(lab, id_, folder), id_, request)
-
-    async def kept(request: Request, id_: str) -> Response:
-        return await _zip_answer(lambda folder: write_kept(lab, id_, folder), id_, request)
+    async def export(request: Request, kind: str, id_: str) -> Response:
+        if kind not in ("entry", "kept"):
+            raise HTTPException(404)
+        try:
+            content = await run_in_threadpool(zip_of_campaign, partial(write_campaign, lab, kind, id_))
+        except StoreError as error:
+            return plain_page(Message("This cannot be exported"), error_sentence(error), 404, request)
+        return zip_download(content, f"campaign-{required_id(id_)}.zip")
 
     too_many = Message("Nothing was stored: at most {files} files at once can be imported.", files=lab.limits.files)
     add_upload(app, IMPORT, store, max_files=lab.limits.files, too_many=too_many)
-    app.add_api_route("/export/entry/{id_}.zip", entry, response_model=None)
-    app.add_api_route("/export/kept/{id_}.zip", kept, response_model=None)
+    app.add_api_route("/export/{kind}/{id_}.zip", export, response_model=None)
 
 
 def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
@@ -84,46 +81,20 @@ def _add_campaign(lab: Lab, uploads: Sequence[UploadFile]) -> str:
         return confined(BOUNDS, add_uploaded, lab.store.path, name, names, lab.limits)
 
 
-async def _zip_answer(write: Writing, id_: str, request: Request) -> Response:
-    try:
-        content = await run_in_threadpool(zip_of_campaign, write)
-    except StoreError as error:
-        return plain_page(Message("This cannot be exported"), error_sentence(error), 404, request)
-    return zip_download(content, f"campaign-{required_id(id_)}.zip")
-
-
-def entry_files(lab: Lab, id_: str) -> FilesInMemory:
-    """Files of an entered campaign in its current state."""
-    files = campaign_files(replay_journal(Journals(lab.store).entries(required_id(id_))))
-    return FilesInMemory({name: text.encode("utf-8") for name, text in files.items()})
-
-
-def kept_files(lab: Lab, id_: str) -> FilesInMemory:
-    """Files of an imported campaign with its corrections."""
+def files_in_memory(lab: Lab, kind: str, id_: str) -> FilesInMemory:
+    """Files of an entered campaign (kind ``entry``) as it is now, or of an imported one with its corrections."""
+    if kind == "entry":
+        texts = campaign_files(replay_journal(Journals(lab.store).entries(required_id(id_))))
+        return FilesInMemory({name: text.encode("utf-8") for name, text in texts.items()})
     stored, files = lab.store.contents(required_id(id_), READ_FILES)
     corrected = corrected_files(files, Journals(lab.store).corrections(stored.id))
-    return FilesInMemory(corrected, tuple(file.path for file in stored.files if _is_other(file.path)))
+    others = (file.path for file in stored.files if "/" not in file.path and file.path not in READ_FILES)
+    return FilesInMemory(corrected, tuple(others))
 
 
-def _is_other(path: str) -> bool:
-    return "/" not in path and path not in READ_FILES
-
-
-def write_entry(lab: Lab, id_: str, folder: Path) -> None:
-    """Write an entered campaign to a new folder."""
-    export_entered(lab.store, required_id(id_), folder)
-
-
-def write_kept(lab: Lab, id_: str, folder: Path) -> None:
-    """Write an imported campaign to a new folder: unchanged files, and the corrections."""
-    export_corrected(lab.store, required_id(id_), folder)
-
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from typing import TypeAlias
-
-    Writing: TypeAlias = Callable[[Path], None]
+def write_campaign(lab: Lab, kind: str, id_: str, folder: Path) -> None:
+    """Write an entered campaign (kind ``entry``), or an imported one with its corrections, to a new folder."""
+    (export_entered if kind == "entry" else export_corrected)(lab.store, required_id(id_), folder)
 
 
 FOLDER: Final = "imports"
@@ -132,18 +103,10 @@ _SAVED: Final = "saved:"
 ENDINGS: Final = (".xlsx", ".xlsm", ".csv", ".txt", ".tsv")
 
 
-@dataclass(frozen=True, slots=True)
-class TriedImport:
-    """A proposal, with name and H_V (N/mm³) of one series once it is complete."""
-
-    proposal: Proposal
-    hardness: tuple[str, float] | None
-
-
-def try_import(name: str, data: bytes, answers: Answers) -> TriedImport:
-    """Propose an import, and compute H_V of one series."""
+def try_import(name: str, data: bytes, answers: Answers) -> tuple[Proposal, tuple[str, float] | None]:
+    """Proposal of an import, with name and H_V (N/mm³) of one series once it is complete."""
     proposal = propose(name, data, answers)
-    return TriedImport(proposal, first_hardness(campaign_of_files(proposal.files)) if proposal.files else None)
+    return proposal, first_hardness(campaign_of_files(proposal.files)) if proposal.files else None
 
 
 class FileImports:

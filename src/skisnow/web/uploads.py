@@ -68,17 +68,13 @@ class Unpacking:
             at = tail.rindex(b"PK\5\6")
             *_, listed, _start, _comment = _END_RECORD.unpack_from(tail, at)
         if listed > self.limits.files * _BYTES_PER_NAME:
-            raise ParameterError("more than {most} files at once are not accepted").tag(
-                "too_many_files", most=self.limits.files
-            )
+            raise self._too_many_files()
         with _damage_errors():
             archive = zipfile.ZipFile(packed)
         with archive:
             members = [member for member in archive.infolist() if not member.filename.endswith("/")]
             if len(members) > self.limits.files:
-                raise ParameterError("more than {most} files at once are not accepted").tag(
-                    "too_many_files", most=self.limits.files
-                )
+                raise self._too_many_files()
             for member in members:
                 _require_plain(member)
                 self._write_file(member.filename, _unpacked_pieces(archive, member))
@@ -87,9 +83,7 @@ class Unpacking:
         place = self._safe_place(name)
         self._files += 1
         if self._files > self.limits.files:
-            raise ParameterError("more than {most} files at once are not accepted").tag(
-                "too_many_files", most=self.limits.files
-            )
+            raise self._too_many_files()
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
             with place.open("xb") as file:
@@ -110,6 +104,10 @@ class Unpacking:
             raise ParameterError("the file {file} is not accepted: its name is too long").tag(
                 "name_too_long", file=shown(name)
             ) from error
+
+    def _too_many_files(self) -> ParameterError:
+        most = self.limits.files
+        return ParameterError("more than {most} files at once are not accepted").tag("too_many_files", most=most)
 
     def _safe_place(self, name: str) -> Path:
         path = name.replace("\\", "/")

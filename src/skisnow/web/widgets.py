@@ -6,8 +6,9 @@ A large chart library takes half a second to load and 20 ms for each change of a
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal, TypeAlias
 
 from nicegui import ui
 from nicegui.element import Element
@@ -17,17 +18,11 @@ from .._support.messages import Message, decimal_sign, joined
 from ..report.formatting import significant
 from .elements import Words, button, named
 from .layout import error_sentence, heading, sentence
-from .runs import STATES, progress_words
+from .runs import STATES, Runs, progress_words
 from .words import language_of, said
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from typing import TypeAlias
-
-    from .runs import Runs
-
-    Act: TypeAlias = Callable[[Callable[[str], None], str], None]
-    """Function that calls a function of the queue with a job's name, and shows its errors."""
+Act: TypeAlias = Callable[[Callable[[], None]], None]
+"""Function that calls a function of the queue, and shows its errors."""
 
 DIGITS: Final = 5
 STYLES: Final = (
@@ -61,7 +56,7 @@ class LineChart(Element, component="line_chart.js"):
 
     x, y: labels of the axes with units.
     words: description for screen readers; the range of the values is added.
-    height: height in pixels.
+    height: in pixels.
     ends: texts at the left and right ends of the horizontal axis.
     """
 
@@ -154,7 +149,7 @@ class JobCard:
             self._words = sentence("", "quiet").props("aria-live=polite")
             self._progress = sentence("", "quiet progress")  # not announced, as it changes each second
             with ui.element("div").classes("acts"):
-                cancel = button(Message("Cancel"), lambda: act(runs.cancel, job.name))
+                cancel = button(Message("Cancel"), lambda: act(lambda: runs.cancel(job.name)))
                 self._cancel = named(cancel, Message("Cancel {name}", name=job.name))
                 self.add_buttons(job, act)
 
@@ -177,9 +172,8 @@ class JobCard:
 
 
 class JobList:
-    """Cards of all jobs, the newest first, updated every second.
+    """Cards of all jobs of a queue, the newest first, updated every second.
 
-    runs: the queue.
     card: factory of the card of a job, from the queue, the job and an `Act`.
     nothing: sentence without a job.
     """
@@ -207,9 +201,9 @@ class JobList:
                 card.place.move(target_index=index)
             self._cards[job.name].show(job)
 
-    def _act_and_show(self, act: Callable[[str], None], name: str) -> None:
+    def _act_and_show(self, act: Callable[[], None]) -> None:
         try:
-            act(name)
+            act()
         except ParameterError as error:
             ui.notify(said(error_sentence(error)))
         self.show()

@@ -12,7 +12,7 @@ from typing import Final
 from nicegui import run, ui
 
 from ..._support.errors import StoreError
-from ..._support.messages import Message
+from ..._support.messages import Message, template
 from ...campaign import write_reference
 from ...campaign.importing.folder import RECORD
 from ...campaign.store import Journals, StoredCampaign
@@ -90,8 +90,10 @@ def _list_drafts(lab: Lab) -> None:
     for head in reversed(heads):
         try:
             session = EditSession(lab, head.id)
-        except StoreError as error:
-            _add_damaged(head.id, error)
+        except StoreError as error:  # the campaign is damaged
+            with ui.element("section").classes("card"):
+                heading(head.id, 3)
+                sentence(error.message, "bad")
             continue
         tests = [test for test in session.campaign.tests.values() if test.rows and test.file in TABLES]
         with ui.element("section").classes("card"):
@@ -108,12 +110,6 @@ def _list_drafts(lab: Lab) -> None:
                 link(Message("Export"), export("entry", head.id))
 
 
-def _add_damaged(id_: str, error: StoreError) -> None:
-    with ui.element("section").classes("card"):
-        heading(id_, 3)
-        sentence(error.message, "bad")
-
-
 def _list_imported(lab: Lab) -> None:
     heading(Message("Imported"))
     stored = lab.store.list()
@@ -122,30 +118,19 @@ def _list_imported(lab: Lab) -> None:
     for campaign in reversed(stored):
         with ui.element("section").classes("card"):
             heading(campaign.name, 3)
-            sentence(
-                Message(
-                    "{id} · added {minute_words} · {check_result}",
-                    id=campaign.id,
-                    minute_words=minute_words(campaign.added_at),
-                    check_result=_check_result(campaign),
-                ),
-                "quiet",
-            )
+            added, result = minute_words(campaign.added_at), _check_result(campaign)
+            words = template("{id} · added {minute_words} · {check_result}")
+            sentence(Message(words, id=campaign.id, minute_words=added, check_result=result), "quiet")
             with ui.element("div").classes("acts"):
                 link(Message("Correct"), correction_address(campaign.id))
                 link(Message("Analysis"), analysis("kept", campaign.id))
                 link(Message("Export"), export("kept", campaign.id))
-                if _is_undoable(lab, campaign):
-                    button(Message("Undo the import"), partial(_remove_campaign, lab, campaign.id), once=True)
+                is_from_other_layout = any(file.path == RECORD for file in campaign.files)
+                if is_from_other_layout and not Journals(lab.store).corrections(campaign.id):
+                    button(Message("Undo the import"), partial(_undo_import, lab, campaign.id), once=True)
 
 
-def _is_undoable(lab: Lab, campaign: StoredCampaign) -> bool:
-    """True for a campaign from a file in another layout, without corrections."""
-    is_import = any(file.path == RECORD for file in campaign.files)
-    return is_import and not Journals(lab.store).corrections(campaign.id)
-
-
-def _remove_campaign(lab: Lab, id_: str) -> None:
+def _undo_import(lab: Lab, id_: str) -> None:
     lab.store.remove(id_)
     ui.navigate.to(PATH)
 

@@ -36,17 +36,13 @@ class _CarvePage(CarvedTurn):
         super().__init__(solver)
         self._skis = skis
         names = skis.names()
-        first, other = (
-            name if name in names else otherwise
-            for name, otherwise in zip(names_in_address, (names[0], NOTHING), strict=True)
-        )
+        first, other = names_in_address
         with ui.element("div").classes("carving"):
             with ui.element("section"):
                 with ui.element("div").classes("fields large"):
-                    self._ski = choice(Message("Ski"), names, first)
-                    self._other = choice(
-                        Message("Compared with"), {NOTHING: Message("nothing"), **{name: name for name in names}}, other
-                    )
+                    self._ski = choice(Message("Ski"), names, first if first in names else names[0])
+                    others = {NOTHING: Message("nothing"), **{name: name for name in names}}
+                    self._other = choice(Message("Compared with"), others, other if other in others else NOTHING)
                     self._ratio = choice(Message("Unloading ratio k_u/H_V"), RATIOS, "10")
                     self.snow = SnowChoice(lab, NUMBERS, self.update_snow)
                 link(Message("Add or change a ski"), SKIS)
@@ -62,7 +58,5 @@ class _CarvePage(CarvedTurn):
 
     def asked(self) -> CarveInputs:
         """Each chosen ski in the same turn."""
-        snow = self.snow.chosen()
-        turn = self.turn(snow) | {"unloading_ratio": float(str(self._ratio.value))}
-        skis = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]
-        return CarveInputs([{"ski": self._skis.word(name), **turn} for name in skis], snow)
+        names = [str(name) for name in (self._ski.value, self._other.value) if name != NOTHING]
+        return self.inputs(map(self._skis.word, names), float(str(self._ratio.value)))

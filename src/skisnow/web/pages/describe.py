@@ -72,7 +72,13 @@ def add_page(lab: Lab) -> None:
 
             with ui.element("div").classes("acts end"):
                 asking_button(Message("Store and enter tests"), done, "main")
-            _restore_rows_on_reload(described)
+            client = ui.context.client
+
+            def restore_rows(event: GenericEventArguments) -> None:
+                described.grow(event.args)
+                client.run_javascript("lab.grown()")
+
+            ui.on("grow", restore_rows)
 
 
 def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
@@ -80,20 +86,9 @@ def _show_refusal(status: StatusLine, error: SkisnowError) -> None:
         errors = [problem for problem in error.problems if isinstance(problem, Problem) and problem.severity == "error"]
         status.say(Message("Not stored:"), "bad", [problem.text(language_of()) for problem in errors])
     else:
-        status.say(
-            error.message if isinstance(error, OvertakenError) else Message("Not stored: {error}", error=error), "bad"
-        )
+        is_overtaken = isinstance(error, OvertakenError)
+        status.say(error.message if is_overtaken else Message("Not stored: {error}", error=error), "bad")
     status.run_method("scrollIntoView")
-
-
-def _restore_rows_on_reload(described: DescriptionForm) -> None:
-    client = ui.context.client
-
-    def grow(event: GenericEventArguments) -> None:
-        described.grow(event.args)
-        client.run_javascript("lab.grown()")
-
-    ui.on("grow", grow)
 
 
 def _store_description(lab: Lab, session: EditSession | None, text: str, once: str | None) -> str:
@@ -162,9 +157,8 @@ class DescriptionForm:
     def text(self) -> str:
         """Text of campaign.toml; errors as in `description_text`."""
         observers = [name.strip() for name in (self._observers.value or "").split(",") if name.strip()]
-        loads = [
-            typed_number(Message("the loads"), word) for word in (self._loads.value or "").replace(";", " ").split()
-        ]
+        words = (self._loads.value or "").replace(";", " ").split()
+        loads = [typed_number(Message("the loads"), word) for word in words]
         values: dict[str, Any] = {"name": (self._name.value or "").strip(), "place": (self._place.value or "").strip()}
         if not values["name"]:
             raise ParameterError("the campaign has no name").tag("no_name")
@@ -212,14 +206,8 @@ class EntryRows:
             if self.kind == "tool":
                 shape = choice(Message(_SHAPE, number=number), SHAPE_WORDS, values.get("shape", "ski"))
             keys = LENGTHS_OF_SHAPES if shape is not None else {"length_mm": LENGTHS["length_mm"]}
-            lengths = {
-                key: field(
-                    Message(_LENGTH_OF[self.kind], length=words, number=number),
-                    _number_text(values.get(key)),
-                    numeric=True,
-                )
-                for key, words in keys.items()
-            }
+            names = {key: Message(_LENGTH_OF[self.kind], length=words, number=number) for key, words in keys.items()}
+            lengths = {key: field(words, _number_text(values.get(key)), numeric=True) for key, words in names.items()}
         self._rows.append((name, shape, lengths))
         if shape is not None:
             shape.on_value_change(lambda: _show_lengths(shape, lengths))
@@ -237,13 +225,9 @@ class EntryRows:
             if shape is not None:
                 entry["shape"] = shape.value
             used = SHAPES[shape.value].lengths if shape is not None else lengths
-            entry |= {
-                key: typed_number(
-                    Message("{length} of {name}", length=LENGTHS_OF_SHAPES[key], name=entry["name"]),
-                    lengths[key].value or "",
-                )
-                for key in used
-            }
+            for key in used:
+                words = Message("{length} of {name}", length=LENGTHS_OF_SHAPES[key], name=entry["name"])
+                entry[key] = typed_number(words, lengths[key].value or "")
             entries.append(entry)
         return entries
 

@@ -146,7 +146,7 @@ class _DesignPage(CarvedTurn):
         with ui.element("div").classes("acts"):
             self._name = field(Message("New name"))
             button(Message("Save in the lab"), self._save_ski, once=True)
-            button(Message("Download the file"), self._download_ski)
+            button(Message("Download the file"), lambda: ui.download(keys_text(self._designed_keys()).encode(), FILE))
         self._saved = Outcome()
 
     def _reset_sliders(self) -> None:
@@ -163,12 +163,8 @@ class _DesignPage(CarvedTurn):
 
     def asked(self) -> CarveInputs:
         """The designed ski and its competitor in the same turn."""
-        snow = self.snow.chosen()
-        turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
-        skis: list[Any] = [self._designed_keys()]
-        if self._other.value != NOTHING:
-            skis.append(self._skis.word(str(self._other.value)))
-        return CarveInputs([{"ski": ski, **turn} for ski in skis], snow)
+        other = [] if self._other.value == NOTHING else [self._skis.word(str(self._other.value))]
+        return self.inputs([self._designed_keys(), *other], UNLOADING_RATIO)
 
     def fact(self, key: str, answer: dict[str, Any]) -> float | None:
         """Greatest force, deflection at one place, or a number of the answer."""
@@ -184,9 +180,7 @@ class _DesignPage(CarvedTurn):
         self._search.disable()
         try:
             target = typed_number(Message("the wanted radius"), str(self._target.value or ""))
-            snow = self.snow.chosen()
-            turn = self.turn(snow) | {"unloading_ratio": UNLOADING_RATIO}
-            inputs = CarveInputs([{"ski": self._designed_keys(without=(SIDECUT, STIFFNESS)), **turn}], snow)
+            inputs = self.inputs([self._designed_keys(without=(SIDECUT, STIFFNESS))], UNLOADING_RATIO)
             design = await run.io_bound(found_design, inputs, target)
         except SkisnowError as error:
             self._found.say(error_sentence(error), bad=True)
@@ -210,9 +204,6 @@ class _DesignPage(CarvedTurn):
             return
         self._other.set_options(option_texts(_other_skis(self._skis)))
         self._saved.say(Message("Saved: {name}. Carve and Simulate have it too.", name=name))
-
-    def _download_ski(self) -> None:
-        ui.download(keys_text(self._designed_keys()).encode(), FILE)
 
 
 def _other_skis(skis: LabSkis) -> dict[str, str]:

@@ -23,7 +23,7 @@ from ..elements import Outcome, Words, add_head, add_items, button, choice, fiel
 from ..layout import error_sentence, heading, page_frame, sentence
 from ..settings import BUILD_S, Lab
 from ..subprocesses import BOUNDS, confined
-from ..transfer import FileImports, TriedImport, try_import
+from ..transfer import FileImports, try_import
 from ..words import TABLES, label, number_text, said
 
 PATH: Final = "/import/{id_}"
@@ -32,8 +32,6 @@ NONE: Final = "-"
 LEFT_OUT: Final = Message("excluded")
 TEXT: Final = Message("kept as text")
 IS_OPEN: Final = "(event) => emit(event.target.open)"
-YES: Final = Message("yes")
-NO: Final = Message("no")
 _SHOWN_ROWS: Final = 4
 _READABLE: Final = 6
 """Characters of a number with five digits and a decimal sign."""
@@ -76,7 +74,7 @@ class _ImportPage:
     imports: FileImports
     id_: str
     answers: Answers = dataclass_field(default_factory=Answers)
-    tried: TriedImport | None = None
+    proposal: Proposal | None = None
     _open: set[str] = dataclass_field(default_factory=set)
     """Tables whose layout is shown."""
 
@@ -97,17 +95,16 @@ class _ImportPage:
         """Propose again with the current answers, and show it."""
         name, data = self.imports.content(self.id_)
         try:
-            self.tried = await run.io_bound(confined, BOUNDS, try_import, name, data, self.answers)
+            tried = await run.io_bound(confined, BOUNDS, try_import, name, data, self.answers)
         except SkisnowError as error:
             self._status.say(error_sentence(error), bad=True)
             self._store.set_enabled(False)
             return
-        if self.tried is None:  # the server ends
-            return
-        self._show_proposal(self.tried)
+        if tried is not None:  # otherwise the server ends
+            self._show_proposal(*tried)
 
-    def _show_proposal(self, tried: TriedImport) -> None:
-        proposal = tried.proposal
+    def _show_proposal(self, proposal: Proposal, hardness: tuple[str, float] | None) -> None:
+        self.proposal = proposal
         self._tables.clear()
         with self._tables:
             # one answer is for all tables with the same heading
@@ -116,17 +113,20 @@ class _ImportPage:
                 heading(Message("Questions"))
                 for question in reversed(questions.values()):
                     self._add_question(question)
-            _list_problems(proposal)
+            if problems := _further_problems(proposal):
+                heading(Message("Errors"))
+                with ui.element("ul").classes("errors"):
+                    add_items(problem.message for problem in problems)
             for table in proposal.tables:
                 self._table(table, proposal.tables)
                 if table.rows:
                     _show_rows(table)
         self._store.set_enabled(not proposal.problems)
         if proposal.problems:
-            count = len(questions) + len(_further_problems(proposal))
+            count = len(questions) + len(problems)
             self._status.say(Message("Not ready: {count} open questions or errors.", count=count), bad=True)
-        elif tried.hardness is not None:
-            series, value = tried.hardness
+        elif hardness is not None:
+            series, value = hardness
             self._status.say(Message("H_V of {series}: {value:.3f} N/mm³", series=series, value=value))
         else:
             self._status.say(Message("Ready."))
@@ -144,15 +144,12 @@ class _ImportPage:
                 made = choice(Message("Answer"), options, None)
                 made.on_value_change(lambda event: self._answer(question.option, question.key, event.value))
                 if question.proposed:
-                    self._add_proposal_button(question)
+                    proposal = Message("Proposal: {text}", text=_choice_words(question.proposed))
+                    button(proposal, lambda: self._answer(question.option, question.key, question.proposed), "small")
             else:
                 typed = field(words, question.proposed)
                 with ui.element("div").classes("acts"):
                     button(Message("Use this"), lambda: self._answer(question.option, question.key, str(typed.value)))
-
-    def _add_proposal_button(self, question: Question) -> None:
-        words = Message("Proposal: {text}", text=_choice_words(question.proposed))
-        button(words, lambda: self._answer(question.option, question.key, question.proposed), "small")
 
     def _table(self, table: ImportedTable, tables: Sequence[ImportedTable]) -> None:
         """Choices of a table: its kind, a column for each heading, and the units that are stated."""
@@ -168,15 +165,11 @@ class _ImportPage:
             self._site(table, tables)
         words = Message("Kind of table, row of the headings, units and tool")
         key = table.section.key
-        with (
-            folded(words, is_open=key in self._open).on(
-                "toggle",
-                lambda event: self._open.add(key) if event.args else self._open.discard(key),
-                js_handler=IS_OPEN,
-            ),
-            ui.element("div").classes("inputs"),
-        ):
+        with folded(words, is_open=key in self._open) as layout, ui.element("div").classes("inputs"):
             self._layout(table, kind)
+        layout.on(
+            "toggle", lambda event: (self._open.add if event.args else self._open.discard)(key), js_handler=IS_OPEN
+        )
 
     def _layout(self, table: ImportedTable, kind: str) -> None:
         """Choices of a table that its file states: kind, row of the headings, units, and tool or plate."""
@@ -196,12 +189,12 @@ class _ImportPage:
                 made.on_value_change(lambda event, key=key: self._answer("unit", key, event.value))
         for name in ("tool", "plate"):
             if name in table.form.names and (answer := getattr(self.answers, name).get("")):
-                self._typed_answer(field(label(name), answer), name, "")
+                self._add_typed_answer(label(name), answer, name, "")
 
-    def _typed_answer(self, typed: ui.input, option: str, key: str) -> None:
-        """Answer with the text of a field once it is left with another one."""
-        before = typed.value
-        typed.on("blur", lambda: self._answer(option, key, str(typed.value)) if typed.value != before else None)
+    def _add_typed_answer(self, words: str, text: str, option: str, key: str) -> None:
+        """Field whose text is the answer once it is left with another one."""
+        typed = field(words, text)
+        typed.on("blur", lambda: self._answer(option, key, str(typed.value)) if typed.value != text else None)
 
     async def _move_headings(self, section: Section, kind: str, row: str) -> None:
         if row.isdecimal() and int(row) != section.header + 1:
@@ -217,7 +210,7 @@ class _ImportPage:
         on_sheet = [other for other in tables if other.section.sheet.name == sheet and other.rows]
         differ = any(other.rows[0].cells.get("site") != site for other in on_sheet)
         key = table.section.key if differ else sheet
-        self._typed_answer(field(Message("Site of the sheet {sheet}", sheet=key), site), "site", key)
+        self._add_typed_answer(Message("Site of the sheet {sheet}", sheet=key), site, "site", key)
 
     async def _answer(self, option: str, key: str, value: str) -> None:
         self.answers = self.answers.with_(option, key, value)
@@ -234,9 +227,9 @@ class _ImportPage:
         self._status.say(Message("Template saved for the next campaign: {name}", name=self._name.value))
 
     def _ready_files(self) -> Mapping[str, bytes]:
-        if self.tried is None or self.tried.proposal.problems:
+        if self.proposal is None or self.proposal.problems:
             raise ParameterError("Answer the questions first.").tag("not_ready")
-        return self.tried.proposal.files
+        return self.proposal.files
 
     async def _keep_campaign(self) -> None:
         added = await run.io_bound(self.imports.store, self.id_, self._ready_files())
@@ -275,22 +268,14 @@ def _question_words(question: Question) -> Message:
 
 
 def _choice_words(text: str) -> str:
-    if text in {"yes", "no"}:
-        return said(YES if text == "yes" else NO)
-    return said(LEFT_OUT) if text == NONE else said(TABLES.get(f"{text}.csv", label(text)))
+    words = {"yes": Message("yes"), "no": Message("no"), NONE: LEFT_OUT}
+    return said(words[text] if text in words else TABLES.get(f"{text}.csv", label(text)))
 
 
 def _further_problems(proposal: Proposal) -> list[Problem]:
     """Errors that no question of the proposal is about."""
     asked_problems = [question.problem for question in proposal.questions]
     return [problem for problem in proposal.problems if problem not in asked_problems]
-
-
-def _list_problems(proposal: Proposal) -> None:
-    if problems := _further_problems(proposal):
-        heading(Message("Errors"))
-        with ui.element("ul").classes("errors"):
-            add_items(problem.message for problem in problems)
 
 
 def _show_rows(table: ImportedTable) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from pathlib import Path
 from typing import Final
-from urllib.parse import quote
 
 from nicegui import app, ui
 
@@ -17,7 +16,7 @@ from ...report.track.summary import GPX_FILE, TURNS_FILE
 from ..elements import Outcome, Words, button, folded, link, named
 from ..lab_tracks import LARGEST_TRACK_BYTES, MOST_POINTS, TrackFolders
 from ..layout import error_sentence, heading, page_frame, sentence
-from ..page_requests import file_input, submit_button, text_input, upload_form
+from ..page_requests import address, file_input, submit_button, text_input, upload_form
 from ..replay_addresses import (
     GATES,
     LIST,
@@ -67,14 +66,14 @@ def add_page(lab: Lab) -> None:
                 heading(Message("Measured tracks"), 2)
                 _two_tracks_form(list(placings))
             for name, placing in placings.items():
-                query = f"?track={quote(name, safe='')}"
                 files = {TURNS_FILE: Message("Turns as CSV")}
                 if placing.is_geodetic:
                     files[GPX_FILE] = Message("Track as GPX")
                 with ui.element("div").classes("acts"):
-                    link(Message("Turns of {name}", name=name), f"{TURNS}{query}")
+                    link(Message("Turns of {name}", name=name), address(TURNS, track=name))
                     for file, words in files.items():
-                        named(link(words, f"{TURNS}/{file}{query}"), Message("{words}: {name}", words=words, name=name))
+                        table = link(words, address(f"{TURNS}/{file}", track=name))
+                        named(table, Message("{words}: {name}", words=words, name=name))
                     _removal(tracks, name)
             for name in names:
                 _add_run(runs.folder_of(name), name, runs.title(name))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING, Any, Final
-from urllib.parse import quote
+from typing import Any, Final
 
 from nicegui import app, background_tasks, run, ui
+from starlette.datastructures import FormData
 
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
@@ -17,22 +17,14 @@ from ..elements import Outcome, Words, button, choice, field, folded, link, name
 from ..lab_skis import LabSkis
 from ..lab_tracks import LabCourses
 from ..layout import error_sentence, heading, page_frame, sentence
-from ..page_requests import add_upload, file_input, redrawn_by, submit_button, upload_form, uploaded_files
+from ..page_requests import add_upload, address, file_input, redrawn_by, submit_button, upload_form, uploaded_files
 from ..replay_addresses import show_address
-from ..runs import Job, Runs, duration_words, estimated_s
+from ..runs import Job, Runs, duration_words
 from ..scenario_fields import ScenarioField, field_label, in_labels
-from ..snow_choice import SnowChoice, require_scenario, results_and_snow_words, snow_words
-from ..widgets import JobCard, JobList
+from ..settings import Lab
+from ..snow_choice import ChosenSnow, SnowChoice, require_scenario, results_and_snow_words, snow_words
+from ..widgets import Act, JobCard, JobList
 from ..words import language_of, number_text
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from starlette.datastructures import FormData
-
-    from ..settings import Lab
-    from ..snow_choice import ChosenSnow
-    from ..widgets import Act
 
 PATH: Final = "/simulate"
 TITLE: Final = Message("Simulate")
@@ -114,11 +106,10 @@ class _Form:
         with ui.element("div").classes("fields"):
             is_known = course in self._courses.names()
             self._scenario = choice(Message("Scenario"), names, _FOR_COURSE if is_known else names[0])
-            self._course = choice(
-                Message("Course"), menu_with_default(self._courses.names()), course if is_known else GIVEN
-            )
+            courses = menu_with_default(self._courses.names())
+            self._course = choice(Message("Course"), courses, course if is_known else GIVEN)
             self._ski = choice(Message("Ski"), menu_with_default(self._skis.names()), GIVEN)
-            self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
+            self._snow = SnowChoice(lab, NUMBERS, self._show_numbers)
         self._scenario.on_value_change(self._draw_fields)
         with redrawn_by(self._scenario):
             self._basic = ui.element("div").classes("inputs")
@@ -150,15 +141,8 @@ class _Form:
         with self._basic:
             for name in basic(values):
                 add(name)
-        is_open = bool(typed.keys() - set(basic(values)))
-        with self._expert, folded(Message("Expert inputs"), is_open=is_open).classes("expert"):
-            for section in SECTIONS:
-                names = [name for name in expert(values) if name.startswith(f"{section}.")]
-                if names:
-                    heading(SECTION_WORDS[section], 3)
-                    with ui.element("div").classes("inputs"):
-                        for name in names:
-                            add(name)
+        with self._expert:
+            add_expert_fields(values, SECTIONS, add, is_open=bool(typed.keys() - set(basic(values))))
         self._show_numbers()
         self._show_estimate()
 
@@ -172,9 +156,6 @@ class _Form:
         if self._snow.is_numbers and not typed.keys().isdisjoint(OF_SNOW):
             typed = {name: self._fields[name].text for name in OF_SNOW if self._fields[name].text} | typed
         return typed
-
-    async def _update_snow(self) -> None:
-        self._show_numbers()
 
     def _show_numbers(self) -> None:
         for name, is_given in zip(OF_SNOW, (self._snow.gives_hardness, self._snow.gives_stress), strict=True):
@@ -190,10 +171,9 @@ class _Form:
             except ValueError:
                 values[name] = None
         values["solver.method"] = self._fields["solver.method"].text
-        seconds = estimated_s(self._runs.folder, self._runs.jobs(), values)
-        self._estimate.set_text(
-            "" if seconds is None else Message("Takes about {duration_words}.", duration_words=duration_words(seconds))
-        )
+        seconds = self._runs.estimated_s(values)
+        words = "" if seconds is None else duration_words(seconds)
+        self._estimate.set_text(words and Message("Takes about {duration_words}.", duration_words=words))
 
     async def ask(self) -> None:
         """Add the simulation to the queue if its values are valid."""
@@ -236,19 +216,14 @@ class _Form:
                 changes["snow.published"] = snow.published
                 chosen.append(Message("snow: {name}, {values}", name=snow.words, values=snow_words(snow.snow)))
             await run.io_bound(require_scenario, scenario, changes)
+        parts = [scenario.replace("-", " "), ski if ski != GIVEN else "", _ID.sub("", snow.words) if snow else ""]
         return self._runs.ask(
             scenario,
             changes,
             files=files,
             given="; ".join(map(str, chosen)),
             language=language_of(self._ski.client),
-            title=" ".join(
-                (
-                    scenario.replace("-", " "),
-                    *([ski] if ski != GIVEN else []),
-                    *([_ID.sub("", snow.words)] if snow else []),
-                )
-            ),
+            title=" ".join(filter(None, parts)),
         )
 
     def _give_course(self, course: str, changes: dict[str, str]) -> str:
@@ -288,6 +263,19 @@ def expert(values: Mapping[str, Any]) -> list[str]:
     return [name for name in SCENARIO_KEYS if name not in elsewhere and not name.startswith(missing)]
 
 
+def add_expert_fields(
+    values: Mapping[str, Any], sections: Iterable[str], add: Callable[[str], object], *, is_open: bool = False
+) -> None:
+    """Add the folded expert form of a scenario by sections; ``add`` adds the field of a key."""
+    with folded(Message("Expert inputs"), is_open=is_open).classes("expert"):
+        for section in sections:
+            if names := [name for name in expert(values) if name.startswith(f"{section}.")]:
+                heading(SECTION_WORDS[section], 3)
+                with ui.element("div").classes("inputs"):
+                    for name in names:
+                        add(name)
+
+
 def _has_skier(values: Mapping[str, Any]) -> bool:
     return values.get("skier.steers") is not None
 
@@ -295,7 +283,7 @@ def _has_skier(values: Mapping[str, Any]) -> bool:
 def _keep_course(courses: LabCourses, form: FormData) -> str:
     """Store an uploaded course; returns the address of the page with this course."""
     upload = uploaded_files(form, "file", Message("no file was chosen; choose the file of a course"))[0]
-    return f"{PATH}?course={quote(courses.keep((upload.filename or '')[:200], upload.file), safe='')}"
+    return address(PATH, course=courses.keep((upload.filename or "")[:200], upload.file))
 
 
 def _course_form() -> None:
@@ -319,16 +307,6 @@ def menu_with_default(names: Sequence[str]) -> dict[str, str]:
     return {GIVEN: Message("as in the scenario"), **{name: name for name in names}}
 
 
-def _changes_in_words(changes: dict[str, str]) -> str:
-    from ...scenario.keys import SCENARIO_KEYS
-
-    return ", ".join(f"{field_label(SCENARIO_KEYS[key])}: {number_text(value)}" for key, value in changes.items())
-
-
-def _rename_run(runs: Runs, title: ui.input, name: str) -> None:
-    runs.rename(name, str(title.value))
-
-
 class _Card(JobCard):
     """Card of a run."""
 
@@ -336,7 +314,7 @@ class _Card(JobCard):
         super().__init__(runs, job, act)
         with self.place, folded(Message("Rename")):
             title = field(Message("Name of the run"), job.shown_name)
-            button(Message("Use this name"), lambda: act(partial(_rename_run, runs, title), job.name))
+            button(Message("Use this name"), lambda: act(lambda: runs.rename(job.name, str(title.value))))
 
     def add_buttons(self, job: Job, act: Act) -> None:  # noqa: ARG002
         """Add the link to the replay."""
@@ -345,8 +323,11 @@ class _Card(JobCard):
 
     def inputs(self, job: Job) -> tuple[str, ...]:
         """Scenario, its changes, and inputs that were chosen by name."""
-        changed = {key: value for key, value in job.changes.items() if key not in GIVEN_BY_NAME}
-        return job.scenario, _changes_in_words(changed), job.given
+        from ...scenario.keys import SCENARIO_KEYS
+
+        changed = {SCENARIO_KEYS[key]: text for key, text in job.changes.items() if key not in GIVEN_BY_NAME}
+        words = ", ".join(f"{field_label(key)}: {number_text(text)}" for key, text in changed.items())
+        return job.scenario, words, job.given
 
     def show(self, job: Job) -> None:
         """Show the state of the run."""

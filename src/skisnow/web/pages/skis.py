@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import Final
-from urllib.parse import quote
 
 from nicegui import run, ui
 
 from ..._support.errors import SkisnowError
 from ..._support.messages import Message, current_language, translations
 from ...report.charts import SkiDrawing, ski_drawing
+from ..carved_turn import ENDS
 from ..elements import Outcome, button, choice, field, folded, link, named, option_texts
 from ..lab_skis import EDITED, FILE, NOTHING, TABLE, LabSkis, check_ski_texts, texts_of_ski
 from ..layout import error_sentence, heading, page_frame, sentence
-from ..page_requests import carve_address
+from ..page_requests import address
 from ..settings import BUILD_S, Lab
 from ..ski_editor import EditedSki, SkiEditInput, SkiEditor, SkiImportForms, edit_ski_texts
 from ..subprocesses import SKI_BOUNDS, confined
@@ -45,10 +45,6 @@ def add_page(lab: Lab) -> None:
         await page.draw()
 
 
-def _check_confined(text: str, table: str) -> None:
-    confined(SKI_BOUNDS, check_ski_texts, text, table)
-
-
 def _others(names: Sequence[str]) -> dict[str, str]:
     """Options of the ski to compare with."""
     return {NOTHING: Message("nothing"), EDITED: Message("the edited ski"), **{name: name for name in names}}
@@ -67,21 +63,13 @@ class _SkisPage:
                 with ui.element("div").classes("fields"):
                     self._first = choice(Message("Ski"), names, chosen)
                     self._second = choice(Message("Compared with"), _others(names), NOTHING)
-                SkiImportForms(skis, lambda name: ui.navigate.to(f"{PATH}?ski={quote(name, safe='')}&added=1"))
+                SkiImportForms(skis, lambda name: ui.navigate.to(address(PATH, ski=name, added="1")))
                 self._told = ui.element("div")
             with named(ui.element("section").classes("curves"), Message("Drawing")):
                 self._status = Outcome()
                 self._facts = ui.element("div").classes("table")
-                self._charts = {
-                    key: LineChart(
-                        ALONG,
-                        title,
-                        Message("{title} along the ski", title=title),
-                        height=200,
-                        ends=(Message("tail"), Message("tip")),
-                    )
-                    for key, title in PANELS.items()
-                }
+                titles = {key: (title, Message("{title} along the ski", title=title)) for key, title in PANELS.items()}
+                self._charts = {key: LineChart(ALONG, *title, height=200, ends=ENDS) for key, title in titles.items()}
                 with folded(Message("Source")):
                     self._sources = ui.element("div")
             with named(ui.element("section"), Message("Editor")):
@@ -93,7 +81,7 @@ class _SkisPage:
 
     def _add_saving(self) -> None:
         with ui.element("div").classes("acts"):
-            button(Message("Begin again from the ski above"), self._begin_edit)
+            button(Message("Begin again from the ski above"), lambda: self._editor.begin(str(self._first.value)))
         heading(Message("Save it"), 3)
         with ui.element("div").classes("fields"):
             self._name = field(Message("New name"))
@@ -102,9 +90,6 @@ class _SkisPage:
             button(Message("Download the file"), self._download)
         self._saved = Outcome()
         self._next = ui.element("div").classes("acts")
-
-    async def _begin_edit(self) -> None:
-        await self._editor.begin(str(self._first.value))
 
     async def _follow(self) -> None:
         """Show the edited ski after a change of the editor's fields."""
@@ -136,7 +121,7 @@ class _SkisPage:
         """Check a new text of a ski in a separate process with limits."""
         texts = (edit.text, edit.table)
         if texts != self._checked:
-            await run.io_bound(_check_confined, *texts)
+            await run.io_bound(confined, SKI_BOUNDS, check_ski_texts, edit.text, edit.table)
             self._checked = texts
 
     def _edited_skis(self, words: list[str], edit: SkiEditInput) -> tuple[list[EditedSki], EditedSki]:
@@ -175,7 +160,7 @@ class _SkisPage:
         first = str(self._first.value)
         self._next.clear()
         with self._next:
-            link(Message("Carve both side by side"), carve_address(first, name), "main")
+            link(Message("Carve both side by side"), address("/carve", ski=first, other=name), "main")
 
     def show_added(self, name: str) -> None:
         """Show that a measured ski was added."""

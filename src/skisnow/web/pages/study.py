@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from nicegui import app, background_tasks, run, ui
 
 from ..._support.errors import ParameterError, SkisnowError
 from ..._support.messages import Message
 from ...estimation.results import results_json
+from ...parameters import InputValue
 from ...report.campaign.page import RESULTS
 from ..carved_turn import OF_SNOW as CARVE_SNOW
 from ..carved_turn import SLIDERS
-from ..elements import Outcome, Words, button, choice, folded, link, named, option_texts
+from ..elements import Outcome, Words, button, choice, link, named, option_texts
 from ..lab_skis import FILE, TABLE, LabSkis
 from ..layout import error_sentence, heading, page_frame, sentence
 from ..page_requests import redrawn_by
 from ..runs import Runs
 from ..scenario_fields import ScenarioField, field_label, in_labels
+from ..settings import Lab
 from ..snow_choice import SnowChoice
-from ..studies import Studies, StudyJob, estimate_words, unit_s
+from ..studies import Studies, StudyJob, unit_s
 from ..study_fields import CARVE, AxisFields, StudyQuestion, study_keys
-from ..widgets import JobCard, JobList
+from ..widgets import Act, JobCard, JobList
 from ..words import language_of, said, typed_number
-from .simulate import GIVEN, NUMBERS, SECTION_WORDS, basic, expert, menu_with_default
+from .simulate import GIVEN, NUMBERS, SECTION_WORDS, add_expert_fields, basic, expert, menu_with_default
 from .simulate import OF_SNOW as SCENARIO_SNOW
 from .study_table import table_address
-
-if TYPE_CHECKING:
-    from ...parameters import InputValue
-    from ..settings import Lab
-    from ..widgets import Act
 
 PATH: Final = "/study"
 TITLE: Final = Message("Study")
@@ -84,7 +81,7 @@ class _Form:
             )
             self._ski = choice(Message("Ski"), self._skis.names(), self._skis.names()[0])
             self._further = choice(Message("Further skis"), self._skis.names(), []).props("use-chips")
-            self._snow = SnowChoice(lab, NUMBERS, self._update_snow)
+            self._snow = SnowChoice(lab, NUMBERS, self._follow)
         self._of.on_value_change(self._draw_fields)
         self._further.on_value_change(self._follow)
         with redrawn_by(self._of):
@@ -138,17 +135,13 @@ class _Form:
 
         values = self._field_values()
 
-        def draw(names: list[str]) -> None:
-            with ui.element("div").classes("inputs"):
-                for name in names:
-                    self._add_field(ScenarioField(SCENARIO_KEYS[name], values.get(name), None))
+        def add(name: str) -> None:
+            self._add_field(ScenarioField(SCENARIO_KEYS[name], values.get(name), None))
 
-        draw(basic(values))
-        with folded(Message("Expert inputs")).classes("expert"):
-            for section, words in SECTION_WORDS.items():
-                if names := [name for name in expert(values) if name.startswith(f"{section}.")]:
-                    heading(words, 3)
-                    draw(names)
+        with ui.element("div").classes("inputs"):
+            for name in basic(values):
+                add(name)
+        add_expert_fields(values, SECTION_WORDS, add)
 
     def _add_field(self, made: ScenarioField) -> None:
         self._fields[made.key.name] = made
@@ -158,9 +151,6 @@ class _Form:
         from ...scenario import scenario_file
 
         return {} if self._is_carve else dict(scenario_file(str(self._of.value)).values)
-
-    async def _update_snow(self) -> None:
-        self._follow()
 
     def _numbers_from_snow(self) -> dict[str, bool]:
         """True for each number of the snow that the chosen snow gives, by key."""
@@ -177,11 +167,7 @@ class _Form:
         except ParameterError:
             self._estimate.set_text("")
             return
-        method, unit = self._unit()
-        words = estimate_words(
-            self._studies, self._runs.folder, self._runs.jobs(), points=points, method=method, unit=unit
-        )
-        self._estimate.set_text(words)
+        self._estimate.set_text(self._studies.estimate_words(self._runs, points, *self._unit()))
 
     def _unit(self) -> tuple[str, float]:
         """Solver, and time of a point with the middles of the ranges, see `unit_s`."""
@@ -286,7 +272,7 @@ class _Card(JobCard):
 
     def add_buttons(self, job: StudyJob, act: Act) -> None:
         """Add Go on, and the link to the table."""
-        go_on = button(Message("Go on"), lambda: act(self.runs.go_on, job.name))
+        go_on = button(Message("Go on"), lambda: act(lambda: self.runs.go_on(job.name)))
         self._go_on = named(go_on, Message("Go on with {name}", name=job.name))
         table = link(Message("Table and figure"), table_address(job.name), "main")
         self._table = named(table, Message("Table and figure of {name}", name=job.name))

@@ -135,7 +135,10 @@ class _ResultsView:
         self._chart.clear()
         with self._chart:
             chart = LineChart(x, y, Message("Chart of {y} over {x}", y=y, x=x), height=320)
-        chart.show([self._chart_line(number, result) for number in self._order()])
+        count = len(self._lines)
+        styles = {self._lines[number]: style for style, number in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
+        order = [*(line for line in self._lines if line not in styles), *styles]  # lines with names are on top
+        chart.show([self._chart_line(line, styles.get(line, BEHIND), result) for line in order])
 
     def _line_of(self, row: dict[str, Any]) -> tuple[Any, ...]:
         """Values that the points of a line share."""
@@ -144,24 +147,16 @@ class _ResultsView:
     def _input_name(self, name: str) -> str:
         return Message("Ski") if name == SKI else field_label(self._keys[name])
 
-    def _order(self) -> list[int]:
-        """Order of drawing: the first, middle and last lines, which have names, are on top."""
-        count = len(self._lines)
-        named = list(dict.fromkeys((0, count // 2, count - 1)))
-        return [*(number for number in range(count) if number not in named), *named]
-
-    def _chart_line(self, number: int, result: str) -> ChartLine:
-        values, count = self._lines[number], len(self._lines)
+    def _chart_line(self, values: tuple[Any, ...], style: int, result: str) -> ChartLine:
+        """Line of the points that share values; only lines that are not in the background have a name."""
         rows = [row for row in self._table.rows if self._line_of(row) == values]
         rows.sort(key=lambda row: row[self._x])
-        styles = {column: style for style, column in enumerate(dict.fromkeys((0, count // 2, count - 1)))}
         words = [
             value if name == SKI else f"{said(self._input_name(name))}: {_short(value)}"
             for name, value in zip(self._others, values, strict=True)
         ]
-        name = ", ".join(words) if number in styles else ""
         x, y = ([row[column] for row in rows] for column in (self._x, result))
-        return ChartLine(x, y, styles.get(number, BEHIND), name=name)
+        return ChartLine(x, y, style, name="" if style == BEHIND else ", ".join(words))
 
     def _add_table(self, study: Study) -> None:
         heading(Message("Table"))

@@ -98,7 +98,7 @@ def test_a_campaign_that_is_being_entered_is_given_out_as_it_stands(desk: Desk) 
     files = {name: text.encode() for name, text in campaign_files(replay_journal(journals.entries(id_))).items()}
     found = {name.removeprefix("campaign/"): content for name, content in unpacked(exported.content).items()}
     assert {name: found[name] for name in files} == files
-    assert transfer.entry_files(desk.lab, id_).contents == files
+    assert transfer.files_in_memory(desk.lab, "entry", id_).contents == files
     assert b"ski piece" in files["penetration.csv"]
 
 
@@ -115,7 +115,7 @@ def test_files_that_no_campaign_reads_are_named_and_not_read(desk: Desk, tmp_pat
     for name, content in {**FILES, "photo.jpg": b"x", "notes/a.txt": b"x"}.items():
         (tmp_path / name).write_bytes(content)
     id_ = desk.lab.store.add(tmp_path).id
-    found = transfer.kept_files(desk.lab, id_)
+    found = transfer.files_in_memory(desk.lab, "kept", id_)
     assert found.contents == FILES
     assert found.others == ("photo.jpg",)
 

@@ -17,7 +17,7 @@ from skisnow._support.processes.kept_rows import KeptRows
 from skisnow.web import runs as runs_module
 from skisnow.web import studies as studies_module
 from skisnow.web import widgets
-from skisnow.web.runs import Job, Runs, duration_words, estimated_s, new_name, simulated_s, slowness
+from skisnow.web.runs import Job, Runs, duration_words, new_name, simulated_s
 from skisnow.web.studies import Studies, StudyJob, measured_slowness, unit_s
 from skisnow.web.study_fields import CARVE, Range, StudyQuestion
 from tests.coded import raises
@@ -340,11 +340,11 @@ def run(folder: Path, name: str, took: float, wall: float, simulated: float, met
     return Job(name, "a", {}, "2026", state="done", took_s=took)
 
 
-def test_how_long_a_run_takes_is_learned_from_the_last_five(tmp_path: Path) -> None:
+def test_how_long_a_run_takes_is_learned_from_the_last_five(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """12 s of computing for 5 s with the method; 3.2 s around each."""
-    values = {"run.duration_s": 10.0, "solver.method": "fast"}
-    assert estimated_s(tmp_path, [], values) == 18.0
-    assert estimated_s(tmp_path, [], {}) is None
+    runs, values = Runs(tmp_path), {"run.duration_s": 10.0, "solver.method": "fast"}
+    assert runs.estimated_s(values) == 18.0
+    assert runs.estimated_s({}) is None
     told = [
         run(tmp_path, "a", 5.0, 4.0, 2.0),
         run(tmp_path, "b", 10.0, 8.0, 3.0),
@@ -361,10 +361,11 @@ def test_how_long_a_run_takes_is_learned_from_the_last_five(tmp_path: Path) -> N
         (tmp_path / f"h{number}").mkdir()
         (tmp_path / f"h{number}" / "summary.json").write_text(text, encoding="utf-8")
     jobs = [none, *damaged, replace(none, name="nowhere", took_s=1.0), *told]
-    assert slowness(tmp_path, jobs, "fast") == pytest.approx(12.0 / 5.0)
-    assert slowness(tmp_path, jobs, "default") == pytest.approx(2.0)
-    assert slowness(tmp_path, jobs, "accurate") == 1.0
-    assert estimated_s(tmp_path, jobs, values) == pytest.approx(24.0 + (1 + 2 + 4 + 4 + 5) / 5)
+    monkeypatch.setattr(runs, "jobs", lambda: jobs)
+    assert runs.slowness("fast") == pytest.approx(12.0 / 5.0)
+    assert runs.slowness("default") == pytest.approx(2.0)
+    assert runs.slowness("accurate") == 1.0
+    assert runs.estimated_s(values) == pytest.approx(24.0 + (1 + 2 + 4 + 4 + 5) / 5)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from nicegui import ui
 from skisnow.ski import read_ski, ski_names
 from skisnow.ski.editing import SkiEdit, edit_stations, edited_ski
 from skisnow.web.lab_skis import LabSkis, check_ski_texts, ski_of_texts
-from skisnow.web.page_requests import carve_address
+from skisnow.web.page_requests import address
 from skisnow.web.subprocesses import SKI_BOUNDS
 
 from ..desk import Desk, Sheet
@@ -209,7 +209,7 @@ def test_an_edited_ski_is_saved_and_compared(desk: Desk) -> None:
     page.press(SAVE)
     page.shows("[status good] Saved: my own. Carve and Simulate have it too.")
     page.shows("100 to 690 (carver, my own)")
-    assert page.link(BOTH) == carve_address("carver", "my own")
+    assert page.link(BOTH) == address("/carve", ski="carver", other="my own")
     assert page.field("Compared with").value == "my own"
     names = [*ski_names(), "my own"]
     assert list(page.field("Ski").options) == names
@@ -224,7 +224,7 @@ def test_an_edited_ski_is_saved_and_compared(desk: Desk) -> None:
     page.fill("New name", "second")
     page.press(SAVE)
     page.shows("[status good] Saved: second.")
-    page.until(lambda: page.link(BOTH) == carve_address("carver", "second"))
+    page.until(lambda: page.link(BOTH) == address("/carve", ski="carver", other="second"))
 
 
 @pytest.mark.parametrize(
