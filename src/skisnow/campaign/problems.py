@@ -90,17 +90,14 @@ class Problem:
         fields = {"place": place, "allowed": self.allowed, "action": self.action}
         if self.value is None:
             return Message("{place}: allowed: {allowed}. {action}", **fields)
-        return Message("{place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=_shorten(self.value))
+        value = self.value if len(self.value) <= LONGEST_VALUE else f"{self.value[:LONGEST_VALUE]}…"
+        return Message("{place}: found {value!r}; allowed: {allowed}. {action}", **fields, value=value)
 
     def as_dict(self) -> dict[str, str | int | None]:
         """Give the problem as the object of ``skisnow check --json``."""
         entry = asdict(self)
         del entry["needs_action"]
         return entry
-
-
-def _shorten(value: str) -> str:
-    return value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}…"
 
 
 error: Final = partial(Problem, "error")

@@ -119,12 +119,7 @@ def _is_below_resolution(depth: FloatArray, resolution: float | None) -> BoolArr
 
 
 def reading_at_largest_load(tests: PenetrationTests) -> IntArray:
-    """Number of the reading under the largest load of each series, the last one if the load is repeated.
-
-    Returns
-    -------
-    Index into ``tests.load`` and its like, one per experiment.
-    """
+    """Index into ``tests.load`` of each experiment's reading under its largest load, the last one of equal loads."""
     peak = np.maximum.reduceat(tests.load, tests.first[:-1]) if len(tests) else np.zeros(0)
     at_peak = np.flatnonzero(tests.load == np.repeat(peak, np.diff(tests.first)))
     last = np.zeros(len(tests), dtype=np.int64)
@@ -218,12 +213,6 @@ def _flagged_experiments(masks: Mapping[str, BoolArray]) -> Iterator[tuple[int, 
             yield index, codes[which]
 
 
-def _effect_of_flag(campaign: Campaign, code: str) -> Message:
-    if code in campaign.excluding:
-        return Message("The experiment is kept and counted, but not included in the estimates.")
-    return Message("The experiment is only flagged and included in the estimates; look at it.")
-
-
 def _resolution_limit(campaign: Campaign) -> Message:
     step = 0.0 if campaign.gauge_resolution is None else campaign.gauge_resolution
     return Message(
@@ -251,7 +240,11 @@ def _shear_problem(campaign: Campaign, index: int, code: str) -> Problem:
 def _flag(
     campaign: Campaign, code: str, file: str, row: int, name: str, column: str | None, value: str | None, allowed: str
 ) -> Problem:
-    action = _effect_of_flag(campaign, code)
+    action = (
+        Message("The experiment is kept and counted, but not included in the estimates.")
+        if code in campaign.excluding
+        else Message("The experiment is only flagged and included in the estimates; look at it.")
+    )
     return Problem(
         "flag", code, file, row=row, column=column, experiment=name, value=value, allowed=allowed, action=action
     )

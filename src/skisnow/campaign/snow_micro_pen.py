@@ -224,6 +224,7 @@ def _require_plausible_header(file: str, header: dict[str, Any], size: int) -> N
 def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> SnowMicroPenProfile:
     distance = header["sample_distance_mm"] * MM
     latitude, longitude = _position_or_none(header)
+    height = header["height_cm"]
     return SnowMicroPenProfile(
         file=file,
         name=_text(header["name"]),
@@ -235,7 +236,7 @@ def _make_profile(file: str, header: dict[str, Any], counts: FloatArray) -> Snow
         date_in_file_name=_date_in(file),
         latitude_deg=latitude,
         longitude_deg=longitude,
-        height=_height_or_none(header["height_cm"]),
+        height=None if height == _NO_HEIGHT_CM or not np.isfinite(height) else height * CM,
         speed=header["speed_mm_per_s"] * MM,
         tip_diameter=header["tip_diameter_um"] * _MICROMETRE,
         instrument_length=header["instrument_length_mm"] * MM,
@@ -276,7 +277,3 @@ def _position_or_none(header: dict[str, Any]) -> tuple[float, float] | tuple[Non
         return None, None
     # The magnitudes: a firmware that already wrote signs beside its flags would else lose them.
     return signs[north] * abs(latitude), signs[east] * abs(longitude)
-
-
-def _height_or_none(centimetres: float) -> float | None:
-    return None if centimetres == _NO_HEIGHT_CM or not np.isfinite(centimetres) else centimetres * CM

@@ -49,11 +49,10 @@ class Template:
         """Pairs of column and explanation."""
         for name in self.example:
             quantity = self.numbers.get(name)
-            yield name, WORDS.get(name, "") if quantity is None else f"{quantity.meaning}; {_allowed_in_unit(quantity)}"
-
-
-def _allowed_in_unit(quantity: Quantity) -> str:
-    return f"{allowed_words(quantity)} in {quantity.unit}"
+            if quantity is None:
+                yield name, WORDS.get(name, "")
+            else:
+                yield name, f"{quantity.meaning}; {allowed_words(quantity)} in {quantity.unit}"
 
 
 WORDS: Final = {
@@ -210,21 +209,11 @@ WORKBOOK: Final = "campaign.xlsx"
 def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path, ...]:
     """Write a template of a campaign; in a folder with tables only campaign.toml.
 
-    Parameters
-    ----------
-    folder
-        Folder, created if necessary; its name is that of the campaign.
-    xlsx
-        True for a workbook instead of campaign.toml and four tables.
-
-    Returns
-    -------
-    Paths of the files. Each table has an example row, whose status excludes it from all estimates.
-
-    Raises
-    ------
-    OutputError
-        The folder has a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is written then.
+    folder: folder, created if necessary; its name is that of the campaign.
+    xlsx: True for a workbook instead of campaign.toml and four tables.
+    Returns paths of the files. Each table has an example row, whose status excludes it from all estimates.
+    Raises OutputError: the folder has a campaign.toml, or with ``xlsx`` any table, or cannot be written; nothing is
+        written then.
     """
     folder = Path(folder)
     names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
@@ -234,17 +223,16 @@ def write_new_campaign(folder: str | Path, *, xlsx: bool = False) -> tuple[Path,
             "{folder} already contains a campaign ({there}); nothing was written. Choose another folder."
         ).tag("holds_campaign_already", folder=folder, there=list(there))
     name = folder.resolve().name.replace("\\", "").replace('"', "") or "campaign"
-    contents = {WORKBOOK: workbook_bytes(name)} if xlsx else _template_files(name, tables=not there)
+    contents: dict[str, bytes | str] = (
+        {WORKBOOK: workbook_bytes(name)} if xlsx else {CAMPAIGN_FILE: campaign_toml(name)}
+    )
+    if not xlsx and not there:
+        contents |= {template.form.file: _template_csv(template) for template in TEMPLATES}
     prepare_folder(folder)
     with staged(folder, last=next(iter(contents))) as stage:
         for file, content in contents.items():
             write_file(stage.path / file, content)
     return tuple(folder / file for file in contents)
-
-
-def _template_files(name: str, *, tables: bool) -> Mapping[str, bytes | str]:
-    written = {template.form.file: _template_csv(template) for template in TEMPLATES} if tables else {}
-    return {CAMPAIGN_FILE: campaign_toml(name)} | written
 
 
 def _template_csv(template: Template) -> str:

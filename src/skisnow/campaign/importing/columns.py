@@ -250,12 +250,9 @@ def units_in_notes(column: str, notes: Iterable[Note]) -> set[str]:
     """Units that notes state for a column, such as "Last in kg"."""
     words = "|".join(re.escape(word) for word in SYNONYMS[column] if len(word) > 2)
     pattern = re.compile(rf"\b(?:{words})(?:en|e|n|s)?\s*(?:in|:|=|\[|\()\s*([^\s\]),;.]+)", re.IGNORECASE)
-    units = {known_unit(match[1]) for note in notes for match in pattern.finditer(_without_umlauts(note.text))}
+    texts = [note.text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue") for note in notes]
+    units = {known_unit(match[1]) for text in texts for match in pattern.finditer(text)}
     return {unit for unit in units if unit and conversion(unit, column)}
-
-
-def _without_umlauts(text: str) -> str:
-    return text.replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
 
 
 def is_about_numbers(note: Note) -> bool:

@@ -90,17 +90,9 @@ def read_campaign(folder: str | Path, *, progress: Callable[[str], None] | None 
 def campaign_of_files(files: Mapping[str, bytes], *, others: tuple[str, ...] = ()) -> Campaign:
     """Read and check a campaign from files in memory.
 
-    Parameters
-    ----------
-    files
-        Contents by name.
-    others
-        Names of other files in the campaign's folder, which are not read.
-
-    Raises
-    ------
-    FieldDataError
-        As `read_campaign`.
+    files: contents by name.
+    others: names of other files in the campaign's folder, which are not read.
+    Raises FieldDataError: as `read_campaign`.
     """
     return _require_valid(_read_all(FilesInMemory(files, others), None))
 

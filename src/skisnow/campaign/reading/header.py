@@ -92,7 +92,11 @@ def check_header(form: TableForm, header: Header) -> list[Problem]:
     if len(missing) == len(form.required):
         return [_all_missing(form, header)]
     repeated = [name for name, times in Counter(filter(None, header.columns)).items() if times > 1]
-    problems = [_repeated_error(form, name, header.row) for name in repeated]
+    allowed, action = Message("each column once"), Message("Rename or remove one of the columns of this name.")
+    problems = [
+        error("unreadable_file", form.file, row=header.row, column=name, value=name, allowed=allowed, action=action)
+        for name in repeated
+    ]
     problems += [_missing_column_problem(form, name, unknown, header.row) for name in missing]
     problems += [_unknown_error(form, name, header) for name in unknown]
     return problems
@@ -129,12 +133,6 @@ def _unit_of_other_quantity(form: TableForm, heading: str) -> str | None:
     bare, unit = re.sub(r"[\[(].*", "", heading), named_unit(heading)
     column = next(iter(columns_by_synonym(form, [bare]).values()), "") if bare != heading else ""
     return unit if unit and unit_of_column(column) and conversion(unit, column) is None else None
-
-
-def _repeated_error(form: TableForm, name: str, row: int) -> Problem:
-    allowed = Message("each column once")
-    action = Message("Rename or remove one of the columns of this name.")
-    return error("unreadable_file", form.file, row=row, column=name, value=name, allowed=allowed, action=action)
 
 
 def _missing_column_problem(form: TableForm, name: str, unknown: Sequence[str], row: int) -> Problem:

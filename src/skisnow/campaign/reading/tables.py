@@ -144,7 +144,10 @@ class TableReading:
         self.corrector.apply(lines, rows)
         if not rows:
             return
-        columns = _transpose(rows, len(self.header.columns))
+        width = len(self.header.columns)
+        if min(map(len, rows)) < width:
+            rows = [cells + [""] * (width - len(cells)) for cells in rows]
+        columns = list(zip(*rows, strict=True))
         key_position = self.header.position.get(self._form.key)
         keys = columns[key_position] if key_position is not None else ("",) * len(rows)
         about = Rows(self._form.file, lines, keys, self._problems)
@@ -158,6 +161,7 @@ class TableReading:
         unnamed = self._file_header.unnamed
         if not unnamed and max(map(len, rows)) <= width:
             return lines, rows
+        action = Message("Name the column in the header, or put the cell with a separator or decimal comma in quotes.")
         good: Records = ([], [])
         for line, cells in zip(lines, rows, strict=True):
             surplus = chain(cells[width:], (cells[index] for index in unnamed if index < len(cells)))
@@ -166,13 +170,11 @@ class TableReading:
                 good[0].append(line)
                 good[1].append(cells[:width])
             else:
-                self._problems.append(self._surplus_error(line, first, width - len(unnamed)))
+                allowed = Message("{width} cells, one below each column name", width=width - len(unnamed))
+                self._problems.append(
+                    error("unreadable_file", self._form.file, row=line, value=first, allowed=allowed, action=action)
+                )
         return good
-
-    def _surplus_error(self, line: int, cell: str, width: int) -> Problem:
-        allowed = Message("{width} cells, one below each column name", width=width)
-        action = Message("Name the column in the header, or put the cell with a separator or decimal comma in quotes.")
-        return error("unreadable_file", self._form.file, row=line, value=cell, allowed=allowed, action=action)
 
     def finish(self, *, readable: bool) -> Table | None:
         """The table from all records, None without any; reports problems that only the whole file shows."""
@@ -196,12 +198,6 @@ class TableReading:
             headings=self._headings,
             unstated=self.units.unstated,
         )
-
-
-def _transpose(rows: list[list[str]], width: int) -> list[tuple[str, ...]]:
-    if min(map(len, rows)) < width:
-        rows = [cells + [""] * (width - len(cells)) for cells in rows]
-    return list(zip(*rows, strict=True))
 
 
 def _decimal_mark_of(form: TableForm, header: Header, text: CsvText) -> str:

@@ -71,11 +71,18 @@ def write_reference(
             f"{folder} already holds a campaign ({', '.join(there)}); nothing was written. "
             "Choose a folder without one, or remove it first."
         )
+    density, cone = drawn.density, drawn.drop_cone
     files = {
         "penetration.csv": _penetration_csv(drawn),
         "shear.csv": _shear_csv(drawn),
-        "density.csv": _density_csv(drawn),
-        "drop_cone.csv": _drop_cone_csv(drawn),
+        "density.csv": _csv(
+            ("sample", "site", "snow_density_kg_per_m3"),
+            (density.sample, density.site, _number_texts(density.snow_density, 1.0, 0)),
+        ),
+        "drop_cone.csv": _csv(
+            ("test", "site", "repeat", "drop_cone_depth_mm"),
+            (cone.test, cone.site, cone.repeat, _number_texts(cone.drop_cone_depth, MM, 1)),
+        ),
         "campaign.toml": _campaign_toml(drawn),
     }
     prepare_folder(folder)
@@ -135,18 +142,6 @@ def _shear_csv(drawn: ReferenceCampaign) -> str:
     several = [[column[index] for index in of_row] for column in columns]
     several[header.index("moment_Nm")] = _number_texts(turning.moment, 1.0, 2)
     return _csv((*header, "turning_angle_deg"), [*several, _number_texts(turning.turning_angle, DEGREE, 4)])
-
-
-def _density_csv(drawn: ReferenceCampaign) -> str:
-    samples = drawn.density
-    header = ("sample", "site", "snow_density_kg_per_m3")
-    return _csv(header, [samples.sample, samples.site, _number_texts(samples.snow_density, 1.0, 0)])
-
-
-def _drop_cone_csv(drawn: ReferenceCampaign) -> str:
-    tests = drawn.drop_cone
-    header = ("test", "site", "repeat", "drop_cone_depth_mm")
-    return _csv(header, [tests.test, tests.site, tests.repeat, _number_texts(tests.drop_cone_depth, MM, 1)])
 
 
 def _campaign_toml(drawn: ReferenceCampaign) -> str:

@@ -45,21 +45,9 @@ class Position:
 
 
 def photo_entry(file: str, test: str, photo: str, *, who: str = "") -> NewEntry:
-    """Entry of a photo of a test.
+    """Entry of a photo of a test; `photo` is a JPEG file in base64.
 
-    Parameters
-    ----------
-    file, test
-        Table and name of the test.
-    photo
-        JPEG file in base64.
-    who
-        Writer.
-
-    Raises
-    ------
-    ParameterError
-        It is not a JPEG file, or larger than `MOST_PHOTO_BYTES`.
+    Raises ParameterError: it is not a JPEG file, or larger than `MOST_PHOTO_BYTES`.
     """
     try:
         data = base64.b64decode(photo, validate=True)

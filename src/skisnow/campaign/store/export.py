@@ -67,19 +67,9 @@ def _add_attachments(folder: Path, entries: Iterable[JournalEntry]) -> None:
 def add_corrections(folder: Path, entries: Iterable[JournalEntry], *, before: bytes | None = None) -> int:
     """Write corrections.csv in a campaign's folder if there are corrections; return the number of corrected cells.
 
-    Parameters
-    ----------
-    folder
-        The campaign's files.
-    entries
-        Entries about the campaign, oldest first.
-    before
-        Original corrections.csv of the campaign (default: that in the folder).
-
-    Raises
-    ------
-    StoreError
-        That file cannot be read.
+    entries: entries about the campaign, oldest first.
+    before: original corrections.csv of the campaign (default: that in the folder).
+    Raises StoreError: that file cannot be read.
     """
     place = folder / CORRECTIONS.file
     rows = list(_corrections(entries))
@@ -139,7 +129,7 @@ def _corrections_of_test(test: ReplayedTest) -> Iterator[AppliedCorrection]:
 FoundCampaign: TypeAlias = StoredCampaign | JournalHead
 
 
-def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in Store)
+def find_campaign(store: Store, id: str) -> FoundCampaign:
     """Find a campaign by the beginning of its id, among stored campaigns and lab entries.
 
     Raises StoreError: no campaign or several have this beginning; the message lists candidates.
@@ -151,13 +141,13 @@ def find_campaign(store: Store, id: str) -> FoundCampaign:  # noqa: A002 (as in 
     return heads[chosen] if chosen in heads else store.show(chosen)
 
 
-def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:  # noqa: A002
+def entered_files(store: Store, id: str) -> tuple[StoredFile, ...]:
     """Files that `export_entered` writes, sorted by path; errors as there."""
     contents = exported_files(replay_journal(Journals(store).entries(id)))
     return tuple(StoredFile(path, len(data), sha256(data).hexdigest()) for path, data in sorted(contents.items()))
 
 
-def export_entered(store: Store, id: str, folder: Path) -> None:  # noqa: A002
+def export_entered(store: Store, id: str, folder: Path) -> None:
     """Export a campaign from lab entries to a new folder, which `read_campaign` reads.
 
     Raises StoreError: the campaign is unknown, an entry is damaged, or the folder exists and is not empty.

@@ -97,7 +97,7 @@ class Journals:
             rows = connection.execute(query).all()
             return tuple(_journal_head(entered_name(connection, row[0]), *row) for row in rows)
 
-    def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
+    def entries(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:
         """Entries of a journal after a sequence, oldest first.
 
         The order is that of their uids, which is the same in all stores; without synchronisation it is the order of
@@ -107,7 +107,7 @@ class Journals:
         """
         return self._read(id, after, _require_campaign_in_entry)
 
-    def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:  # noqa: A002 (as in Store)
+    def corrections(self, id: str, *, after: int = 0) -> tuple[JournalEntry, ...]:
         """Entries after a sequence about a campaign that is stored byte for byte, oldest first.
 
         Raises StoreError: the campaign is unknown.
@@ -121,24 +121,12 @@ class Journals:
             rows = connection.execute(query).mappings()
             return tuple(sorted(map(parse_entry, rows), key=lambda entry: entry.uid))
 
-    def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:  # noqa: A002 (as in Store)
+    def append(self, id: str, entry: NewEntry, *, seen: int) -> JournalEntry:
         """Write an entry, which is on the disk when this returns; an entry that was sent before is returned.
 
-        Parameters
-        ----------
-        id
-            The journal.
-        entry
-            Entry to write.
-        seen
-            Last sequence of the entry's test that the writer has seen; 0 for a new test.
-
-        Raises
-        ------
-        OvertakenError
-            There is a later entry about the same test.
-        StoreError
-            The journal is unknown, or the entry to correct or undo is.
+        seen: last sequence of the entry's test that the writer has seen; 0 for a new test.
+        Raises OvertakenError: there is a later entry about the same test.
+        Raises StoreError: the journal is unknown, or the entry to correct or undo is.
         """
         with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             _require_campaign_in_entry(connection, id)
@@ -148,26 +136,15 @@ class Journals:
             _require_entry_of_test(connection, id, entry)
             return write_entry(connection, id, entry)
 
-    def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:  # noqa: A002
+    def correct(self, id: str, entry: NewEntry, *, seen: int, standing: Mapping[str, str]) -> JournalEntry:
         """Write a correction, cancellation or undo of a campaign that is stored byte for byte, or add an attachment.
 
-        Parameters
-        ----------
-        id
-            Complete id of the campaign.
-        entry
-            Entry about one test; ``about`` of a correction is filled in.
-        seen
-            As in `append`.
-        standing
-            All cells of the test in the files, which are written before the first entry about it.
-
-        Raises
-        ------
-        OvertakenError
-            There is a later entry about the same test.
-        StoreError
-            The campaign is unknown, or the entry to undo is.
+        id: complete id of the campaign.
+        entry: entry about one test; ``about`` of a correction is filled in.
+        seen: as in `append`.
+        standing: all cells of the test in the files, which are written before the first entry about it.
+        Raises OvertakenError: there is a later entry about the same test.
+        Raises StoreError: the campaign is unknown, or the entry to undo is.
         """
         with database_errors(self._path, "not_written"), writing(self._engine) as connection:
             _require_stored_campaign(connection, id)

@@ -102,12 +102,7 @@ class ReplayedCampaign:
 def replay_journal(entries: Iterable[JournalEntry], *, before: ReplayedCampaign | None = None) -> ReplayedCampaign:
     """Replay a journal's entries, oldest first. Undone entries have no effect, but stay in the history.
 
-    Parameters
-    ----------
-    entries
-        All entries, or those after ``before``.
-    before
-        State before these entries, which is not changed; only tests with new entries are replayed.
+    before: state before these entries, which is not changed; only tests with new entries are replayed.
     """
     campaign = replace(before, tests=dict(before.tests)) if before is not None else ReplayedCampaign()
     added: dict[tuple[str, str], list[JournalEntry]] = {}
@@ -173,15 +168,7 @@ _TIME = "time"
 
 
 def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> dict[str, str]:
-    """Text of each file of the campaign's folder, by name.
-
-    Parameters
-    ----------
-    campaign
-        Current state.
-    of
-        Tests to include (default: all).
-    """
+    """Text of each file of the campaign's folder, by name; `of`: tests to include (default: all)."""
     files = {DESCRIPTION: campaign.description}
     corrections: list[AppliedCorrection] = []
     for form, tests in _tests_by_table(campaign, of):
@@ -197,17 +184,8 @@ def campaign_files(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | N
 def campaign_in_memory(campaign: ReplayedCampaign, *, of: Iterable[ReplayedTest] | None = None) -> Campaign:
     """Campaign as `read_campaign` reads it from the exported folder, but for the hashes of its files.
 
-    Parameters
-    ----------
-    campaign
-        Current state.
-    of
-        Tests to include (default: all).
-
-    Raises
-    ------
-    FieldDataError
-        As `read_campaign`.
+    of: tests to include (default: all).
+    Raises FieldDataError: as `read_campaign`.
     """
     tables: dict[str, Cells] = {}
     corrections: list[AppliedCorrection] = []

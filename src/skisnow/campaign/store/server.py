@@ -241,10 +241,7 @@ StorePlace: TypeAlias = "Path | ServerAddress"
 def store_place(place: Path | str | ServerAddress) -> StorePlace:
     """Parse the place of a store: the path of a file, or ``postgresql://USER@HOST/DATABASE``.
 
-    Raises
-    ------
-    StoreError
-        The address is invalid; the message does not contain it, because it can have a password.
+    Raises StoreError: the address is invalid; the message does not contain it, because it can have a password.
 
     >>> str(store_place("postgresql://ada:secret@snow.example:5433/group"))
     'postgresql://ada@snow.example:5433/group'

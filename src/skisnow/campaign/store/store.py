@@ -93,19 +93,10 @@ class Store(Shown):
     ) -> Self:
         """Open a store, and migrate it to the current schema.
 
-        Parameters
-        ----------
-        path
-            SQLite file, or a database as ``postgresql://USER@HOST/DATABASE`` (default: `default_path`).
-        create
-            True to create a missing file with its folders, or missing tables in the database.
-        busy_timeout_s
-            Longest wait for another process that writes (s).
-
-        Raises
-        ------
-        StoreError
-            The store does not exist, is something else, or has an unknown schema.
+        path: SQLite file, or a database as ``postgresql://USER@HOST/DATABASE`` (default: `default_path`).
+        create: True to create a missing file with its folders, or missing tables in the database.
+        busy_timeout_s: longest wait for another process that writes (s).
+        Raises StoreError: the store does not exist, is something else, or has an unknown schema.
         """
         place = default_path() if path is None else store_place(path)
         if isinstance(place, ServerAddress):
@@ -184,7 +175,7 @@ class Store(Shown):
             )
         return files
 
-    def remove(self, id: str) -> StoredCampaign:  # noqa: A002 (as in show)
+    def remove(self, id: str) -> StoredCampaign:
         """Remove a campaign without corrections, and the contents that no other campaign has; returns it.
 
         A later sync brings it back from a group's store that has it.
@@ -201,7 +192,7 @@ class Store(Shown):
         with database_errors(self.path, "not_read"), reading(self.engine) as connection:
             return tuple(stored_campaign(connection, row) for row in campaign_rows(connection).values())
 
-    def show(self, id: str) -> StoredCampaign:  # noqa: A002 (users know it by this name)
+    def show(self, id: str) -> StoredCampaign:
         """One campaign by its id or the beginning of it (at least 4 digits).
 
         Raises StoreError: the id is unknown or ambiguous; the message lists candidates.
@@ -211,7 +202,7 @@ class Store(Shown):
 
     def export(
         self,
-        id: str,  # noqa: A002
+        id: str,
         out_folder: Path,
         *,
         progress: Progress = no_progress,
@@ -238,11 +229,7 @@ class Store(Shown):
                     complete(filling)
         return stored
 
-    def contents(
-        self,
-        id: str,  # noqa: A002
-        names: Container[str],
-    ) -> tuple[StoredCampaign, dict[str, bytes]]:
+    def contents(self, id: str, names: Container[str]) -> tuple[StoredCampaign, dict[str, bytes]]:
         """Original bytes of some of a campaign's files, by path; missing ones are omitted.
 
         Raises StoreError: as in `show`; a file is damaged.

@@ -166,18 +166,14 @@ def _sum_damage(row: _Row) -> Iterator[tuple[str | None, str]]:
         return
     for kind, name in parts:
         if kind == "cells" and name is not None:
-            yield name, _cell_damage(row, name)
+            text = parse_cells(row).get(name)
+            yield name, "the cell is gone" if text is None else f"{_shorten_text(text)} is not what was written down"
         elif kind == "cells":
             yield None, "its cells cannot be read"
         elif kind == "sums":
             yield None, "neither what it says nor its checksums are as they were written down"
         else:
             yield None, f"its {name} is not what was written down; {_shorten_text(_utf8(row[name or '']))} stands there"
-
-
-def _cell_damage(row: _Row, column: str) -> str:
-    text = parse_cells(row).get(column)
-    return "the cell is gone" if text is None else f"{_shorten_text(text)} is not what was written down"
 
 
 def _place(row: _Row, column: str | None) -> str:
